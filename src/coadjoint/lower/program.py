@@ -1,0 +1,240 @@
+"""The Program: straight-line statements over a closed set of nodes, no language yet.
+
+Comes in: nothing. Goes out: the records that `coadjoint.lower` fills, every printer prints and
+nothing else, which is why two targets can agree to the last bit: each node is one IEEE operation,
+operands stand in the order in which they are evaluated, numbers are exact until the printer.
+Read next: `coadjoint.lower.lowering`, which makes Programs of Equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal, TypeVar
+
+Value = TypeVar("Value")
+
+#: Elementary functions a Program may call; each has the same meaning in every target.
+FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An exact constant; a printer writes the nearest double."""
+
+    value: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """An input or an earlier statement by name."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Negate:
+    """``-operand``."""
+
+    operand: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Add:
+    """``left + right``; a difference is ``Add(left, Negate(right))``, the same bits in IEEE."""
+
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Multiply:
+    """``left * right``."""
+
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Divide:
+    """``left / right``."""
+
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``function(argument)`` for a function of `FUNCTIONS`."""
+
+    function: str
+    argument: Node
+
+
+Node = Number | Symbol | Negate | Add | Multiply | Divide | Call
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """``name = value``; each name is assigned once.
+
+    Attributes:
+        name: A name of the spec (``Omega1``) or a temporary (``_p1``, ``_t1``: a spec name cannot
+            begin with an underscore).
+        value: What is computed, of inputs and earlier statements.
+        level: ``"parameters"`` if it depends on parameters alone, and so is computed once for all
+            members that share them; else ``"member"``.
+    """
+
+    name: str
+    value: Node
+    level: Literal["parameters", "member"]
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """One row of the result.
+
+    Attributes:
+        label: What it is, for comments and messages: ``dPi1/dt``.
+        value: What is computed, of inputs and statements.
+    """
+
+    label: str
+    value: Node
+
+
+@dataclass(frozen=True)
+class Program:
+    """One function of a kernel.
+
+    Attributes:
+        name: ``rhs``, ``jacobian``, ``energy``, ``observables`` or ``poisson_tensor``.
+        state: Component names of the state, in order.
+        parameters: Component names of the parameters, in order.
+        statements: In the order of evaluation, those of level ``parameters`` first.
+        outputs: One per row of the result, row by row.
+        shape: Shape of the result for one member, e.g. ``(6,)``, ``(6, 6)``, ``()``.
+    """
+
+    name: str
+    state: tuple[str, ...]
+    parameters: tuple[str, ...]
+    statements: tuple[Statement, ...]
+    outputs: tuple[Output, ...]
+    shape: tuple[int, ...]
+
+    def at_level(self, level: str) -> tuple[Statement, ...]:
+        """The statements of one level."""
+        return tuple(statement for statement in self.statements if statement.level == level)
+
+    def values(self) -> Iterator[Node]:
+        """The values of all statements and outputs, in order."""
+        yield from (statement.value for statement in self.statements)
+        yield from (output.value for output in self.outputs)
+
+    def used(self) -> frozenset[str]:
+        """Names that some statement or output reads."""
+        return frozenset(
+            node.name for value in self.values() for node in walk(value) if isinstance(node, Symbol)
+        )
+
+    def operation_counts(self, level: str = "member") -> dict[str, int]:
+        """Floating-point operations by kind; outputs count as ``member``.
+
+        A negation inside a sum is a subtraction and costs nothing of its own.
+        """
+        counts = dict.fromkeys(("add", "multiply", "divide", "negate", *FUNCTIONS), 0)
+        values = [statement.value for statement in self.at_level(level)]
+        if level == "member":
+            values += [output.value for output in self.outputs]
+        for value in values:
+            for node in walk(value):
+                kind = operation(node)
+                if kind:
+                    counts[kind] += 1
+                if isinstance(node, Add) and isinstance(node.right, Negate):
+                    counts["negate"] -= 1
+        return {kind: count for kind, count in counts.items() if count}
+
+
+def operation(node: Node) -> str | None:
+    """The operation that a node costs, or None for a leaf."""
+    match node:
+        case Add():
+            return "add"
+        case Multiply():
+            return "multiply"
+        case Divide():
+            return "divide"
+        case Negate():
+            return "negate"
+        case Call(function=function):
+            return function
+    return None
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """Operands of a node, in the order of evaluation."""
+    match node:
+        case Add(left=left, right=right) | Multiply(left=left, right=right):
+            return (left, right)
+        case Divide(left=left, right=right):
+            return (left, right)
+        case Negate(operand=operand) | Call(argument=operand):
+            return (operand,)
+    return ()
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """``node`` and every node below it, parents first."""
+    yield node
+    for child in children(node):
+        yield from walk(child)
+
+
+def evaluate(
+    node: Node,
+    values: Mapping[str, Value],
+    number: Callable[[Fraction], Value],
+    call: Callable[[str, Value], Value],
+) -> Value:
+    """The value of a node in any arithmetic that has ``+ * /`` and unary ``-``.
+
+    Args:
+        node: What to evaluate.
+        values: Values of the names it reads.
+        number: Takes an exact constant into the arithmetic.
+        call: Applies an elementary function by name.
+    """
+    match node:
+        case Number(value=value):
+            return number(value)
+        case Symbol(name=name):
+            return values[name]
+        case Call(function=function, argument=argument):
+            return call(function, evaluate(argument, values, number, call))
+        case Negate(operand=operand):
+            return -evaluate(operand, values, number, call)  # type: ignore[operator, no-any-return]
+    left = evaluate(node.left, values, number, call)
+    right = evaluate(node.right, values, number, call)
+    match node:
+        case Add():
+            return left + right  # type: ignore[operator, no-any-return]
+        case Multiply():
+            return left * right  # type: ignore[operator, no-any-return]
+    return left / right  # type: ignore[operator, no-any-return]
+
+
+def run(
+    program: Program,
+    inputs: Mapping[str, Value],
+    number: Callable[[Fraction], Value],
+    call: Callable[[str, Value], Value],
+) -> list[Value]:
+    """The outputs of a Program in any arithmetic: exact elements, fractions, 50 digits, floats."""
+    values = dict(inputs)
+    for statement in program.statements:
+        values[statement.name] = evaluate(statement.value, values, number, call)
+    return [evaluate(output.value, values, number, call) for output in program.outputs]

@@ -1,0 +1,97 @@
+"""Plain expression trees: what the reader makes of text, and what the derivation reads.
+
+Comes in: nothing. Goes out: frozen nodes that carry their place in the text (``start``, ``end``,
+offsets from 0, end exclusive), so that a later step can still point at the guilty characters.
+No SymPy here, and no text of a spec survives in a node except declared names.
+Read next: `coadjoint.spec.expressions`, which makes these, and `coadjoint.derive.interpret`, which
+turns them into exact field elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+
+@dataclass(frozen=True)
+class Node:
+    """A piece of an expression and its place in the text (which equality ignores)."""
+
+    start: int = field(compare=False, kw_only=True, default=0)
+    end: int = field(compare=False, kw_only=True, default=0)
+
+
+@dataclass(frozen=True)
+class Number(Node):
+    """An exact decimal: ``0.1`` is one tenth."""
+
+    value: Fraction
+
+
+@dataclass(frozen=True)
+class Name(Node):
+    """A declared name: a whole quantity (``Omega``) or one of its components (``Omega1``)."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Index(Node):
+    """One component, counted from 1 as books do: ``Omega[1]``, ``A[1, 2]``."""
+
+    name: str
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Negate(Node):
+    """``-operand``."""
+
+    operand: Node
+
+
+@dataclass(frozen=True)
+class Binary(Node):
+    """``left operator right`` with operator one of ``+ - * /``."""
+
+    operator: str
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True)
+class Power(Node):
+    """``base ^ exponent`` with a literal integer exponent, possibly negative."""
+
+    base: Node
+    exponent: int
+
+
+@dataclass(frozen=True)
+class Call(Node):
+    """``function(arguments)`` for a function of `coadjoint.spec.shapes.FUNCTIONS`."""
+
+    function: str
+    arguments: tuple[Node, ...]
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """The nodes directly below ``node``, in reading order."""
+    match node:
+        case Negate(operand=operand):
+            return (operand,)
+        case Binary(left=left, right=right):
+            return (left, right)
+        case Power(base=base):
+            return (base,)
+        case Call(arguments=arguments):
+            return arguments
+    return ()
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """``node`` and every node below it, parents first."""
+    yield node
+    for child in children(node):
+        yield from walk(child)
