@@ -23,6 +23,15 @@ Constants = Mapping[tuple[int, int], Mapping[int, Fraction]]
 SparseMatrix = Mapping[tuple[int, int], Fraction]
 
 
+def scaled(value: Any, factor: Fraction) -> Any:
+    """``factor * value`` for values that know integers but not `Fraction` (field elements, floats)."""
+    if factor.denominator == 1:
+        return value * factor.numerator
+    if isinstance(value, int):
+        return value * factor
+    return value * factor.numerator / factor.denominator
+
+
 @dataclass(frozen=True)
 class LieAlgebra:
     """A Lie algebra with a basis: ``[e_i, e_j] = c_ij^k e_k``.
@@ -75,14 +84,14 @@ class LieAlgebra:
         """``[xi, eta]^k = c_ij^k xi^i eta^j``."""
         result: list[Any] = [0] * self.dimension
         for i, j, k, c in self.structure():
-            result[k] = result[k] + c * xi[i] * eta[j]
+            result[k] = result[k] + scaled(xi[i] * eta[j], c)
         return tuple(result)
 
     def ad(self, xi: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
         """Matrix of ``eta -> [xi, eta]``: entry ``[k][j] = c_ij^k xi^i``."""
         matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
         for i, j, k, c in self.structure():
-            matrix[k][j] = matrix[k][j] + c * xi[i]
+            matrix[k][j] = matrix[k][j] + scaled(xi[i], c)
         return tuple(map(tuple, matrix))
 
     def ad_star(self, xi: Sequence[Any], mu: Sequence[Any]) -> tuple[Any, ...]:
@@ -92,14 +101,14 @@ class LieAlgebra:
         """
         result: list[Any] = [0] * self.dimension
         for i, j, k, c in self.structure():
-            result[j] = result[j] + c * xi[i] * mu[k]
+            result[j] = result[j] + scaled(xi[i] * mu[k], c)
         return tuple(result)
 
     def lie_poisson_tensor(self, mu: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
         """Minus Lie-Poisson tensor ``{mu_i, mu_j} = -c_ij^k mu_k`` (left-invariant systems)."""
         matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
         for i, j, k, c in self.structure():
-            matrix[i][j] = matrix[i][j] - c * mu[k]
+            matrix[i][j] = matrix[i][j] - scaled(mu[k], c)
         return tuple(map(tuple, matrix))
 
     def jacobi_violation(self) -> tuple[tuple[int, int, int], dict[int, Fraction]] | None:
@@ -190,12 +199,12 @@ def from_matrices(
         )
     brackets = {}
     for i, j in combinations(range(len(basis)), 2):
-        commutator = _commutator(matrices[i], matrices[j])
-        coordinates = solve_exactly(matrices, commutator)
+        product = commutator(matrices[i], matrices[j])
+        coordinates = solve_exactly(matrices, product)
         if coordinates is None:
             raise AlgebraError(
                 f"{name}: the commutator of {basis[i]} and {basis[j]} is not in the span of the "
-                f"basis; it has the entries {_entries(commutator)}. Add what is missing to the "
+                f"basis; it has the entries {_entries(product)}. Add what is missing to the "
                 "basis.",
                 pair=[basis[i], basis[j]],
             )
@@ -203,7 +212,7 @@ def from_matrices(
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
 
 
-def _commutator(a: SparseMatrix, b: SparseMatrix) -> dict[tuple[int, int], Fraction]:
+def commutator(a: SparseMatrix, b: SparseMatrix) -> dict[tuple[int, int], Fraction]:
     """``a b - b a`` of sparse matrices."""
     result: dict[tuple[int, int], Fraction] = {}
     for left, right, sign in ((a, b, 1), (b, a, -1)):

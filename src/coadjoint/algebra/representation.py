@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, _commutator
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, commutator, scaled
 from coadjoint.errors import AlgebraError
 
 
@@ -42,7 +42,7 @@ class Representation:
                 for place, value in self.matrices[k].items():
                     expected[place] = expected.get(place, Fraction(0)) + c * value
             expected = {place: value for place, value in expected.items() if value != 0}
-            if expected != _commutator(self.matrices[i], self.matrices[j]):
+            if expected != commutator(self.matrices[i], self.matrices[j]):
                 a, b = self.algebra.basis[i], self.algebra.basis[j]
                 raise AlgebraError(
                     f"representation {self.name!r} of {self.algebra.name}: the matrices of {a} and "
@@ -55,7 +55,7 @@ class Representation:
         result: list[Any] = [0] * self.dimension
         for i, matrix in enumerate(self.matrices):
             for (row, column), value in sorted(matrix.items()):
-                result[row] = result[row] + value * xi[i] * a[column]
+                result[row] = result[row] + scaled(xi[i] * a[column], value)
         return tuple(result)
 
     def diamond(self, b: Sequence[Any], a: Sequence[Any]) -> tuple[Any, ...]:
@@ -67,7 +67,7 @@ class Representation:
         result: list[Any] = [0] * self.algebra.dimension
         for i, matrix in enumerate(self.matrices):
             for (row, column), value in sorted(matrix.items()):
-                result[i] = result[i] - value * b[row] * a[column]
+                result[i] = result[i] - scaled(b[row] * a[column], value)
         return tuple(result)
 
     def dual(self) -> Representation:

@@ -1,0 +1,42 @@
+"""Derivation: a Spec becomes Equations by one of the routes, one module each.
+
+Routes share the algebra and the Setting, never each other's results: their agreement, proved in
+`coadjoint.prove.equivalence`, is evidence. Read next: `coadjoint.derive.setting`.
+"""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from coadjoint.derive import euler_poincare, lie_poisson
+from coadjoint.derive.equations import Equations, Exact, Step
+from coadjoint.derive.setting import Setting, make_setting
+from coadjoint.errors import DerivationError
+from coadjoint.spec import Spec
+
+__all__ = ["ROUTES", "Equations", "Exact", "Setting", "Step", "derive", "make_setting"]
+
+#: Every route by the name that specs use.
+ROUTES: Mapping[str, Callable[[Setting], Equations]] = MappingProxyType(
+    {"euler-poincare": euler_poincare.derive, "lie-poisson": lie_poisson.derive}
+)
+
+
+def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = None) -> Equations:
+    """Derive the equations of motion of a declared system.
+
+    Args:
+        spec: What `coadjoint.read_spec` returned.
+        route: One of the spec's routes; the first one, which is emitted, by default.
+        setting: A Setting made before, so that several routes live in one field.
+
+    Raises:
+        DerivationError: The spec does not declare the route, or the route cannot be followed.
+    """
+    chosen = route or spec.routes[0]
+    if chosen not in spec.routes:
+        raise DerivationError(
+            f"{spec.path}: the route {chosen!r} is not declared; expected one of "
+            f"{', '.join(spec.routes)}. Add it to routes to have it proved too.",
+            found=chosen,
+        )
+    return ROUTES[chosen](setting or make_setting(spec))

@@ -1,0 +1,170 @@
+"""The Equations of motion: what every route derives and every later step reads.
+
+Comes in: exact elements from a route. Goes out: a frozen record with two faces. `exact` holds field
+elements in the form in which a careful person would compute them (velocities as named
+definitions); the properties give closed SymPy expressions of state and parameters to read and use.
+Read next: `coadjoint.prove.claims` and `coadjoint.lower.lowering`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy
+
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+@dataclass(frozen=True)
+class Left:
+    """The left side of a line of a derivation, as plain text and as LaTeX."""
+
+    text: str
+    latex: str
+
+
+def symbol(name: str) -> Left:
+    """The symbol itself: ``Pi1``."""
+    return Left(name, sympy.latex(sympy.Symbol(name)))
+
+
+def rate(name: str) -> Left:
+    """Its time derivative: ``dPi1/dt``."""
+    return Left(f"d{name}/dt", rf"\dot{{{symbol(name).latex}}}")
+
+
+def partial(function: str, name: str) -> Left:
+    """A partial derivative: ``dl/dOmega1``."""
+    return Left(
+        f"d{function}/d{name}", rf"\partial {function} / \partial {symbol(name).latex}"
+    )
+
+
+def bracket(a: str, b: str) -> Left:
+    """A Poisson bracket: ``{Pi1, Pi2}``."""
+    return Left(f"{{{a}, {b}}}", rf"\{{{symbol(a).latex}, {symbol(b).latex}\}}")
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a derivation, for the document.
+
+    Attributes:
+        title: What is done.
+        text: The general law as plain text, from the theorem and not from the spec.
+        latex: The same law as LaTeX.
+        lines: Left and right sides of what it gives for this system.
+    """
+
+    title: str
+    text: str
+    latex: str
+    lines: tuple[tuple[Left, Element], ...] = ()
+
+
+@dataclass(frozen=True)
+class Exact:
+    """The equations as field elements.
+
+    Attributes:
+        definitions: Velocities by name, each in terms of the state; rates and observables may use
+            these names. In the order in which they can be computed.
+        rates: Time derivative of each state component.
+        energy: The Hamiltonian, in terms of the state.
+        observables: Name and value of each scalar emitted beside the dynamics, energy included.
+        poisson_tensor: ``{x_i, x_j}`` for the state x.
+    """
+
+    definitions: tuple[tuple[str, Element], ...]
+    rates: tuple[Element, ...]
+    energy: Element
+    observables: tuple[tuple[str, Element], ...]
+    poisson_tensor: tuple[tuple[Element, ...], ...]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Derived equations of motion of one system by one route.
+
+    Attributes:
+        setting: The spec and the exact field.
+        route: ``euler-poincare``, ``lie-poisson``.
+        exact: The equations as field elements.
+        steps: The derivation, step by step.
+    """
+
+    setting: Setting
+    route: str
+    exact: Exact
+    steps: tuple[Step, ...]
+
+    @property
+    def spec(self) -> Spec:
+        """The spec the equations were derived from."""
+        return self.setting.spec
+
+    @property
+    def state(self) -> tuple[sympy.Symbol, ...]:
+        """State symbols in declared order."""
+        return tuple(map(sympy.Symbol, self.setting.state))
+
+    @property
+    def parameters(self) -> tuple[sympy.Symbol, ...]:
+        """Parameter symbols in declared order."""
+        return tuple(map(sympy.Symbol, self.setting.parameters))
+
+    @cached_property
+    def rates(self) -> tuple[sympy.Expr, ...]:
+        """Time derivative of each state component, in state and parameters alone."""
+        return tuple(map(self._sympy, self.exact.rates))
+
+    @cached_property
+    def energy(self) -> sympy.Expr:
+        """The energy, in state and parameters alone."""
+        return self._sympy(self.exact.energy)
+
+    @cached_property
+    def observables(self) -> dict[str, sympy.Expr]:
+        """Scalars emitted beside the dynamics, in state and parameters alone."""
+        return {name: self._sympy(value) for name, value in self.exact.observables}
+
+    @cached_property
+    def velocities(self) -> dict[str, sympy.Expr]:
+        """Velocities in state and parameters alone."""
+        return {name: self._sympy(value) for name, value in self.exact.definitions}
+
+    @cached_property
+    def poisson_tensor(self) -> sympy.ImmutableMatrix:
+        """Matrix of the brackets ``{x_i, x_j}`` of the state."""
+        return sympy.ImmutableMatrix(
+            [[self._sympy(entry) for entry in row] for row in self.exact.poisson_tensor]
+        )
+
+    def closed(self, element: Element) -> Element:
+        """An element with the definitions substituted: in state and parameters alone."""
+        return self.setting.field.substitute(element, self._closed_definitions)
+
+    @cached_property
+    def _closed_definitions(self) -> dict[str, Element]:
+        known: dict[str, Element] = {}
+        for name, value in self.exact.definitions:
+            known[name] = self.setting.field.substitute(value, known)
+        return known
+
+    def _sympy(self, element: Element) -> sympy.Expr:
+        return self.setting.field.to_sympy(self.closed(element))
+
+    def latex(self) -> str:
+        """The definitions and rates as a LaTeX ``aligned`` block."""
+        field = self.setting.field
+        lines = [(symbol(name), value) for name, value in self.exact.definitions]
+        lines += zip(map(rate, self.setting.state), self.exact.rates, strict=True)
+        rows = [f"{left.latex} &= {sympy.latex(field.to_sympy(value))}" for left, value in lines]
+        return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+
+    def _repr_latex_(self) -> str:
+        """What a notebook shows."""
+        return f"$\\displaystyle {self.latex()}$"

@@ -1,0 +1,92 @@
+r"""The Euler-Poincare route: from a reduced Lagrangian, with advected quantities.
+
+Theorem (Holm 2011, sections 9.1 and 9.1.4; Holm, Marsden and Ratiu 1998): Hamilton's principle for a
+left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
+:math:`\delta a = -\rho(\eta) a`, gives
+
+.. math::
+    \frac{d}{dt}\frac{\partial l}{\partial\xi} = \mathrm{ad}^*_\xi \frac{\partial l}{\partial\xi}
+        + \frac{\partial l}{\partial a} \diamond a, \qquad \dot a = -\rho(\xi) a,
+
+and a right-invariant one the same with the opposite sign of the right-hand sides.
+Comes in: a Setting with a Lagrangian. Goes out: Equations in the momenta :math:`\mu = \partial
+l/\partial\xi`, with the velocities as definitions. Read next: `coadjoint.derive.lie_poisson`, the
+other road to the same motion.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.observables import observables
+from coadjoint.derive.setting import Setting
+from coadjoint.derive.structure import poisson_tensor
+from coadjoint.exact import Element
+
+
+def derive(setting: Setting) -> Equations:
+    """Equations of motion by the Euler-Poincare theorem.
+
+    Raises:
+        DerivationError: The Lagrangian has no invertible Legendre transform.
+    """
+    formula = setting.spec.lagrangian
+    assert formula is not None, "the reader asks for a Lagrangian on this route"
+    lagrangian = setting.formula(formula)
+    transform = legendre_transform(setting, lagrangian)
+    rates = _rates(setting, lagrangian)
+    definitions = tuple(zip(setting.velocities, transform.velocities, strict=True))
+    energy = setting.field.substitute(transform.energy, dict(definitions))
+    exact = Exact(
+        definitions, rates, energy, observables(setting, energy), poisson_tensor(setting)
+    )
+    return Equations(setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates))
+
+
+def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
+    """Right-hand sides in state, velocities and parameters, in the order of the state."""
+    sign, xi = setting.sign, setting.elements(setting.velocities)
+    mu = setting.elements(setting.momenta)
+    momentum = list(setting.spec.algebra.ad_star(xi, mu))
+    advected = {}
+    for variable in setting.advected:
+        assert variable.representation is not None
+        a = setting.elements(variable.components)
+        dl_da = setting.field.gradient(lagrangian, variable.components)
+        torque = variable.representation.diamond(dl_da, a)
+        momentum = [m + t for m, t in zip(momentum, torque, strict=True)]
+        advected[variable.name] = [-sign * x for x in variable.representation.act(xi, a)]
+    return setting.in_state_order([sign * m for m in momentum], advected)
+
+
+def _steps(
+    setting: Setting,
+    lagrangian: Element,
+    transform: LegendreTransform,
+    rates: tuple[Element, ...],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    turn, back = ("", "-") if setting.sign == 1 else ("-", "")
+    momenta = (partial("l", velocity) for velocity in setting.velocities)
+    return (
+        Step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", ((symbol("l"), lagrangian),)),
+        Step(
+            "Momenta",
+            "mu = dl/dxi",
+            r"\mu = \partial l / \partial \xi",
+            tuple(zip(momenta, transform.momenta, strict=True)),
+        ),
+        Step(
+            "Legendre transform",
+            "xi solved from mu = dl/dxi",
+            r"\xi = \xi(\mu, a)",
+            tuple(zip(map(symbol, setting.velocities), transform.velocities, strict=True)),
+        ),
+        Step(
+            "Euler-Poincare equations and advection",
+            f"dmu/dt = {turn}(ad*_xi mu + dl/da <> a),  da/dt = {back}rho(xi) a",
+            rf"\dot\mu = {turn}(\mathrm{{ad}}^*_\xi \mu + (\partial l / \partial a) \diamond a), "
+            rf"\qquad \dot a = {back}\rho(\xi) a",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+    )

@@ -1,0 +1,188 @@
+"""From plain expression trees to exact field elements, vectors and matrices of them.
+
+Comes in: a tree whose shapes the reader has checked, and values for its names. Goes out: an
+element, a tuple of elements (vector) or a tuple of rows (matrix). This is the only place where a
+spec's expressions become mathematics, and no text is involved.
+Read next: `coadjoint.derive.setting`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from coadjoint.algebra.catalogue import so3
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element, Field
+from coadjoint.spec import tree
+
+#: An element, a tuple of elements or a tuple of tuples of elements.
+Quantity = Any
+Matrix = tuple[tuple[Element, ...], ...]
+
+
+def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> Quantity:
+    """The value of a tree.
+
+    Args:
+        node: A tree whose shapes have been checked.
+        values: Value of every declared name, whole quantities and components alike.
+        field: Where the elements live.
+
+    Raises:
+        DerivationError: Division by zero or the inverse of a singular matrix.
+    """
+    match node:
+        case tree.Number(value=value):
+            return field.number(value)
+        case tree.Name(name=name):
+            return values[name]
+        case tree.Index(name=name, indices=indices):
+            value = values[name]
+            for index in indices:
+                value = value[index - 1]
+            return value
+        case tree.Negate(operand=operand):
+            return _scale(-field.one, interpret(operand, values, field))
+        case tree.Power(base=base, exponent=exponent):
+            return _power(interpret(base, values, field), exponent, field)
+        case tree.Binary(operator=operator, left=left, right=right):
+            a, b = interpret(left, values, field), interpret(right, values, field)
+            return _BINARY[operator](a, b)
+        case tree.Call(function=function, arguments=arguments):
+            found = [interpret(argument, values, field) for argument in arguments]
+            if function in _TENSOR_FUNCTIONS:
+                return _TENSOR_FUNCTIONS[function](*found)
+            if function == "norm":
+                return field.call("sqrt", _dot(found[0], found[0]))
+            return field.call(function, found[0])
+    raise AssertionError(node)
+
+
+def _scale(factor: Element, value: Quantity) -> Quantity:
+    """``factor * value`` for a value of any shape."""
+    if isinstance(value, tuple):
+        return tuple(_scale(factor, part) for part in value)
+    return factor * value
+
+
+def _add(a: Quantity, b: Quantity) -> Quantity:
+    if isinstance(a, tuple):
+        return tuple(map(_add, a, b))
+    return a + b
+
+
+def _subtract(a: Quantity, b: Quantity) -> Quantity:
+    if isinstance(a, tuple):
+        return tuple(map(_subtract, a, b))
+    return a - b
+
+
+def _multiply(a: Quantity, b: Quantity) -> Quantity:
+    """Scalar times anything, matrix times vector, matrix times matrix."""
+    if not isinstance(a, tuple):
+        return _scale(a, b)
+    if not isinstance(b, tuple):
+        return _scale(b, a)
+    if isinstance(b[0], tuple):
+        return tuple(tuple(_dot(row, column) for column in zip(*b, strict=True)) for row in a)
+    return tuple(_dot(row, b) for row in a)
+
+
+def _divide(a: Quantity, b: Element) -> Quantity:
+    if b == 0:
+        raise DerivationError("an expression divides by zero identically; expected a divisor != 0.")
+    return _scale(1 / b, a)
+
+
+def _dot(a: tuple[Element, ...], b: tuple[Element, ...]) -> Element:
+    products = [x * y for x, y in zip(a, b, strict=True)]
+    return sum(products[1:], products[0])
+
+
+def _transpose(a: Matrix) -> Matrix:
+    return tuple(zip(*a, strict=True))
+
+
+def _trace(a: Matrix) -> Element:
+    diagonal = [row[i] for i, row in enumerate(a)]
+    return sum(diagonal[1:], diagonal[0])
+
+
+def _diag(a: Quantity) -> Quantity:
+    """A vector as a diagonal matrix; the diagonal of a matrix as a vector."""
+    if isinstance(a[0], tuple):
+        return tuple(row[i] for i, row in enumerate(a))
+    return tuple(tuple(x if i == j else 0 * x for j in range(len(a))) for i, x in enumerate(a))
+
+
+def _minor(a: Matrix, row: int, column: int) -> Matrix:
+    rows = [line for i, line in enumerate(a) if i != row]
+    return tuple(line[:column] + line[column + 1 :] for line in rows)
+
+
+def determinant(a: Matrix) -> Element:
+    """Determinant by expansion along the first row; matrices here are at most 3 x 3."""
+    if len(a) == 1:
+        return a[0][0]
+    terms = [(-1) ** j * x * determinant(_minor(a, 0, j)) for j, x in enumerate(a[0]) if x != 0]
+    return sum(terms, 0 * a[0][0])
+
+
+def inverse(a: Matrix) -> Matrix:
+    """Inverse by cofactors.
+
+    Raises:
+        DerivationError: The determinant is zero identically.
+    """
+    det = determinant(a)
+    if det == 0:
+        raise DerivationError("the inverse of a singular matrix is asked for; expected det != 0.")
+    if len(a) == 1:
+        return ((1 / det,),)
+    size = range(len(a))
+    return tuple(
+        tuple((-1) ** (i + j) * determinant(_minor(a, j, i)) / det for j in size) for i in size
+    )
+
+
+def _power(base: Quantity, exponent: int, field: Field) -> Quantity:
+    if not isinstance(base, tuple):
+        if base == 0 and exponent < 0:
+            return _divide(field.one, base)
+        return base**exponent
+    if exponent < 0:
+        base, exponent = inverse(base), -exponent
+    result = _diag(tuple(field.one for _ in base))
+    for _ in range(exponent):
+        result = _multiply(result, base)
+    return result
+
+
+def _cross(a: Quantity, b: Quantity) -> Quantity:
+    """The bracket of so(3), so that one table of signs serves the whole engine."""
+    return so3().bracket(a, b)
+
+
+def _hat(a: Quantity) -> Matrix:
+    zero = 0 * a[0]
+    return tuple(tuple(x + zero for x in row) for row in so3().ad(a))
+
+
+_BINARY: dict[str, Callable[..., Quantity]] = {
+    "+": _add,
+    "-": _subtract,
+    "*": _multiply,
+    "/": _divide,
+}
+_TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
+    "dot": _dot,
+    "cross": _cross,
+    "hat": _hat,
+    "trace": _trace,
+    "transpose": _transpose,
+    "det": determinant,
+    "inverse": inverse,
+    "diag": _diag,
+    "commutator": lambda a, b: _subtract(_multiply(a, b), _multiply(b, a)),
+}

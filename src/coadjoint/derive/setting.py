@@ -1,0 +1,153 @@
+"""The setting of a Spec: its exact field and its formulas as elements, shared by all routes.
+
+Comes in: a Spec. Goes out: a `Setting` that ties the declared quantities to the positions of the
+Lie algebra and of the advected spaces. Routes share this and the algebra, never each other's
+results. Read next: `coadjoint.derive.euler_poincare`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+from coadjoint.derive.interpret import Quantity, interpret
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element, Field
+from coadjoint.spec import Formula, Spec, tree
+from coadjoint.spec.model import Parameter, Variable
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A Spec with its exact field.
+
+    Attributes:
+        spec: What was declared.
+        field: Rational functions of state, velocities and parameters, with the elementary
+            functions that the spec's formulas call.
+        values: Every declared name, whole quantity or component, as field elements.
+    """
+
+    spec: Spec
+    field: Field
+    values: Mapping[str, Quantity]
+
+    # -- names, in the order of the algebra --------------------------------------------------------
+
+    @cached_property
+    def state(self) -> tuple[str, ...]:
+        """Component names of the state: momenta, then advected quantities."""
+        return tuple(name for variable in self.spec.state for name in variable.components)
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """Component names of the parameters."""
+        return tuple(name for parameter in self.spec.parameters for name in parameter.components)
+
+    @cached_property
+    def velocities(self) -> tuple[str, ...]:
+        """Name of the velocity along each basis vector of the algebra; empty if none is declared."""
+        return self._along_basis("velocity")
+
+    @cached_property
+    def momenta(self) -> tuple[str, ...]:
+        """Name of the momentum along each basis vector of the algebra."""
+        return self._along_basis("momentum")
+
+    @cached_property
+    def advected(self) -> tuple[Variable, ...]:
+        """The advected quantities."""
+        return self.spec.having_role("advected")
+
+    @property
+    def sign(self) -> int:
+        """+1 for left-invariant systems; right-invariant ones run the other way (Holm 2011, 9.1)."""
+        return 1 if self.spec.invariance == "left" else -1
+
+    def _along_basis(self, role: str) -> tuple[str, ...]:
+        places = {
+            place: name
+            for variable in self.spec.having_role(role)
+            for place, name in zip(variable.block, variable.components, strict=True)
+        }
+        return tuple(places[place] for place in sorted(places))
+
+    # -- elements -----------------------------------------------------------------------------------
+
+    def elements(self, names: Sequence[str]) -> tuple[Element, ...]:
+        """The symbols of several names."""
+        return tuple(self.field[name] for name in names)
+
+    def formula(self, formula: Formula) -> Element:
+        """The value of a declared scalar formula.
+
+        Raises:
+            DerivationError: Division by zero or a singular inverse inside it.
+        """
+        return self._within(formula, lambda: interpret(formula.tree, self.values, self.field))
+
+    def _within(self, formula: Formula, act: Callable[[], Result]) -> Result:
+        """Add the place to what goes wrong while a formula is interpreted."""
+        try:
+            return act()
+        except DerivationError as error:
+            raise DerivationError(
+                f"{self.spec.path}:{formula.line}: {formula.key}: {error}",
+                path=str(self.spec.path),
+                line=formula.line,
+                key=formula.key,
+                found=formula.text,
+            ) from error
+
+    def in_state_order(self, momentum: Sequence[Element], advected: Mapping[str, Sequence[Element]]
+    ) -> tuple[Element, ...]:
+        """Values along the algebra's basis and per advected quantity, in the order of the state."""
+        by_name = dict(zip(self.momenta, momentum, strict=True))
+        for variable in self.advected:
+            by_name |= dict(zip(variable.components, advected[variable.name], strict=True))
+        return self.field.vector(by_name[name] for name in self.state)
+
+
+def make_setting(spec: Spec) -> Setting:
+    """The Setting of a Spec: symbols for all its components, room for all its function calls."""
+    quantities: list[Variable | Parameter] = [
+        *spec.state,
+        *spec.having_role("velocity"),
+        *spec.parameters,
+    ]
+    names = [name for quantity in quantities for name in quantity.components]
+    field = Field(names, slots=_function_calls(spec))
+    values: dict[str, Quantity] = {name: field[name] for name in names}
+    for quantity in quantities:
+        values[quantity.name] = _shaped(quantity, field)
+    return Setting(spec, field, values)
+
+
+def formulas(spec: Spec) -> tuple[Formula, ...]:
+    """Every formula of a spec."""
+    stated = [formula for formula in (spec.lagrangian, spec.hamiltonian) if formula is not None]
+    declared = [observable.formula for observable in spec.observables]
+    return (*stated, *declared, *spec.casimirs, *spec.conserved)
+
+
+def _function_calls(spec: Spec) -> int:
+    """How many elementary functions the formulas of a spec call at the most."""
+    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    return sum(isinstance(node, tree.Call) for node in nodes)
+
+
+def _shaped(quantity: Variable | Parameter, field: Field) -> Quantity:
+    """The components of a quantity as an element, a vector or a matrix."""
+    parts = tuple(field[name] for name in quantity.components)
+    match quantity.shape:
+        case ():
+            return parts[0]
+        case (_,):
+            return parts
+        case (rows, columns):
+            return tuple(parts[i * columns : (i + 1) * columns] for i in range(rows))
+    raise AssertionError(quantity.shape)

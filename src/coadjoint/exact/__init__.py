@@ -1,0 +1,10 @@
+"""Exact arithmetic: the field of rational functions in which every derivation and proof happens.
+
+SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
+`coadjoint.exact.element`, then `coadjoint.exact.field`.
+"""
+
+from coadjoint.exact.element import Element
+from coadjoint.exact.field import Field
+
+__all__ = ["Element", "Field"]

@@ -1,0 +1,290 @@
+"""The Field of a system: named symbols, adjoined functions, calculus and evaluation.
+
+Comes in: names of the symbols. Goes out: elements with a decidable zero. Elementary functions
+(sqrt, sin, cos, exp, log) are adjoined as new generators with their derivative and, for sqrt and
+the pair sin, cos, the relation that reduces them.
+Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+from math import isqrt
+from operator import mul
+from typing import Any, TypeVar
+
+import sympy
+from sympy.polys.domains import QQ
+from sympy.polys.orderings import lex
+from sympy.polys.rings import PolyElement, PolyRing
+
+from coadjoint.exact.element import Element, Factors
+
+Value = TypeVar("Value")
+
+_SYMPY_FUNCTIONS = {
+    name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")
+}
+
+
+@dataclass(frozen=True)
+class Adjoined:
+    """A generator that stands for ``function(argument)``."""
+
+    generator: str
+    function: str
+    argument: Element
+
+
+class Field:
+    """Rational functions over Q in named symbols and in elementary functions of them.
+
+    Args:
+        names: The symbols, in the order that fixes the normal form.
+        slots: How many elementary functions may be adjoined.
+
+    >>> field = Field(["x", "y"])
+    >>> x, y = field["x"], field["y"]
+    >>> field.is_zero((x**2 - y**2) / (x - y) - (x + y))
+    True
+    """
+
+    def __init__(self, names: Sequence[str], slots: int = 0) -> None:
+        self.names = tuple(names)
+        # A spec name cannot begin with an underscore, so a slot cannot meet one.
+        self._free = [f"_f{n + 1}" for n in range(2 * slots)]
+        self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
+        self._factors = Factors(self._ring)
+        self._names = (*names, *self._free)
+        self._position = {name: n for n, name in enumerate(self._names)}
+        self._generators = {
+            name: self._element(generator)
+            for name, generator in zip(self._names, self._ring.gens, strict=True)
+        }
+        self.adjoined: dict[str, Adjoined] = {}
+
+    def __getitem__(self, name: str) -> Element:
+        return self._generators[name]
+
+    def _element(self, p: PolyElement) -> Element:
+        return Element(self._factors, p, {})
+
+    @property
+    def zero(self) -> Element:
+        """The element 0."""
+        return self._element(self._ring.zero)
+
+    @property
+    def one(self) -> Element:
+        """The element 1."""
+        return self._element(self._ring.one)
+
+    def number(self, value: Fraction | int) -> Element:
+        """A rational number as an element."""
+        return self.zero + Fraction(value)
+
+    def vector(self, values: Iterable[Element | int]) -> tuple[Element, ...]:
+        """Values that may still be plain numbers, as elements."""
+        return tuple(self.zero + value for value in values)
+
+    # -- elementary functions ---------------------------------------------------------------------
+
+    def call(self, function: str, argument: Element) -> Element:
+        """``function(argument)``, adjoining a generator unless one stands for it already.
+
+        ``tan`` becomes ``sin / cos``; the square root of a square of a rational is that rational.
+        """
+        if function == "tan":
+            return self.call("sin", argument) / self.call("cos", argument)
+        if function == "sqrt" and (root := self._rational_root(argument)) is not None:
+            return root
+        for known in self.adjoined.values():
+            if known.function == function and self.is_zero(known.argument - argument):
+                return self[known.generator]
+        if function in ("sin", "cos"):  # always both: each is the derivative of the other
+            self._adjoin("cos", argument)
+            self._adjoin("sin", argument)
+            return self.call(function, argument)
+        return self._adjoin(function, argument)
+
+    def _adjoin(self, function: str, argument: Element) -> Element:
+        assert self._free, f"no slot left for {function}"
+        generator = self._free.pop(0)
+        self.adjoined[generator] = Adjoined(generator, function, argument)
+        return self[generator]
+
+    def _rational_root(self, argument: Element) -> Element | None:
+        """The square root of an element that is the square of a rational number."""
+        if argument.powers or not argument.numer.is_ground:
+            return None
+        value = argument.numer.LC
+        top, bottom = int(value.numerator), int(value.denominator)
+        if top < 0 or isqrt(top) ** 2 != top or isqrt(bottom) ** 2 != bottom:
+            return None
+        return self.number(Fraction(isqrt(top), isqrt(bottom)))
+
+    def normal(self, element: Element) -> Element:
+        """Normal form: even powers of square roots and of sines in the numerator are replaced."""
+        for known in reversed(self.adjoined.values()):
+            square = self._square_of(known)
+            if square is not None:
+                element = self._reduce(element, known.generator, square)
+        return element
+
+    def _square_of(self, known: Adjoined) -> Element | None:
+        """What the square of an adjoined generator equals, where there is such a relation."""
+        if known.function == "sqrt":
+            return known.argument
+        if known.function == "sin":
+            return self.one - self.call("cos", known.argument) ** 2
+        return None
+
+    def _reduce(self, element: Element, generator: str, square: Element) -> Element:
+        """The element with ``generator ** 2`` replaced in its numerator."""
+        place, ring = self._position[generator], element.numer.ring
+        if element.numer.degree(ring.gens[place]) < 2:
+            return element
+        parts: dict[int, dict[tuple[int, ...], Any]] = {}
+        for monomial, coefficient in element.numer.terms():
+            rest = (*monomial[:place], monomial[place] % 2, *monomial[place + 1 :])
+            part = parts.setdefault(monomial[place] // 2, {})
+            part[rest] = part.get(rest, 0) + coefficient
+        numer = sum(
+            (self._element(ring.from_dict(part)) * square**k for k, part in parts.items()), self.zero
+        )
+        return numer * Element(self._factors, ring.one, element.powers)
+
+    def is_zero(self, element: Element) -> bool:
+        """Whether the normal form is 0: exact for rational functions, and a proof of zero always.
+
+        With adjoined functions a nonzero normal form may still be a hidden zero (``log(x^2) -
+        2 log(x)``); `coadjoint.prove.zero` says so.
+        """
+        return bool(self.normal(element) == 0)
+
+    def function_free(self, element: Element) -> bool:
+        """Whether no adjoined function occurs, so that the normal form decides both ways."""
+        return not any(name in self.adjoined for name in self.names_in(element))
+
+    def names_in(self, element: Element) -> frozenset[str]:
+        """Names of the generators that occur in an element."""
+        return frozenset(
+            self._names[place]
+            for part in (element.numer, *self._denominators(element))
+            for monomial in part
+            for place, power in enumerate(monomial)
+            if power
+        )
+
+    def _denominators(self, element: Element) -> list[PolyElement]:
+        """The factors of the denominator, without their exponents."""
+        return [self._factors.known[number] for number in element.powers]
+
+    # -- calculus -----------------------------------------------------------------------------------
+
+    def derivative(self, element: Element, name: str) -> Element:
+        """Partial derivative by a symbol, through adjoined functions by the chain rule."""
+        result = element.diff(self._ring.gens[self._position[name]])
+        for generator in sorted(self.names_in(element) & self.adjoined.keys()):
+            outer = element.diff(self._ring.gens[self._position[generator]])
+            result += outer * self._derivative_of(self.adjoined[generator], name)
+        return result
+
+    def _derivative_of(self, known: Adjoined, name: str) -> Element:
+        """Derivative of an adjoined function by a symbol."""
+        inner, own = self.derivative(known.argument, name), self[known.generator]
+        if inner == 0:
+            return self.zero
+        match known.function:
+            case "sqrt":
+                return inner / (2 * own)
+            case "sin":
+                return inner * self.call("cos", known.argument)
+            case "cos":
+                return -inner * self.call("sin", known.argument)
+            case "exp":
+                return inner * own
+        return inner / known.argument  # log
+
+    def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
+        """Partial derivatives by several symbols."""
+        return tuple(self.derivative(element, name) for name in names)
+
+    # -- evaluation ---------------------------------------------------------------------------------
+
+    def evaluate(
+        self,
+        element: Element,
+        values: Mapping[str, Value],
+        number: Callable[[Fraction], Value],
+        call: Callable[[str, Value], Value],
+    ) -> Value:
+        """The value of an element in any arithmetic with ``+ * /``: term by term, as it is written.
+
+        Args:
+            element: What to evaluate.
+            values: Values of the symbols that occur.
+            number: Takes a rational number into the arithmetic.
+            call: Applies an elementary function by name.
+        """
+        known = dict(values)
+        for generator in self._needed(element):
+            argument = self.adjoined[generator].argument
+            inner = self.evaluate(argument, known, number, call)
+            known[generator] = call(self.adjoined[generator].function, inner)
+        top = self._polynomial(element.numer, known, number)
+        if not element.powers:
+            return top
+        bottom = [
+            self._polynomial(self._factors.known[factor], known, number)
+            for factor, exponent in element.powers.items()
+            for _ in range(exponent)
+        ]
+        return top / reduce(mul, bottom)  # type: ignore[operator, no-any-return]
+
+    def _needed(self, element: Element) -> list[str]:
+        """Adjoined generators that occur, in the order in which they were adjoined."""
+        present = self.names_in(element)
+        return [generator for generator in self.adjoined if generator in present]
+
+    def _polynomial(
+        self, p: PolyElement, values: Mapping[str, Value], number: Callable[[Fraction], Value]
+    ) -> Value:
+        """Sum of coefficient times powers, in the order of the ring."""
+        total: Any = None
+        for monomial, coefficient in p.terms():
+            factors = [
+                values[self._names[place]] for place, power in enumerate(monomial) for _ in range(power)
+            ]
+            if coefficient != 1 or not factors:
+                factors.insert(0, number(Fraction(int(coefficient.numerator), int(coefficient.denominator))))
+            term = reduce(mul, factors)
+            total = term if total is None else total + term
+        return number(Fraction(0)) if total is None else total  # type: ignore[no-any-return]
+
+    def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
+        """The element with symbols replaced by elements; symbols not named stay."""
+        if not self._reach(element) & values.keys():
+            return element
+        known = {name: values.get(name, self[name]) for name in self.names}
+        return self.evaluate(element, known, self.number, self.call)
+
+    def _reach(self, element: Element) -> frozenset[str]:
+        """Names that occur in an element or in the arguments of its functions."""
+        names = self.names_in(element)
+        for generator in self._needed(element):
+            names |= self._reach(self.adjoined[generator].argument)
+        return names
+
+    def to_sympy(self, element: Element) -> sympy.Expr:
+        """The element as a SymPy expression of plain symbols, for people to read and use."""
+        functions = {
+            sympy.Symbol(generator): _SYMPY_FUNCTIONS[self.adjoined[generator].function](
+                self.to_sympy(self.adjoined[generator].argument)
+            )
+            for generator in self._needed(element)
+        }
+        return sympy.sympify(element).xreplace(functions)
