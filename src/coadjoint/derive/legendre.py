@@ -49,7 +49,7 @@ def legendre_transform(setting: Setting, lagrangian: Element) -> LegendreTransfo
         for mu, momentum in zip(setting.momenta, momenta, strict=True)
     ]
     velocities: dict[int, Element] = {}
-    for block in _coupled(mass):
+    for block in coupled_blocks(mass):
         velocities |= _solve_block(setting, mass, known, block)
     pairs = zip(setting.momenta, names, strict=True)
     energy = sum((field[mu] * field[xi] for mu, xi in pairs), -lagrangian)
@@ -72,7 +72,7 @@ def _check_quadratic(setting: Setting, mass: tuple[tuple[Element, ...], ...]) ->
                 )
 
 
-def _coupled(mass: tuple[tuple[Element, ...], ...]) -> list[tuple[int, ...]]:
+def coupled_blocks(mass: tuple[tuple[Element, ...], ...]) -> list[tuple[int, ...]]:
     """Positions that the mass matrix couples, as its connected blocks."""
     blocks: list[set[int]] = []
     for i, row in enumerate(mass):

@@ -7,19 +7,16 @@ results. Read next: `coadjoint.derive.euler_poincare`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from types import MappingProxyType
 
 from coadjoint.derive.interpret import Quantity, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Formula, Spec, tree
 from coadjoint.spec.model import Parameter, Variable
-
-Result = TypeVar("Result")
-
 
 @dataclass(frozen=True)
 class Setting:
@@ -82,18 +79,21 @@ class Setting:
         """The symbols of several names."""
         return tuple(self.field[name] for name in names)
 
-    def formula(self, formula: Formula) -> Element:
+    def formula(
+        self, formula: Formula, observables: Mapping[str, Element] = MappingProxyType({})
+    ) -> Element:
         """The value of a declared scalar formula.
+
+        Args:
+            formula: Parsed and shape-checked.
+            observables: Values of the names that only claims may use.
 
         Raises:
             DerivationError: Division by zero or a singular inverse inside it.
         """
-        return self._within(formula, lambda: interpret(formula.tree, self.values, self.field))
-
-    def _within(self, formula: Formula, act: Callable[[], Result]) -> Result:
-        """Add the place to what goes wrong while a formula is interpreted."""
         try:
-            return act()
+            value: Element = interpret(formula.tree, {**self.values, **observables}, self.field)
+            return value
         except DerivationError as error:
             raise DerivationError(
                 f"{self.spec.path}:{formula.line}: {formula.key}: {error}",
@@ -103,7 +103,8 @@ class Setting:
                 found=formula.text,
             ) from error
 
-    def in_state_order(self, momentum: Sequence[Element], advected: Mapping[str, Sequence[Element]]
+    def in_state_order(
+        self, momentum: Sequence[Element], advected: Mapping[str, Sequence[Element]]
     ) -> tuple[Element, ...]:
         """Values along the algebra's basis and per advected quantity, in the order of the state."""
         by_name = dict(zip(self.momenta, momentum, strict=True))
@@ -120,7 +121,8 @@ def make_setting(spec: Spec) -> Setting:
         *spec.parameters,
     ]
     names = [name for quantity in quantities for name in quantity.components]
-    field = Field(names, slots=_function_calls(spec))
+    positive = [name for p in spec.parameters if p.positive for name in p.components]
+    field = Field(names, _function_calls(spec), positive)
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = _shaped(quantity, field)

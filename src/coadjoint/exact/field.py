@@ -32,11 +32,19 @@ _SYMPY_FUNCTIONS = {
 
 @dataclass(frozen=True)
 class Adjoined:
-    """A generator that stands for ``function(argument)``."""
+    """A generator that stands for ``function(argument)``.
+
+    Attributes:
+        generator: Its name.
+        function: ``sqrt``, ``sin``, ``cos``, ``exp`` or ``log``.
+        argument: An element of generators adjoined before.
+        partner: The generator of the cosine for a sine and the other way round, else empty.
+    """
 
     generator: str
     function: str
     argument: Element
+    partner: str = ""
 
 
 class Field:
@@ -45,6 +53,7 @@ class Field:
     Args:
         names: The symbols, in the order that fixes the normal form.
         slots: How many elementary functions may be adjoined.
+        positive: The symbols that may be assumed positive.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
@@ -52,9 +61,13 @@ class Field:
     True
     """
 
-    def __init__(self, names: Sequence[str], slots: int = 0) -> None:
+    def __init__(
+        self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()
+    ) -> None:
         self.names = tuple(names)
+        self.positive = frozenset(positive)
         # A spec name cannot begin with an underscore, so a slot cannot meet one.
+        # Two for each function: sine and cosine come together.
         self._free = [f"_f{n + 1}" for n in range(2 * slots)]
         self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
         self._factors = Factors(self._ring)
@@ -105,15 +118,16 @@ class Field:
             if known.function == function and self.is_zero(known.argument - argument):
                 return self[known.generator]
         if function in ("sin", "cos"):  # always both: each is the derivative of the other
-            self._adjoin("cos", argument)
-            self._adjoin("sin", argument)
-            return self.call(function, argument)
+            cosine, sine = self._free[:2]
+            self._adjoin("cos", argument, sine)
+            self._adjoin("sin", argument, cosine)
+            return self[sine if function == "sin" else cosine]
         return self._adjoin(function, argument)
 
-    def _adjoin(self, function: str, argument: Element) -> Element:
+    def _adjoin(self, function: str, argument: Element, partner: str = "") -> Element:
         assert self._free, f"no slot left for {function}"
         generator = self._free.pop(0)
-        self.adjoined[generator] = Adjoined(generator, function, argument)
+        self.adjoined[generator] = Adjoined(generator, function, argument, partner)
         return self[generator]
 
     def _rational_root(self, argument: Element) -> Element | None:
@@ -139,7 +153,7 @@ class Field:
         if known.function == "sqrt":
             return known.argument
         if known.function == "sin":
-            return self.one - self.call("cos", known.argument) ** 2
+            return self.one - self[known.partner] ** 2
         return None
 
     def _reduce(self, element: Element, generator: str, square: Element) -> Element:
@@ -202,9 +216,9 @@ class Field:
             case "sqrt":
                 return inner / (2 * own)
             case "sin":
-                return inner * self.call("cos", known.argument)
+                return inner * self[known.partner]
             case "cos":
-                return -inner * self.call("sin", known.argument)
+                return -inner * self[known.partner]
             case "exp":
                 return inner * own
         return inner / known.argument  # log
@@ -267,17 +281,25 @@ class Field:
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
         """The element with symbols replaced by elements; symbols not named stay."""
-        if not self._reach(element) & values.keys():
+        if not self.reach(element) & values.keys():
             return element
         known = {name: values.get(name, self[name]) for name in self.names}
         return self.evaluate(element, known, self.number, self.call)
 
-    def _reach(self, element: Element) -> frozenset[str]:
-        """Names that occur in an element or in the arguments of its functions."""
-        names = self.names_in(element)
+    def reach(self, element: Element) -> frozenset[str]:
+        """Symbols that occur in an element or in the arguments of its functions."""
+        names = self.names_in(element) - self.adjoined.keys()
         for generator in self._needed(element):
-            names |= self._reach(self.adjoined[generator].argument)
+            names |= self.reach(self.adjoined[generator].argument)
         return names
+
+    def terms(self, element: Element) -> tuple[Element, ...]:
+        """The addends of the numerator, each over the whole denominator."""
+        ring = self._ring
+        return tuple(
+            Element(self._factors, ring.from_dict({monomial: coefficient}), element.powers)
+            for monomial, coefficient in element.numer.terms()
+        )
 
     def to_sympy(self, element: Element) -> sympy.Expr:
         """The element as a SymPy expression of plain symbols, for people to read and use."""

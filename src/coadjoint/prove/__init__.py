@@ -1,0 +1,9 @@
+"""Proof: every claim about Equations, proved or refuted, in a Certificate.
+
+Comes in: a Spec or its Equations. Goes out: a `Certificate`. Read next: `coadjoint.prove.claims`.
+"""
+
+from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.claims import prove
+
+__all__ = ["Certificate", "Claim", "Verdict", "prove"]

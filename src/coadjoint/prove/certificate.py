@@ -1,0 +1,120 @@
+"""The Certificate: a list of claims, each with its verdict, its method and the time it took.
+
+Comes in: what the proofs found. Goes out: a frozen record, as a table for people and as JSON for
+programs; times are shown and never stored, since generated files are the same bytes everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from coadjoint.errors import ClaimError
+
+
+class Verdict(StrEnum):
+    """What became of a claim."""
+
+    PROVED = "proved"
+    REFUTED = "refuted"
+    SUPPORTED = "numerically supported"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement and what became of it.
+
+    Attributes:
+        statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
+        kind: ``algebra``, ``jacobi``, ``legendre``, ``casimir``, ``conserved`` or ``equivalence``.
+        verdict: Proved, refuted or numerically supported.
+        method: How it was decided.
+        seconds: How long that took.
+        counterexample: Point at which a refuted claim fails, exact values as text; else empty.
+        defect: What should have been zero, at that point; else empty.
+    """
+
+    statement: str
+    kind: str
+    verdict: Verdict
+    method: str
+    seconds: float = field(default=0.0, compare=False)
+    counterexample: Mapping[str, str] = field(default_factory=dict)
+    defect: str = ""
+
+    def as_record(self) -> dict[str, Any]:
+        """The claim as JSON values, without the time."""
+        record: dict[str, Any] = {
+            "statement": self.statement,
+            "kind": self.kind,
+            "verdict": str(self.verdict),
+            "method": self.method,
+        }
+        if self.verdict is Verdict.REFUTED:
+            record |= {"counterexample": dict(self.counterexample), "defect": self.defect}
+        return record
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Everything that is claimed of one system.
+
+    Attributes:
+        system: Name of the system.
+        claims: In the order in which they were examined.
+    """
+
+    system: str
+    claims: tuple[Claim, ...]
+
+    @property
+    def refuted(self) -> tuple[Claim, ...]:
+        """The claims that are false."""
+        return tuple(claim for claim in self.claims if claim.verdict is Verdict.REFUTED)
+
+    @property
+    def holds(self) -> bool:
+        """Whether there are claims and none is refuted."""
+        return bool(self.claims) and not self.refuted
+
+    def count(self, verdict: Verdict) -> int:
+        """How many claims have a verdict."""
+        return sum(claim.verdict is verdict for claim in self.claims)
+
+    def require(self) -> Certificate:
+        """This certificate, if no claim is refuted.
+
+        Raises:
+            ClaimError: With every refuted claim and its counter-example.
+        """
+        if self.refuted:
+            raise ClaimError(
+                "\n".join(f"{self.system}: {_refutation(claim)}" for claim in self.refuted),
+                system=self.system,
+                claims=[claim.as_record() for claim in self.refuted],
+            )
+        return self
+
+    def as_record(self) -> dict[str, Any]:
+        """The certificate as JSON values, without times."""
+        return {"system": self.system, "claims": [claim.as_record() for claim in self.claims]}
+
+    def __str__(self) -> str:
+        width = max((len(claim.statement) for claim in self.claims), default=0)
+        rows = [
+            f"{claim.verdict:<21} {claim.statement:<{width}}  {claim.method} "
+            f"({claim.seconds * 1e3:.1f} ms)"
+            for claim in self.claims
+        ]
+        return "\n".join([f"Certificate of {self.system}", *rows])
+
+
+def _refutation(claim: Claim) -> str:
+    """A refuted claim for people."""
+    point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
+    return (
+        f"refuted: {claim.statement}. At {point} the difference is {claim.defect}; expected 0. "
+        "Correct the claim, or the Lagrangian or Hamiltonian that contradicts it."
+    )

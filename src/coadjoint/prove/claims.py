@@ -1,0 +1,179 @@
+"""Every claim about a system, examined one after the other.
+
+Comes in: a Spec. Goes out: its Certificate: the algebra, the bracket, the Legendre transform, the
+equality of the routes, and what the spec itself claims.
+Read next: `coadjoint.prove.identities` for the identities, `coadjoint.prove.zero` for the decisions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from time import perf_counter
+
+from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.structure import momentum_algebra
+from coadjoint.exact import Element
+from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.identities import (
+    antisymmetry_defects,
+    casimir_defects,
+    drift,
+    hamiltonian_defects,
+    jacobi_defects,
+)
+from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.spec import Formula, Spec
+
+#: (statement, kind, what must be zero or a decision already made)
+Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
+
+
+def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
+    """Examine every claim about a declared system.
+
+    Args:
+        spec: What `coadjoint.read_spec` returned.
+        routes: Equations by every route of the spec in one Setting, if they were derived before.
+
+    Returns:
+        The certificate, refuted claims included; `Certificate.require` raises on those.
+
+    Raises:
+        DerivationError: A route cannot be followed.
+    """
+    if not routes:
+        setting = make_setting(spec)
+        routes = [derive(spec, route, setting=setting) for route in spec.routes]
+    field = routes[0].setting.field
+    claims = []
+    for statement, kind, examine in _claims(routes):
+        start = perf_counter()
+        found = examine()
+        decision = found if isinstance(found, Decision) else decide_zero(found, field)
+        seconds = perf_counter() - start
+        claims.append(
+            Claim(
+                statement,
+                kind,
+                decision.verdict,
+                decision.method,
+                seconds,
+                decision.point,
+                decision.defect,
+            )
+        )
+    return Certificate(spec.name, tuple(claims))
+
+
+def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """All claims in the order of the certificate."""
+    first = routes[0]
+    yield from _about_structure(first)
+    if first.spec.lagrangian is not None:
+        yield from _about_legendre(routes)
+    for other in routes[1:]:
+        yield from _about_equality(first, other)
+    yield from _about_motion(first)
+
+
+def _about_structure(first: Equations) -> Iterator[Examined]:
+    """The algebra and the bracket."""
+    setting = first.setting
+    algebra, tensor = momentum_algebra(setting), first.exact.poisson_tensor
+    yield f"{algebra.name} satisfies the Jacobi identity", "algebra", lambda: _constants(algebra)
+    yield (
+        "the Poisson tensor is antisymmetric",
+        "jacobi",
+        lambda: antisymmetry_defects(tensor),
+    )
+    yield (
+        "the Poisson bracket satisfies the Jacobi identity",
+        "jacobi",
+        lambda: jacobi_defects(tensor, setting.state, setting.field),
+    )
+
+
+def _constants(algebra: object) -> Decision:
+    """Jacobi identity of the structure constants; they were refused if it failed."""
+    violation = algebra.jacobi_violation()  # type: ignore[attr-defined]
+    assert violation is None, violation
+    return Decision(Verdict.PROVED, "rational arithmetic on the structure constants")
+
+
+def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """The Legendre transform and its energy, on every route."""
+    pulled = LegendreMap(routes[0])
+    yield (
+        "the Legendre transform is invertible for generic parameters",
+        "legendre",
+        lambda: _nonzero(pulled.determinants(), routes[0]),
+    )
+    for equations in routes:
+        yield (
+            f"h(dl/dxi) = <dl/dxi, xi> - l on the route {equations.route}",
+            "legendre",
+            lambda equations=equations: [pulled.energy_defect(equations)],
+        )
+        yield (
+            f"dh/dmu = xi on the route {equations.route}",
+            "legendre",
+            lambda equations=equations: pulled.velocity_defects(equations),
+        )
+
+
+def _nonzero(elements: Sequence[Element], equations: Equations) -> Decision:
+    """That no element is identically zero."""
+    assert elements
+    zero = [element for element in elements if equations.setting.field.is_zero(element)]
+    assert not zero, "legendre_transform refuses these"
+    return Decision(Verdict.PROVED, "nonzero determinants of the blocks of d2l/dxi2")
+
+
+def _about_equality(first: Equations, other: Equations) -> Iterator[Examined]:
+    """That two routes give the same motion."""
+    if first.spec.lagrangian is not None:
+        yield (
+            f"{first.route} and {other.route} give the same motion, through the Legendre transform",
+            "equivalence",
+            lambda: LegendreMap(first).rate_defects(first, other),
+        )
+    else:
+        yield (
+            f"{first.route} and {other.route} give the same motion",
+            "equivalence",
+            lambda: _same_rates(first, other),
+        )
+
+
+def _same_rates(first: Equations, other: Equations) -> list[Element]:
+    pairs = zip(first.exact.rates, other.exact.rates, strict=True)
+    return [first.closed(a) - other.closed(b) for a, b in pairs]
+
+
+def _about_motion(first: Equations) -> Iterator[Examined]:
+    """The emitted motion: Hamiltonian form, energy, and the claims of the spec."""
+    spec, setting = first.spec, first.setting
+    yield (
+        f"the motion by {first.route} is {{x, h}}",
+        "equivalence",
+        lambda: hamiltonian_defects(first),
+    )
+    yield "the energy is conserved", "conserved", lambda: [drift(first, first.exact.energy)]
+    for casimir in spec.casimirs:
+        yield (
+            f"{casimir.text} is a Casimir",
+            "casimir",
+            lambda casimir=casimir: casimir_defects(first, first.closed(setting.formula(casimir))),
+        )
+    for integral in spec.conserved:
+        yield (
+            f"{integral.text} is conserved",
+            "conserved",
+            lambda integral=integral: [drift(first, _with_observables(first, integral))],
+        )
+
+
+def _with_observables(first: Equations, formula: Formula) -> Element:
+    """A claimed integral, which may name the energy and declared observables."""
+    return first.setting.formula(formula, dict(first.exact.observables))

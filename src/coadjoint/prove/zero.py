@@ -1,0 +1,128 @@
+"""Deciding that elements are zero: by normal form, and where that cannot tell, by 50 digits.
+
+Comes in: elements that should be zero. Goes out: a verdict, a method, and a counter-example point
+for what is not zero. Points are small rationals from a fixed sequence, so that every run gives the
+same certificate.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import islice
+from typing import Any
+
+import mpmath
+
+from coadjoint.exact import Element, Field
+from coadjoint.prove.certificate import Verdict
+
+DIGITS = 50
+#: Points at which a nonzero normal form is tried before it counts as numerically supported.
+POINTS = 20
+#: Relative size below which a 50-digit value counts as zero; cancellation may cost 20 digits.
+NEGLIGIBLE = mpmath.mpf(10) ** -(DIGITS - 20)
+NORMAL_FORM = "normal form in the field of rational functions"
+NORMAL_FORM_WITH_FUNCTIONS = "normal form modulo the relations of the elementary functions"
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Whether something is zero, and how we know.
+
+    Attributes:
+        verdict: Proved, refuted or numerically supported.
+        method: How it was decided.
+        point: Where it is not zero, exact values by name.
+        defect: Its value there.
+    """
+
+    verdict: Verdict
+    method: str
+    point: dict[str, str] = field(default_factory=dict)
+    defect: str = ""
+
+
+def decide_zero(elements: Sequence[Element], ring: Field) -> Decision:
+    """Whether every element is zero.
+
+    A normal form of zero is a proof. A nonzero one refutes where no elementary function occurs;
+    otherwise 50-digit values at random points refute, or support and say so.
+    """
+    left = [element for element in map(ring.normal, elements) if element != 0]
+    plain = all(ring.function_free(element) for element in elements)
+    if not left:
+        return Decision(Verdict.PROVED, NORMAL_FORM if plain else NORMAL_FORM_WITH_FUNCTIONS)
+    for element in left:
+        counterexample = _counterexample(element, ring)
+        if counterexample is not None:
+            point, value = counterexample
+            named = {name: str(value) for name, value in point.items()}
+            method = "exact" if ring.function_free(element) else f"{DIGITS}-digit"
+            return Decision(Verdict.REFUTED, f"{method} counter-example", named, value)
+    assert not plain, "a nonzero rational function is nonzero at almost every point"
+    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {POINTS} random points")
+
+
+def random_points(
+    names: Sequence[str], positive: Set[str] = frozenset(), seed: int = 1
+) -> Iterator[dict[str, Fraction]]:
+    """Endless small nonzero rationals, the same in every run, with the assumed signs."""
+    source = random.Random(seed)  # noqa: S311 (not for secrets)
+    while True:
+        sizes = [Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
+        signs = [1 if name in positive else source.choice((-1, 1)) for name in names]
+        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+
+
+def _counterexample(element: Element, ring: Field) -> tuple[dict[str, Fraction], str] | None:
+    """A point where an element is not zero, and its value there."""
+    names = sorted(ring.reach(element), key=ring.names.index)
+    seen = 0
+    # Poles and arguments outside a function's domain are passed over, so more points are drawn.
+    for point in islice(random_points(names, ring.positive), 50 * POINTS):
+        try:
+            value = _nonzero_value(element, ring, point)
+        except (ZeroDivisionError, ValueError):
+            continue
+        if value:
+            return point, value
+        seen += 1
+        if seen == POINTS and not ring.function_free(element):
+            return None
+    return None
+
+
+def _nonzero_value(element: Element, ring: Field, point: dict[str, Fraction]) -> str:
+    """The value of an element at a rational point as text; empty if it is zero there."""
+    if ring.function_free(element):
+        exact = ring.evaluate(element, point, Fraction, _no_call)
+        return str(exact) if exact else ""
+    with mpmath.workdps(DIGITS):
+        numbers = {name: _number(value) for name, value in point.items()}
+        value = ring.evaluate(element, numbers, _number, _call)
+        # Its size is that of its largest addend, so that cancellation shows.
+        addends = [ring.evaluate(part, numbers, _number, _call) for part in ring.terms(element)]
+        negligible = abs(value) <= NEGLIGIBLE * max(map(abs, addends))
+        return "" if negligible else mpmath.nstr(value, 15)
+
+
+def _number(value: Fraction) -> Any:
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+def _call(function: str, argument: Any) -> Any:
+    """A real elementary function.
+
+    Raises:
+        ValueError: The argument is outside the real domain.
+    """
+    if argument < 0 and function in ("sqrt", "log") or (argument == 0 and function == "log"):
+        raise ValueError(f"{function} of {argument}")
+    return getattr(mpmath, function)(argument)
+
+
+def _no_call(function: str, argument: Fraction) -> Fraction:
+    raise AssertionError(f"{function}({argument}) in a function-free element")
