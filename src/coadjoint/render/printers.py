@@ -1,0 +1,230 @@
+"""Render, printing: a node of a Program becomes text of one language.
+
+Comes in: nodes. Goes out: an expression or an assignment that the language evaluates in exactly
+the order of the tree, with no parenthesis that it does not need; long ones are broken at their
+operators the way our Python formatter breaks them. The languages differ in the names of functions
+alone: ``+ - * /`` and unary minus bind alike in Python and in C.
+Read next: `coadjoint.render.kernels`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+from coadjoint.errors import SpecError
+from coadjoint.lower.program import Add, Call, Divide, Multiply, Negate, Node, Number, Symbol
+
+WIDTH: Final = 100
+
+# How tightly each form binds; an operand that binds less tightly than its place asks for is
+# parenthesised.
+SUM, PRODUCT, SIGN, ATOM = range(4)
+
+Compound = Add | Multiply | Divide
+#: One operand of a sum or product, after the operator that joins it to what stands before.
+Link = tuple[str, Node]
+
+
+def number_text(value: Fraction) -> str:
+    """The shortest text that reads back to the double nearest to ``value``.
+
+    Raises:
+        SpecError: No finite double is near: ``value`` is too large, or not zero and too small.
+
+    >>> number_text(Fraction(2)), number_text(Fraction(1, 3)), number_text(Fraction(-1, 10**7))
+    ('2.0', '0.3333333333333333', '-1e-07')
+    """
+    try:
+        nearest = float(value)  # correctly rounded
+    except OverflowError:
+        nearest = math.inf
+    if math.isinf(nearest) or (nearest == 0) != (value == 0):
+        size = "above 1.8e308" if nearest else "below 4.9e-324"
+        raise SpecError(
+            f"the constant {_brief(value)} has no double near it: its magnitude is {size}; "
+            "expected a number of ordinary size. Choose other units.",
+            found=_brief(value),
+            expected="a magnitude between 4.9e-324 and 1.8e308",
+        )
+    return repr(nearest)
+
+
+def _brief(value: Fraction) -> str:
+    """A fraction as text, or the power of ten that is near it where that is long."""
+    bits = value.numerator.bit_length() - value.denominator.bit_length()
+    return str(value) if abs(bits) < 100 else f"{'-' if value < 0 else ''}1e{round(bits * 0.30103)}"
+
+
+@dataclass(frozen=True)
+class Printer:
+    """Writes nodes in one language.
+
+    Attributes:
+        function_prefix: What stands before the name of an elementary function.
+    """
+
+    function_prefix: str
+
+    def text(self, node: Node) -> str:
+        """``node`` on one line."""
+        match node:
+            case Number(value=value):
+                return number_text(value)
+            case Symbol(name=name):
+                return name
+            case Call(function=function, argument=argument):
+                return f"{self.function_prefix}{function}({self.text(argument)})"
+            case Negate(operand=operand):
+                return "-" + self._operand(operand, ATOM)  # so never "--x", a decrement in C
+            case Add() | Multiply() | Divide():
+                return self._chain_text(node)
+
+    def _chain_text(self, node: Compound) -> str:
+        (_, first), *rest = _chain(node)
+        place = _binding(node)
+        text = self._operand(first, place)
+        return text + "".join(f" {sign} {self._operand(right, place + 1)}" for sign, right in rest)
+
+    def _operand(self, node: Node, place: int) -> str:
+        """``node`` on one line, in parentheses if it binds less tightly than ``place`` asks for."""
+        text = self.text(node)
+        return text if _binding(node) >= place else f"({text})"
+
+    def broken(self, node: Node, width: int) -> list[str]:
+        """``node`` on lines of at most ``width`` columns where it can be, one operand to a line."""
+        return self._broken_operand(node, SUM, width, lead="")
+
+    def _broken_operand(self, node: Node, place: int, width: int, lead: str) -> list[str]:
+        """The same for an operand at its place; ``lead`` begins the first line."""
+        text = lead + self._operand(node, place)
+        if len(text) <= width:
+            return [text]
+        if _binding(node) < place:
+            return self._bracketed(lead + "(", node, width)
+        match node:
+            case Call(function=function, argument=argument):
+                return self._bracketed(f"{lead}{self.function_prefix}{function}(", argument, width)
+            case Negate(operand=operand):
+                return self._broken_operand(operand, ATOM, width, lead + "-")
+            case Add() | Multiply() | Divide():
+                return self._broken_chain(node, width, lead)
+        return [text]
+
+    def _bracketed(self, opening: str, node: Node, width: int) -> list[str]:
+        inner = self._broken_operand(node, SUM, width - 4, lead="")
+        return [opening, *("    " + line for line in inner), ")"]
+
+    def _broken_chain(self, node: Compound, width: int, lead: str) -> list[str]:
+        (_, first), *rest = _chain(node)
+        place = _binding(node)
+        lines = self._broken_operand(first, place, width, lead)
+        for sign, right in rest:
+            lines += self._broken_operand(right, place + 1, width, f"{sign} ")
+        return lines
+
+
+NUMPY: Final = Printer("np.")
+C: Final = Printer("")
+
+
+def python_text(node: Node) -> str:
+    """``node`` as a NumPy expression on one line.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> python_text(Add(Multiply(x, Add(x, y)), Negate(Call("sqrt", y))))
+    'x * (x + y) - np.sqrt(y)'
+    """
+    return NUMPY.text(node)
+
+
+def c_text(node: Node) -> str:
+    """``node`` as a C expression on one line.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> c_text(Divide(Negate(Negate(x)), Multiply(Number(Fraction(1, 2)), y)))
+    '-(-x) / (0.5 * y)'
+    """
+    return C.text(node)
+
+
+def python_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str:
+    """``to = node`` in Python, broken as our formatter breaks it; the first line is not indented.
+
+    >>> python_assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
+    'out[0] = Pi1  # dPi1/dt'
+    """
+    note = f"  # {comment}" if comment else ""
+    line = f"{to} = {python_text(node)}"
+    if column + len(line) + len(note) <= WIDTH or isinstance(node, Symbol | Number):
+        return line + note
+    if not note and not _is_long_chain(node):
+        # The formatter would move these parentheses onto an operand; a comment holds them.
+        note = "  # in this order"
+    inner = NUMPY.broken(node, WIDTH - column - 4)
+    return _indented([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
+
+
+def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str:
+    """``to = node;`` in C, broken at the operators if it is long; the first line is not indented.
+
+    >>> c_assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
+    'out[0] = Pi1; /* dPi1/dt */'
+    """
+    note = f" /* {comment} */" if comment else ""
+    line = f"{to} = {c_text(node)};"
+    if column + len(line) + len(note) <= WIDTH:
+        return line + note
+    inner = C.broken(node, WIDTH - column - 4 - 1)
+    inner[-1] += ";"
+    return _indented([f"{to} ={note}", *("    " + text for text in inner)], column)
+
+
+def _indented(lines: list[str], column: int) -> str:
+    """Lines as one text, all but the first moved to ``column``."""
+    return ("\n" + " " * column).join(lines)
+
+
+def _binding(node: Node) -> int:
+    """How tightly the text of ``node`` binds."""
+    match node:
+        case Add():
+            return SUM
+        case Multiply() | Divide():
+            return PRODUCT
+        case Negate():
+            return SIGN
+        case Number(value=value) if value < 0:
+            return SIGN
+    return ATOM
+
+
+def _is_long_chain(node: Node) -> bool:
+    """Whether a sum or product has three operands or more."""
+    return isinstance(node, Compound) and len(_chain(node)) > 2
+
+
+def _chain(node: Compound) -> list[Link]:
+    """The operands of a left-nested sum or product, in order, the first with an empty operator."""
+    links: list[Link] = []
+    current: Node = node
+    while isinstance(current, Compound) and _binding(current) == _binding(node):
+        links.append(_link(current))
+        current = current.left
+    return [("", current), *reversed(links)]
+
+
+def _link(node: Compound) -> Link:
+    """The last operator of ``node`` and its right operand; ``a + (-b)`` reads ``a - b``."""
+    match node:
+        case Add(right=Negate(operand=operand)):
+            return "-", operand
+        case Add(right=Number(value=value)) if value < 0:
+            return "-", Number(-value)
+        case Add(right=right):
+            return "+", right
+        case Multiply(right=right):
+            return "*", right
+    return "/", node.right
