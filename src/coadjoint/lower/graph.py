@@ -1,0 +1,201 @@
+"""An expression graph in which equal values are one node, and its derivative.
+
+Comes in: calls that build sums, products and quotients. Goes out: node numbers; equal trees get the
+same number, so shared values are found by construction. Constants fold exactly, signs move outward,
+and nothing is reordered: the operand order of the caller is the order of evaluation.
+Read next: `coadjoint.lower.naming`, which turns a graph into statements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from coadjoint.lower.program import Add, Call, Multiply, Negate, Node, Number, Symbol, children
+
+
+class Graph:
+    """Nodes by number; the kinds are those of `coadjoint.lower.program`."""
+
+    def __init__(self) -> None:
+        self.kinds: list[str] = []
+        self.operands: list[tuple[int, ...]] = []
+        self.payload: list[str | Fraction] = []
+        self._numbers: dict[tuple[str, tuple[int, ...], str | Fraction], int] = {}
+
+    def _intern(self, kind: str, operands: tuple[int, ...], payload: str | Fraction = "") -> int:
+        key = (kind, operands, payload)
+        if key not in self._numbers:
+            self._numbers[key] = len(self.kinds)
+            self.kinds.append(kind)
+            self.operands.append(operands)
+            self.payload.append(payload)
+        return self._numbers[key]
+
+    # -- leaves -------------------------------------------------------------------------------------
+
+    def number(self, value: Fraction | int) -> int:
+        """An exact constant; negative ones are the negation of their magnitude."""
+        if value < 0:
+            return self._intern("negate", (self.number(-value),))
+        return self._intern("number", (), Fraction(value))
+
+    def symbol(self, name: str) -> int:
+        """An input or statement."""
+        return self._intern("symbol", (), name)
+
+    def _constant(self, node: int) -> Fraction | None:
+        """The value of a constant node, else None."""
+        if self.kinds[node] == "negate":
+            inner = self._constant(self.operands[node][0])
+            return None if inner is None else -inner
+        value = self.payload[node]
+        return value if self.kinds[node] == "number" and isinstance(value, Fraction) else None
+
+    def is_zero(self, node: int) -> bool:
+        """Whether a node is the constant 0."""
+        return self._constant(node) == 0
+
+    # -- operations ---------------------------------------------------------------------------------
+
+    def negate(self, a: int) -> int:
+        """``-a``."""
+        if self.kinds[a] == "negate":
+            return self.operands[a][0]
+        return a if self.is_zero(a) else self._intern("negate", (a,))
+
+    def add(self, a: int, b: int) -> int:
+        """``a + b``."""
+        if self.is_zero(a):
+            return b
+        if self.is_zero(b):
+            return a
+        x, y = self._constant(a), self._constant(b)
+        if x is not None and y is not None:
+            return self.number(x + y)
+        if self.kinds[a] == "negate" and self.kinds[b] == "negate":
+            return self.negate(self.add(self.operands[a][0], self.operands[b][0]))
+        if self.kinds[a] == "negate":  # b - a reads better than -a + b; the bits are the same
+            return self._intern("add", (b, a))
+        return self._intern("add", (a, b))
+
+    def multiply(self, a: int, b: int) -> int:
+        """``a * b``."""
+        x, y = self._constant(a), self._constant(b)
+        if x is not None and y is not None:
+            return self.number(x * y)
+        if x == 0 or y == 0:
+            return self.number(0)
+        if x == 1:
+            return b
+        if y == 1:
+            return a
+        if self.kinds[a] == "negate":
+            return self.negate(self.multiply(self.operands[a][0], b))
+        if self.kinds[b] == "negate":
+            return self.negate(self.multiply(a, self.operands[b][0]))
+        return self._intern("multiply", (a, b))
+
+    def divide(self, a: int, b: int) -> int:
+        """``a / b``."""
+        x, y = self._constant(a), self._constant(b)
+        if x == 0 or y == 1:
+            return a
+        if x is not None and y is not None and y != 0:
+            return self.number(x / y)
+        if self.kinds[a] == "negate":
+            return self.negate(self.divide(self.operands[a][0], b))
+        if self.kinds[b] == "negate":
+            return self.negate(self.divide(a, self.operands[b][0]))
+        return self._intern("divide", (a, b))
+
+    def call(self, function: str, argument: int) -> int:
+        """``function(argument)``."""
+        return self._intern("call", (argument,), function)
+
+    def sum(self, terms: Iterable[int]) -> int:
+        """Terms from left to right, beginning with the first that carries no minus sign."""
+        ordered = list(terms)
+        plain = next((n for n, term in enumerate(ordered) if self.kinds[term] != "negate"), 0)
+        ordered.insert(0, ordered.pop(plain)) if ordered else None
+        total = self.number(0)
+        for term in ordered:
+            total = self.add(total, term)
+        return total
+
+    def product(self, factors: Iterable[int]) -> int:
+        """Factors from left to right."""
+        total = self.number(1)
+        for factor in factors:
+            total = self.multiply(total, factor)
+        return total
+
+    # -- to and from trees ----------------------------------------------------------------------------
+
+    def insert(self, tree: Node, values: Mapping[str, int]) -> int:
+        """The number of a Program's node, with some names replaced by nodes."""
+        match tree:
+            case Number(value=value):
+                return self.number(value)
+            case Symbol(name=name):
+                return values[name] if name in values else self.symbol(name)
+            case Call(function=function, argument=argument):
+                return self.call(function, self.insert(argument, values))
+        operands = [self.insert(child, values) for child in children(tree)]
+        match tree:
+            case Negate():
+                return self.negate(*operands)
+            case Add():
+                return self.add(*operands)
+            case Multiply():
+                return self.multiply(*operands)
+        return self.divide(*operands)
+
+    # -- derivative -----------------------------------------------------------------------------------
+
+    def derivative(self, node: int, slopes: dict[int, dict[str, int]]) -> dict[str, int]:
+        """Derivatives of a node by every variable, by forward accumulation; zeros left out.
+
+        Args:
+            node: What to differentiate.
+            slopes: Derivatives already known by node number, at least those of the variables and of
+                named statements; filled on the way.
+        """
+        if node not in slopes:
+            parts = [self.derivative(operand, slopes) for operand in self.operands[node]]
+            variables = dict.fromkeys(name for part in parts for name in part)
+            found = {name: self._slope(node, name, parts) for name in variables}
+            slopes[node] = {name: s for name, s in found.items() if not self.is_zero(s)}
+        return slopes[node]
+
+    def _slope(self, node: int, name: str, parts: list[dict[str, int]]) -> int:
+        """Derivative of a node by one variable from those of its operands."""
+        zero = self.number(0)
+        da = parts[0].get(name, zero)
+        a = self.operands[node][0]
+        match self.kinds[node]:
+            case "negate":
+                return self.negate(da)
+            case "call":
+                return self.multiply(self._call_slope(node, a), da)
+        db, b = parts[1].get(name, zero), self.operands[node][1]
+        match self.kinds[node]:
+            case "add":
+                return self.add(da, db)
+            case "multiply":
+                return self.add(self.multiply(da, b), self.multiply(a, db))
+        # (a/b)' = (a' - (a/b) b') / b, which shares the quotient with the value
+        return self.divide(self.add(da, self.negate(self.multiply(node, db))), b)
+
+    def _call_slope(self, node: int, argument: int) -> int:
+        """``f'(argument)`` for the function of a call node."""
+        match self.payload[node]:
+            case "sqrt":
+                return self.divide(self.number(Fraction(1, 2)), node)
+            case "sin":
+                return self.call("cos", argument)
+            case "cos":
+                return self.negate(self.call("sin", argument))
+            case "exp":
+                return node
+        return self.divide(self.number(1), argument)  # log

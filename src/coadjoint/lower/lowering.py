@@ -1,0 +1,251 @@
+"""Lowering: Equations become Programs, one for each function of the kernels.
+
+Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian``, ``energy``, ``observables`` and
+``poisson_tensor``. An element becomes a sum of products in the order of the field; what depends on
+parameters alone is gathered into the coefficients, equal coefficients are factored out, and pairs of
+factors that recur are shared. Definitions keep their names, so that a kernel reads like the book.
+Read next: `coadjoint.lower.check`, which undoes all this exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from coadjoint.derive import Equations
+from coadjoint.exact import Element, Field
+from coadjoint.lower.graph import Graph
+from coadjoint.lower.naming import Naming
+from coadjoint.lower.products import Pair, Product, share_pairs
+from coadjoint.lower.program import Program
+
+
+@dataclass(frozen=True)
+class Form:
+    """An element as a quotient of sums.
+
+    Attributes:
+        groups: Coefficients with the signed products they multiply.
+        divisors: Factors of the denominator, each with its exponent.
+    """
+
+    groups: tuple[tuple[Any, tuple[tuple[int, Product], ...]], ...]
+    divisors: tuple[tuple[Form, int], ...]
+
+
+class Lowering:
+    """Elements of one Program on their way into a graph.
+
+    Args:
+        equations: Where the elements come from.
+        elements: Everything that the Program will compute, definitions included.
+    """
+
+    def __init__(self, equations: Equations, elements: Iterable[Element]) -> None:
+        self.field: Field = equations.setting.field
+        self.graph = Graph()
+        self._members = frozenset((*equations.setting.state, *equations.setting.velocities))
+        self._forms: dict[tuple[int, bool], Form] = {}
+        self._kept: list[Element] = []
+        self._products: dict[bool, list[Product]] = {True: [], False: []}
+        for element in elements:
+            self._form(element, fixed=False)
+        self._shared: dict[bool, dict[Product, Product]] = {}
+        self._pairs: dict[str, Pair] = {}
+        for fixed, products in self._products.items():
+            names = "_q{}" if fixed else "_m{}"
+            found, pairs = share_pairs(products, names.format)
+            self._shared[fixed] = dict(zip(products, found, strict=True))
+            self._pairs |= pairs
+
+    # -- collecting -------------------------------------------------------------------------------------
+
+    def _form(self, element: Element, *, fixed: bool) -> Form:
+        """The form of an element, whose products are noted for sharing.
+
+        Args:
+            element: What to write as a quotient of sums.
+            fixed: Whether only numbers are coefficients, as for what depends on parameters alone.
+        """
+        key = (id(element), fixed)
+        if key not in self._forms:
+            self._kept.append(element)  # so that its id stays its own
+            inner, outer = self._split_denominator(element, fixed)
+            groups: dict[Any, list[tuple[int, Product]]] = {}
+            coefficients: dict[Any, Element] = {}
+            for product, part in self._collect(element, fixed).items():
+                sign, coefficient, mark = _normalised(part * inner)
+                coefficients.setdefault(mark, coefficient)
+                groups.setdefault(mark, []).append((sign, product))
+                self._products[fixed].append(product)
+                self._note_functions(product)
+            self._forms[key] = Form(
+                tuple((self._coefficient(coefficients[m]), tuple(g)) for m, g in groups.items()),
+                tuple((self._form(divisor, fixed=fixed), power) for divisor, power in outer),
+            )
+        return self._forms[key]
+
+    def _coefficient(self, element: Element) -> Fraction | Form:
+        """A coefficient: a number, or the form of what depends on parameters alone."""
+        number = self.field.as_number(element)
+        return self._form(element, fixed=True) if number is None else number
+
+    def _note_functions(self, product: Product) -> None:
+        """Collect the arguments of the elementary functions in a product, too."""
+        for name in product:
+            if name in self.field.adjoined:
+                argument = self.field.adjoined[name].argument
+                self._form(argument, fixed=not self._moves(argument))
+
+    def _moves(self, element: Element) -> bool:
+        """Whether an element depends on the member, not on parameters alone."""
+        return bool(self.field.reach(element) & self._members)
+
+    def _is_factor(self, name: str, fixed: bool) -> bool:
+        """Whether a generator belongs into products rather than into coefficients."""
+        if fixed:
+            return True
+        return self._moves(self.field[name])
+
+    def _collect(self, element: Element, fixed: bool) -> dict[Product, Element]:
+        """Numerator terms by their product, with the coefficient polynomial of each."""
+        parts: dict[Product, Element] = {}
+        for term in self.field.monomials(element):
+            product: list[str] = []
+            coefficient = self.field.number(term.number)
+            for name, power in term.powers:
+                if self._is_factor(name, fixed):
+                    product += [name] * power
+                else:
+                    coefficient = coefficient * self.field[name] ** power
+            known = parts.get(tuple(product))
+            parts[tuple(product)] = coefficient if known is None else known + coefficient
+        return parts
+
+    def _split_denominator(
+        self, element: Element, fixed: bool
+    ) -> tuple[Element, list[tuple[Element, int]]]:
+        """The reciprocal of the factors that go into the coefficients, and the other factors."""
+        inner, outer = self.field.one, []
+        for divisor, power in self.field.divisors(element):
+            if fixed or self._moves(divisor):
+                outer.append((divisor, power))
+            else:
+                inner = inner / divisor**power
+        return inner, outer
+
+    # -- building ---------------------------------------------------------------------------------------
+
+    def node(self, element: Element) -> int:
+        """The graph node of an element given to the constructor."""
+        return self._build(self._form(element, fixed=False), fixed=False)
+
+    def _build(self, form: Form, *, fixed: bool) -> int:
+        graph = self.graph
+        terms: list[int] = []
+        for coefficient, members in form.groups:
+            factor = (
+                graph.number(coefficient)
+                if isinstance(coefficient, Fraction)
+                else self._build(coefficient, fixed=True)
+            )
+            products = [(sign, self._shared[fixed][product]) for sign, product in members]
+            if len(products) == 1 or coefficient == 1:
+                terms += [self._signed(sign, [factor], product) for sign, product in products]
+            else:
+                inner = graph.sum(self._signed(sign, [], product) for sign, product in products)
+                terms.append(graph.multiply(factor, inner))
+        divisor = graph.product(
+            self._build(inner, fixed=fixed) for inner, power in form.divisors for _ in range(power)
+        )
+        return graph.divide(graph.sum(terms), divisor)
+
+    def _signed(self, sign: int, lead: list[int], product: Product) -> int:
+        node = self.graph.product([*lead, *map(self._factor, product)])
+        return node if sign > 0 else self.graph.negate(node)
+
+    def _factor(self, name: str) -> int:
+        """The node of a factor: a shared pair, an elementary function, or a symbol."""
+        if name in self._pairs:
+            return self.graph.product(map(self._factor, self._pairs[name]))
+        known = self.field.adjoined.get(name)
+        if known is None:
+            return self.graph.symbol(name)
+        fixed = not self._moves(known.argument)
+        argument = self._build(self._form(known.argument, fixed=fixed), fixed=fixed)
+        return self.graph.call(known.function, argument)
+
+
+def _normalised(coefficient: Element) -> tuple[int, Element, Any]:
+    """Sign, magnitude and a hashable mark that equal magnitudes share."""
+    sign = -1 if coefficient.numer.LC < 0 else 1
+    magnitude = coefficient if sign > 0 else -coefficient
+    return sign, magnitude, (magnitude.numer, tuple(sorted(magnitude.powers.items())))
+
+
+def lower(equations: Equations) -> dict[str, Program]:
+    """The Programs of all functions of a system's kernels, by name.
+
+    The Jacobian is the derivative of the ``rhs`` Program by forward accumulation, so it shares the
+    definitions and is as cheap as they make it.
+    """
+    setting, exact = equations.setting, equations.exact
+    n = len(setting.state)
+    rhs = _program(
+        equations, "rhs", [(f"d{x}/dt", r) for x, r in zip(setting.state, exact.rates, strict=True)]
+    )
+    brackets = [
+        (f"{{{a}, {b}}}", exact.poisson_tensor[i][j])
+        for i, a in enumerate(setting.state)
+        for j, b in enumerate(setting.state)
+    ]
+    return {
+        "rhs": rhs,
+        "jacobian": _jacobian(rhs),
+        "energy": _program(equations, "energy", [("energy", exact.energy)], ()),
+        "observables": _program(equations, "observables", exact.observables),
+        "poisson_tensor": _program(equations, "poisson_tensor", brackets, (n, n)),
+    }
+
+
+def _program(
+    equations: Equations,
+    name: str,
+    outputs: Sequence[tuple[str, Element]],
+    shape: tuple[int, ...] | None = None,
+) -> Program:
+    """One Program from labelled elements."""
+    setting, definitions = equations.setting, equations.exact.definitions
+    lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
+    named = [(label, lowering.node(element)) for label, element in definitions]
+    results = [(label, lowering.node(element)) for label, element in outputs]
+    naming = Naming(lowering.graph, named, results, setting.parameters)
+    size = (len(outputs),) if shape is None else shape
+    return naming.program(name, setting.state, setting.parameters, size)
+
+
+def _jacobian(rhs: Program) -> Program:
+    """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program."""
+    graph, n = Graph(), len(rhs.state)
+    slopes = {graph.symbol(name): {name: graph.number(1)} for name in rhs.state}
+    slopes |= {graph.symbol(name): {} for name in rhs.parameters}
+    temporaries: dict[str, int] = {}
+    definitions: list[tuple[str, int]] = []
+    for statement in rhs.statements:
+        value = graph.insert(statement.value, temporaries)
+        if statement.name.startswith("_"):  # temporaries are found anew where they are still shared
+            temporaries[statement.name] = value
+        else:
+            definitions.append((statement.name, value))
+            slopes[graph.symbol(statement.name)] = graph.derivative(value, slopes)
+    outputs = []
+    for output in rhs.outputs:
+        slope = graph.derivative(graph.insert(output.value, temporaries), slopes)
+        outputs += [
+            (f"d({output.label})/d{name}", slope.get(name, graph.number(0))) for name in rhs.state
+        ]
+    return Naming(graph, definitions, outputs, rhs.parameters).program(
+        "jacobian", rhs.state, rhs.parameters, (n, n)
+    )
