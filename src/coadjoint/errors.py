@@ -1,8 +1,8 @@
 """Errors of every step: one base, and a few children named for what the user did.
 
 The parts of a message stay on the exception as keyword attributes, so that a caller or a test reads
-them without parsing text, and so that an error raised in a child process arrives whole in the parent
-(`as_record` and `from_record`).
+them without parsing text, and so that an error raised in a child process arrives whole in the
+parent (`as_record` and `from_record`).
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from coadjoint.errors import AlgebraError
 
 
 def _hat(axis: int) -> dict[tuple[int, int], Fraction]:
-    """``hat(e_axis)_ij = -epsilon_ijk``, so that ``hat(a) b = a x b`` (Holm 2011, section 2.1.1)."""
+    """``hat(e_axis)_ij = -epsilon_ijk``, so that ``hat(a) b = a x b`` (Holm 2011, 2.1.1)."""
     j, k = (axis + 1) % 3, (axis + 2) % 3
     return {(k, j): Fraction(1), (j, k): Fraction(-1)}
 

@@ -24,7 +24,7 @@ SparseMatrix = Mapping[tuple[int, int], Fraction]
 
 
 def scaled(value: Any, factor: Fraction) -> Any:
-    """``factor * value`` for values that know integers but not `Fraction` (field elements, floats)."""
+    """``factor * value`` for values that know integers but not fractions, such as floats."""
     if factor.denominator == 1:
         return value * factor.numerator
     if isinstance(value, int):
@@ -112,7 +112,7 @@ class LieAlgebra:
         return tuple(map(tuple, matrix))
 
     def jacobi_violation(self) -> tuple[tuple[int, int, int], dict[int, Fraction]] | None:
-        """The first triple i < j < k with ``[e_i,[e_j,e_k]] + cyclic != 0`` and that sum, or None."""
+        """The first i < j < k with ``[e_i, [e_j, e_k]] + cyclic != 0`` and that sum, or None."""
         for triple in combinations(range(self.dimension), 3):
             defect: dict[int, Fraction] = {}
             i, j, k = triple

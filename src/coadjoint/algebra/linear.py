@@ -23,7 +23,7 @@ def solve_exactly(
     for column, vector in enumerate([*vectors, target]):
         for place, value in vector.items():
             rows.setdefault(place, {})[column] = Fraction(value)
-    pending, n = [row for _, row in sorted(rows.items())], len(vectors)  # type: ignore[type-var]
+    pending, n = [row for _, row in sorted(rows.items())], len(vectors)
     pivots: list[dict[int, Fraction]] = []
     for column in range(n):
         pivot = next((row for row in pending if row.get(column)), None)

@@ -38,9 +38,7 @@ def rate(name: str) -> Left:
 
 def partial(function: str, name: str) -> Left:
     """A partial derivative: ``dl/dOmega1``."""
-    return Left(
-        f"d{function}/d{name}", rf"\partial {function} / \partial {symbol(name).latex}"
-    )
+    return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {symbol(name).latex}")
 
 
 def bracket(a: str, b: str) -> Left:

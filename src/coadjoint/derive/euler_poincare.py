@@ -1,7 +1,7 @@
 r"""The Euler-Poincare route: from a reduced Lagrangian, with advected quantities.
 
-Theorem (Holm 2011, sections 9.1 and 9.1.4; Holm, Marsden and Ratiu 1998): Hamilton's principle for a
-left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
+Theorem (Holm 2011, sections 9.1 and 9.1.4; Holm, Marsden and Ratiu 1998): Hamilton's principle for
+a left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
 :math:`\delta a = -\rho(\eta) a`, gives
 
 .. math::
@@ -37,10 +37,10 @@ def derive(setting: Setting) -> Equations:
     rates = _rates(setting, lagrangian)
     definitions = tuple(zip(setting.velocities, transform.velocities, strict=True))
     energy = setting.field.substitute(transform.energy, dict(definitions))
-    exact = Exact(
-        definitions, rates, energy, observables(setting, energy), poisson_tensor(setting)
+    exact = Exact(definitions, rates, energy, observables(setting, energy), poisson_tensor(setting))
+    return Equations(
+        setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
     )
-    return Equations(setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates))
 
 
 def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:

@@ -43,7 +43,7 @@ def legendre_transform(setting: Setting, lagrangian: Element) -> LegendreTransfo
     momenta = field.gradient(lagrangian, names)
     mass = tuple(field.gradient(momentum, names) for momentum in momenta)
     _check_quadratic(setting, mass)
-    rest = {name: field.zero for name in names}
+    rest = dict.fromkeys(names, field.zero)
     known = [
         field[mu] - field.substitute(momentum, rest)
         for mu, momentum in zip(setting.momenta, momenta, strict=True)

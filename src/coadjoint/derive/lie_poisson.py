@@ -57,9 +57,7 @@ def hamiltonian(setting: Setting) -> Element:
     return setting.field.substitute(transform.energy, velocities)
 
 
-def _steps(
-    setting: Setting, exact: Exact, gradient: dict[str, Element]
-) -> tuple[Step, ...]:
+def _steps(setting: Setting, exact: Exact, gradient: dict[str, Element]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     sign, state = "-" if setting.sign == 1 else "", setting.state
     brackets = tuple(

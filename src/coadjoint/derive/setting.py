@@ -18,6 +18,7 @@ from coadjoint.exact import Element, Field
 from coadjoint.spec import Formula, Spec, tree
 from coadjoint.spec.model import Parameter, Variable
 
+
 @dataclass(frozen=True)
 class Setting:
     """A Spec with its exact field.
@@ -33,7 +34,7 @@ class Setting:
     field: Field
     values: Mapping[str, Quantity]
 
-    # -- names, in the order of the algebra --------------------------------------------------------
+    # -- names, in the order of the algebra ---------------------------------------------
 
     @cached_property
     def state(self) -> tuple[str, ...]:
@@ -47,7 +48,7 @@ class Setting:
 
     @cached_property
     def velocities(self) -> tuple[str, ...]:
-        """Name of the velocity along each basis vector of the algebra; empty if none is declared."""
+        """Name of the velocity along each basis vector; empty if none is declared."""
         return self._along_basis("velocity")
 
     @cached_property
@@ -62,7 +63,7 @@ class Setting:
 
     @property
     def sign(self) -> int:
-        """+1 for left-invariant systems; right-invariant ones run the other way (Holm 2011, 9.1)."""
+        """+1 if left invariant, -1 if right: the motion runs the other way (Holm 2011, 9.1)."""
         return 1 if self.spec.invariance == "left" else -1
 
     def _along_basis(self, role: str) -> tuple[str, ...]:
@@ -73,7 +74,7 @@ class Setting:
         }
         return tuple(places[place] for place in sorted(places))
 
-    # -- elements -----------------------------------------------------------------------------------
+    # -- elements -----------------------------------------------------------------------
 
     def elements(self, names: Sequence[str]) -> tuple[Element, ...]:
         """The symbols of several names."""

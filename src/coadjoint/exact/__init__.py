@@ -6,5 +6,6 @@ SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
 
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
+from coadjoint.exact.text import element_text
 
-__all__ = ["Element", "Field"]
+__all__ = ["Element", "Field", "element_text"]

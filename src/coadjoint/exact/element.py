@@ -1,7 +1,7 @@
 """Elements of the field: a polynomial over a product of powers of known factors.
 
-Comes in: polynomials of one SymPy ring over Q. Goes out: exact ``+ - * /`` whose result is zero just
-when its numerator is. Denominators of mechanics are products of few factors (moments of inertia,
+Comes in: polynomials of one SymPy ring over Q. Goes out: exact ``+ - * /`` whose result is zero
+just when its numerator is. Denominators of mechanics are products of few factors (moments of inertia,
 small determinants), so they are kept as such and cancelled by trial division: no polynomial gcd is
 ever taken. With SymPy's `FracField`, which takes one at each step, the energy of the Kirchhoff
 vehicle took 5.6 s; this way it takes hundredths.
@@ -57,7 +57,9 @@ class Factors:
         return self.known.index(factor)
 
 
-def remove_factor(p: PolyElement, factor: PolyElement, most: int = 10**6) -> tuple[int, PolyElement]:
+def remove_factor(
+    p: PolyElement, factor: PolyElement, most: int = 10**6
+) -> tuple[int, PolyElement]:
     """How often, up to a number of times, a factor divides a nonzero polynomial; what is left."""
     count = 0
     while count < most and (quotient := _quotient(p, factor)) is not None:
@@ -209,4 +211,3 @@ class Element:
 
     def __repr__(self) -> str:
         return str(self._sympy_())
-

@@ -25,9 +25,7 @@ from coadjoint.exact.element import Element, Factors
 
 Value = TypeVar("Value")
 
-_SYMPY_FUNCTIONS = {
-    name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")
-}
+_SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")}
 
 
 @dataclass(frozen=True)
@@ -47,6 +45,14 @@ class Adjoined:
     partner: str = ""
 
 
+@dataclass(frozen=True)
+class Monomial:
+    """A rational number times powers of generators, by name and in the order of the field."""
+
+    number: Fraction
+    powers: tuple[tuple[str, int], ...]
+
+
 class Field:
     """Rational functions over Q in named symbols and in elementary functions of them.
 
@@ -61,9 +67,7 @@ class Field:
     True
     """
 
-    def __init__(
-        self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()
-    ) -> None:
+    def __init__(self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()) -> None:
         self.names = tuple(names)
         self.positive = frozenset(positive)
         # A spec name cannot begin with an underscore, so a slot cannot meet one.
@@ -103,7 +107,7 @@ class Field:
         """Values that may still be plain numbers, as elements."""
         return tuple(self.zero + value for value in values)
 
-    # -- elementary functions ---------------------------------------------------------------------
+    # -- elementary functions -----------------------------------------------------------
 
     def call(self, function: str, argument: Element) -> Element:
         """``function(argument)``, adjoining a generator unless one stands for it already.
@@ -132,13 +136,11 @@ class Field:
 
     def _rational_root(self, argument: Element) -> Element | None:
         """The square root of an element that is the square of a rational number."""
-        if argument.powers or not argument.numer.is_ground:
+        value = self.as_number(argument)
+        if value is None or value < 0:
             return None
-        value = argument.numer.LC
-        top, bottom = int(value.numerator), int(value.denominator)
-        if top < 0 or isqrt(top) ** 2 != top or isqrt(bottom) ** 2 != bottom:
-            return None
-        return self.number(Fraction(isqrt(top), isqrt(bottom)))
+        root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
+        return self.number(root) if root**2 == value else None
 
     def normal(self, element: Element) -> Element:
         """Normal form: even powers of square roots and of sines in the numerator are replaced."""
@@ -167,7 +169,8 @@ class Field:
             part = parts.setdefault(monomial[place] // 2, {})
             part[rest] = part.get(rest, 0) + coefficient
         numer = sum(
-            (self._element(ring.from_dict(part)) * square**k for k, part in parts.items()), self.zero
+            (self._element(ring.from_dict(part)) * square**k for k, part in parts.items()),
+            self.zero,
         )
         return numer * Element(self._factors, ring.one, element.powers)
 
@@ -197,7 +200,7 @@ class Field:
         """The factors of the denominator, without their exponents."""
         return [self._factors.known[number] for number in element.powers]
 
-    # -- calculus -----------------------------------------------------------------------------------
+    # -- calculus -----------------------------------------------------------------------
 
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
@@ -227,7 +230,7 @@ class Field:
         """Partial derivatives by several symbols."""
         return tuple(self.derivative(element, name) for name in names)
 
-    # -- evaluation ---------------------------------------------------------------------------------
+    # -- evaluation ---------------------------------------------------------------------
 
     def evaluate(
         self,
@@ -271,13 +274,17 @@ class Field:
         total: Any = None
         for monomial, coefficient in p.terms():
             factors = [
-                values[self._names[place]] for place, power in enumerate(monomial) for _ in range(power)
+                values[self._names[place]]
+                for place, power in enumerate(monomial)
+                for _ in range(power)
             ]
             if coefficient != 1 or not factors:
-                factors.insert(0, number(Fraction(int(coefficient.numerator), int(coefficient.denominator))))
+                factors.insert(
+                    0, number(Fraction(int(coefficient.numerator), int(coefficient.denominator)))
+                )
             term = reduce(mul, factors)
             total = term if total is None else total + term
-        return number(Fraction(0)) if total is None else total  # type: ignore[no-any-return]
+        return number(Fraction(0)) if total is None else total
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
         """The element with symbols replaced by elements; symbols not named stay."""
@@ -292,6 +299,32 @@ class Field:
         for generator in self._needed(element):
             names |= self.reach(self.adjoined[generator].argument)
         return names
+
+    # -- parts, for lowering ------------------------------------------------------------
+
+    def as_number(self, element: Element) -> Fraction | None:
+        """The rational number that an element is, or None."""
+        if element.powers or not element.numer.is_ground:
+            return None
+        value = element.numer.LC
+        return Fraction(int(value.numerator), int(value.denominator))
+
+    def monomials(self, element: Element) -> list[Monomial]:
+        """The addends of the numerator in the order of the field."""
+        return [
+            Monomial(
+                Fraction(int(coefficient.numerator), int(coefficient.denominator)),
+                tuple((self._names[place], e) for place, e in enumerate(exponents) if e),
+            )
+            for exponents, coefficient in element.numer.terms()
+        ]
+
+    def divisors(self, element: Element) -> list[tuple[Element, int]]:
+        """The factors of the denominator with their exponents."""
+        return [
+            (self._element(self._factors.known[number]), exponent)
+            for number, exponent in element.powers.items()
+        ]
 
     def terms(self, element: Element) -> tuple[Element, ...]:
         """The addends of the numerator, each over the whole denominator."""

@@ -20,7 +20,9 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
             return [equations.closed(rate) for rate in exact.rates]
         case "jacobian":
             rates = expected_outputs(equations, "rhs")
-            return [slope for rate in rates for slope in setting.field.gradient(rate, setting.state)]
+            return [
+                slope for rate in rates for slope in setting.field.gradient(rate, setting.state)
+            ]
         case "energy":
             return [equations.closed(exact.energy)]
         case "observables":

@@ -32,7 +32,7 @@ class Graph:
             self.payload.append(payload)
         return self._numbers[key]
 
-    # -- leaves -------------------------------------------------------------------------------------
+    # -- leaves -------------------------------------------------------------------------
 
     def number(self, value: Fraction | int) -> int:
         """An exact constant; negative ones are the negation of their magnitude."""
@@ -56,7 +56,7 @@ class Graph:
         """Whether a node is the constant 0."""
         return self._constant(node) == 0
 
-    # -- operations ---------------------------------------------------------------------------------
+    # -- operations ---------------------------------------------------------------------
 
     def negate(self, a: int) -> int:
         """``-a``."""
@@ -130,7 +130,7 @@ class Graph:
             total = self.multiply(total, factor)
         return total
 
-    # -- to and from trees ----------------------------------------------------------------------------
+    # -- to and from trees --------------------------------------------------------------
 
     def insert(self, tree: Node, values: Mapping[str, int]) -> int:
         """The number of a Program's node, with some names replaced by nodes."""
@@ -151,7 +151,7 @@ class Graph:
                 return self.multiply(*operands)
         return self.divide(*operands)
 
-    # -- derivative -----------------------------------------------------------------------------------
+    # -- derivative ---------------------------------------------------------------------
 
     def derivative(self, node: int, slopes: dict[int, dict[str, int]]) -> dict[str, int]:
         """Derivatives of a node by every variable, by forward accumulation; zeros left out.

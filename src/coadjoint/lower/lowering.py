@@ -2,8 +2,8 @@
 
 Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian``, ``energy``, ``observables`` and
 ``poisson_tensor``. An element becomes a sum of products in the order of the field; what depends on
-parameters alone is gathered into the coefficients, equal coefficients are factored out, and pairs of
-factors that recur are shared. Definitions keep their names, so that a kernel reads like the book.
+parameters alone is gathered into the coefficients, equal coefficients are factored out, and pairs
+of factors that recur are shared. Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
 
@@ -60,7 +60,7 @@ class Lowering:
             self._shared[fixed] = dict(zip(products, found, strict=True))
             self._pairs |= pairs
 
-    # -- collecting -------------------------------------------------------------------------------------
+    # -- collecting ---------------------------------------------------------------------
 
     def _form(self, element: Element, *, fixed: bool) -> Form:
         """The form of an element, whose products are noted for sharing.
@@ -136,7 +136,7 @@ class Lowering:
                 inner = inner / divisor**power
         return inner, outer
 
-    # -- building ---------------------------------------------------------------------------------------
+    # -- building -----------------------------------------------------------------------
 
     def node(self, element: Element) -> int:
         """The graph node of an element given to the constructor."""

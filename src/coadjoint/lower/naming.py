@@ -65,12 +65,13 @@ class Naming:
         for definition, node in self.definitions.items():
             if self._uses[self.graph.symbol(definition)]:
                 self._state(definition, self._tree(node), self._fixed[definition])
-        outputs = tuple(Output(label, self._inline(node, fixed=False)) for label, node in
-                        self.outputs)
+        outputs = tuple(
+            Output(label, self._inline(node, fixed=False)) for label, node in self.outputs
+        )
         order = sorted(self.statements, key=lambda statement: statement.level == "member")
         return Program(name, state, parameters, tuple(order), outputs, shape)
 
-    # -- what depends on what -------------------------------------------------------------------------
+    # -- what depends on what -----------------------------------------------------------
 
     def _is_fixed(self, node: int) -> bool:
         """Whether a node depends on parameters alone."""
@@ -100,7 +101,7 @@ class Naming:
         negated = self.graph.kinds[node] == "negate"
         return self.graph.operands[node][0] if negated else node
 
-    # -- statements -------------------------------------------------------------------------------------
+    # -- statements ---------------------------------------------------------------------
 
     def _state(self, name: str, value: Node, fixed: bool) -> None:
         self.statements.append(Statement(name, value, "parameters" if fixed else "member"))
@@ -120,7 +121,7 @@ class Naming:
         if node in self._names:
             return Symbol(self._names[node])
         own = self._is_fixed(node)
-        if self._uses[node] < 2 and own == fixed or self._is_constant(node):
+        if (self._uses[node] < 2 and own == fixed) or self._is_constant(node):
             return self._tree(node)
         tree = self._tree(node)
         prefix = "_p" if own else "_t"
@@ -147,4 +148,5 @@ class Naming:
         operands = [self._inline(operand, fixed) for operand in self.graph.operands[node]]
         if kind == "call":
             return Call(str(payload), *operands)
-        return _TREES[kind](*operands)
+        tree: Node = _TREES[kind](*operands)
+        return tree

@@ -2,14 +2,16 @@
 
 Comes in: a Spec. Goes out: its Certificate: the algebra, the bracket, the Legendre transform, the
 equality of the routes, and what the spec itself claims.
-Read next: `coadjoint.prove.identities` for the identities, `coadjoint.prove.zero` for the decisions.
+Read next: `coadjoint.prove.identities` for what must be zero, `coadjoint.prove.zero` for whether.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from time import perf_counter
 
+from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.exact import Element
@@ -94,9 +96,9 @@ def _about_structure(first: Equations) -> Iterator[Examined]:
     )
 
 
-def _constants(algebra: object) -> Decision:
+def _constants(algebra: LieAlgebra) -> Decision:
     """Jacobi identity of the structure constants; they were refused if it failed."""
-    violation = algebra.jacobi_violation()  # type: ignore[attr-defined]
+    violation = algebra.jacobi_violation()
     assert violation is None, violation
     return Decision(Verdict.PROVED, "rational arithmetic on the structure constants")
 
@@ -113,12 +115,12 @@ def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield (
             f"h(dl/dxi) = <dl/dxi, xi> - l on the route {equations.route}",
             "legendre",
-            lambda equations=equations: [pulled.energy_defect(equations)],
+            partial(pulled.energy_defects, equations),
         )
         yield (
             f"dh/dmu = xi on the route {equations.route}",
             "legendre",
-            lambda equations=equations: pulled.velocity_defects(equations),
+            partial(pulled.velocity_defects, equations),
         )
 
 
@@ -159,18 +161,18 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         "equivalence",
         lambda: hamiltonian_defects(first),
     )
-    yield "the energy is conserved", "conserved", lambda: [drift(first, first.exact.energy)]
+    yield "the energy is conserved", "conserved", partial(drift, first, first.exact.energy)
     for casimir in spec.casimirs:
         yield (
             f"{casimir.text} is a Casimir",
             "casimir",
-            lambda casimir=casimir: casimir_defects(first, first.closed(setting.formula(casimir))),
+            partial(casimir_defects, first, setting.formula(casimir)),
         )
     for integral in spec.conserved:
         yield (
             f"{integral.text} is conserved",
             "conserved",
-            lambda integral=integral: [drift(first, _with_observables(first, integral))],
+            partial(drift, first, _with_observables(first, integral)),
         )
 
 

@@ -44,12 +44,12 @@ class LegendreMap:
             for block in coupled_blocks(mass)
         ]
 
-    def energy_defect(self, equations: Equations) -> Element:
+    def energy_defects(self, equations: Equations) -> list[Element]:
         """``h(dl/dxi, a) - (<dl/dxi, xi> - l)``."""
         field = self.setting.field
         pairs = zip(self.momenta.values(), self.setting.velocities, strict=True)
         energy = sum((slope * field[xi] for slope, xi in pairs), -self.lagrangian)
-        return self.pull_back(equations, equations.exact.energy) - energy
+        return [self.pull_back(equations, equations.exact.energy) - energy]
 
     def velocity_defects(self, equations: Equations) -> list[Element]:
         """``dh/dmu - xi`` at ``mu = dl/dxi``."""

@@ -45,15 +45,15 @@ def antisymmetry_defects(tensor: Sequence[Sequence[Element]]) -> list[Element]:
 
 def casimir_defects(equations: Equations, function: Element) -> list[Element]:
     """``{x_i, C}`` for every state component: J grad C."""
-    gradient = equations.setting.field.gradient(function, equations.setting.state)
+    gradient = equations.setting.field.gradient(equations.closed(function), equations.setting.state)
     return [_dot(row, gradient) for row in equations.exact.poisson_tensor]
 
 
-def drift(equations: Equations, function: Element) -> Element:
+def drift(equations: Equations, function: Element) -> list[Element]:
     """Time derivative of a function of the state along the motion."""
     state = equations.setting.state
     gradient = equations.setting.field.gradient(equations.closed(function), state)
-    return _dot(gradient, [equations.closed(rate) for rate in equations.exact.rates])
+    return [_dot(gradient, [equations.closed(rate) for rate in equations.exact.rates])]
 
 
 def hamiltonian_defects(equations: Equations) -> list[Element]:

@@ -119,7 +119,7 @@ def _call(function: str, argument: Any) -> Any:
     Raises:
         ValueError: The argument is outside the real domain.
     """
-    if argument < 0 and function in ("sqrt", "log") or (argument == 0 and function == "log"):
+    if (argument < 0 and function in ("sqrt", "log")) or (argument == 0 and function == "log"):
         raise ValueError(f"{function} of {argument}")
     return getattr(mpmath, function)(argument)
 

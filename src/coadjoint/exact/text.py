@@ -1,0 +1,59 @@
+"""Elements as plain text, in our own order: the same bytes whatever the version of SymPy.
+
+Comes in: an element. Goes out: ASCII text of names, numbers and operators, as it stands in the head
+of generated files and in documents.
+"""
+
+from __future__ import annotations
+
+from coadjoint.exact.element import Element
+from coadjoint.exact.field import Field, Monomial
+
+
+def element_text(field: Field, element: Element) -> str:
+    """An element as text.
+
+    >>> field = Field(["x", "y", "m"])
+    >>> x, y, m = (field[name] for name in field.names)
+    >>> element_text(field, (x**2 / 2 - y) / (m * (m + 1)))
+    '(1/2*x^2 - y)/(m*(m + 1))'
+    """
+    top = _sum(field, field.monomials(element))
+    bottom = [_power(_bracketed(field, d), e) for d, e in field.divisors(element)]
+    if not bottom:
+        return top
+    lead = f"({top})" if len(field.monomials(element)) > 1 else top
+    return f"{lead}/{bottom[0]}" if len(bottom) == 1 else f"{lead}/({'*'.join(bottom)})"
+
+
+def _sum(field: Field, monomials: list[Monomial]) -> str:
+    """Addends with their signs."""
+    text = ""
+    for monomial in monomials:
+        sign = "-" if monomial.number < 0 else "+"
+        addend = _product(field, monomial)
+        text = f"{text} {sign} {addend}" if text else ("-" if sign == "-" else "") + addend
+    return text or "0"
+
+
+def _product(field: Field, monomial: Monomial) -> str:
+    """One addend without its sign."""
+    number = abs(monomial.number)
+    factors = [_power(_name(field, name), exponent) for name, exponent in monomial.powers]
+    return "*".join(([] if number == 1 and factors else [str(number)]) + factors)
+
+
+def _power(base: str, exponent: int) -> str:
+    return base if exponent == 1 else f"{base}^{exponent}"
+
+
+def _bracketed(field: Field, element: Element) -> str:
+    """A factor of a denominator: in brackets unless it is a single name."""
+    text = element_text(field, element)
+    return text if text.isidentifier() else f"({text})"
+
+
+def _name(field: Field, name: str) -> str:
+    """A symbol, or the function that an adjoined generator stands for."""
+    known = field.adjoined.get(name)
+    return name if known is None else f"{known.function}({element_text(field, known.argument)})"
