@@ -83,9 +83,7 @@ def program(
 TOP_STATE = "Pi1 Pi2 Pi3 Gamma1 Gamma2 Gamma3"
 TOP_PARAMETERS = "I1 I2 I3 m g chi1 chi2 chi3"
 OMEGA = "Omega1 = Pi1/I1; Omega2 = Pi2/I2; Omega3 = Pi3/I3;"
-ENERGY = (
-    "(Pi1*Omega1 + Pi2*Omega2 + Pi3*Omega3)/2 + _p1*(Gamma1*chi1 + Gamma2*chi2 + Gamma3*chi3)"
-)
+ENERGY = "(Pi1*Omega1 + Pi2*Omega2 + Pi3*Omega3)/2 + _p1*(Gamma1*chi1 + Gamma2*chi2 + Gamma3*chi3)"
 
 TOP_RHS = program(
     "rhs",
@@ -159,7 +157,9 @@ PENDULUM = KernelContext(
     parameters=(Quantity("k", (), "1/s^2", ("k",), (2.5,), positive=True),),
     observables=(Quantity("speed", (), "1/s", ("speed",)),),
     programs=(
-        program("rhs", "q p", "k", "_t1 = q*q", "p; -(k*sin(q)) - exp(-_t1)*p", (2,), "dq/dt dp/dt"),
+        program(
+            "rhs", "q p", "k", "_t1 = q*q", "p; -(k*sin(q)) - exp(-_t1)*p", (2,), "dq/dt dp/dt"
+        ),
         program("energy", "q p", "k", "_p1 = sqrt(k)", "p*p/2 - _p1*_p1*cos(q)", (), "energy"),
         program("observables", "q p", "k", "", "sqrt(p*p)", (1,), "speed"),
     ),

@@ -10,6 +10,7 @@ Read next: `coadjoint.render.kernels`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
@@ -180,6 +181,29 @@ def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str
     inner = C.broken(node, WIDTH - column - 4 - 1)
     inner[-1] += ";"
     return _indented([f"{to} ={note}", *("    " + text for text in inner)], column)
+
+
+def python_entry(arguments: Sequence[str], function: str, column: int = 4) -> str:
+    """``function(arguments),`` as one entry of a list, broken as our formatter breaks it.
+
+    >>> python_entry(['"m"', "shape=()"], "Quantity")
+    'Quantity("m", shape=()),'
+    """
+    joined = ", ".join(arguments)
+    if column + len(f"{function}({joined}),") <= WIDTH:
+        return f"{function}({joined}),"
+    if column + 4 + len(joined) <= WIDTH:
+        return _indented([f"{function}(", "    " + joined, "),"], column)
+    lines = ["    " + line for entry in arguments for line in _entry_lines(entry, column + 4)]
+    return _indented([f"{function}(", *lines, "),"], column)
+
+
+def _entry_lines(entry: str, column: int) -> list[str]:
+    """``entry,``; a flat tuple that is too long stands one item to a line."""
+    if column + len(entry) + 1 <= WIDTH or not entry.endswith(")"):
+        return [entry + ","]
+    opening, items = entry[:-1].split("(", 1)
+    return [f"{opening}(", *(f"    {item}," for item in items.split(", ")), "),"]
 
 
 def _indented(lines: list[str], column: int) -> str:

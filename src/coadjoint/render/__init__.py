@@ -1,0 +1,1 @@
+"""Render: Program -> text; templates, one small printer per language, atomic writing."""

@@ -1,0 +1,119 @@
+"""Render, templates: the one strict Jinja environment that every generated file comes from.
+
+Comes in: names of templates of this package and plain values. Goes out: text. Templates are files
+of this package only, never text of a spec; an undefined name is an error, a value given for nothing
+is an error, and a value that could end a comment or a string of the output is refused.
+Read next: `templates/numpy/kernel.py.j2` and its twin `templates/c/kernel.c.j2`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from functools import cache
+from typing import Any
+
+from jinja2 import FileSystemLoader, StrictUndefined, meta
+from jinja2.sandbox import ImmutableSandboxedEnvironment
+
+from coadjoint.errors import SpecError
+from coadjoint.render.printers import c_assignment, python_assignment, python_entry
+from coadjoint.resources import templates_folder
+
+#: What would begin or end a comment or a string, or glue two lines together, in C or in Python.
+UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
+
+
+@cache
+def environment() -> ImmutableSandboxedEnvironment:
+    """The environment; the sandbox is a second wall, the first is that specs are not templates."""
+    made = ImmutableSandboxedEnvironment(
+        loader=FileSystemLoader(templates_folder()),
+        undefined=StrictUndefined,
+        autoescape=False,  # code, not HTML; `refuse_unsafe` guards each value
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    made.filters["python_assignment"] = python_assignment
+    made.filters["c_assignment"] = c_assignment
+    made.filters["python_entry"] = python_entry
+    return made
+
+
+def refuse_unsafe(value: object) -> None:
+    """Pass over every text inside ``value``: each must be able to stand in a comment and in code.
+
+    Raises:
+        SpecError: One holds a comment mark, a backslash or a character outside ASCII.
+
+    >>> refuse_unsafe({"unit": "kg m^2/s"})
+    """
+    for text in _texts(value):
+        found = UNSAFE.search(text)
+        if found:
+            raise SpecError(
+                f"{text[:80]!r} cannot stand in generated code: it holds {found[0]!r}; expected "
+                "plain ASCII text without comment marks. Check the units and names of the spec.",
+                found=text[:80],
+                expected="plain ASCII text without comment marks",
+            )
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Every text in records, mappings and sequences."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        yield from _texts([*value.keys(), *value.values()])
+    elif isinstance(value, Sequence):
+        for entry in value:
+            yield from _texts(entry)
+    elif is_dataclass(value):
+        yield from _texts([getattr(value, field.name) for field in fields(value)])
+
+
+def render_templates(names: tuple[str, ...], values: Mapping[str, Any]) -> dict[str, str]:
+    """The text of each template, given the same values.
+
+    Args:
+        names: Paths below the folder of templates, e.g. ``numpy/kernel.py.j2``.
+        values: What templates may print; each must be read by one template at least.
+
+    Returns:
+        Text by template.
+    """
+    refuse_unsafe(values)
+    read = {name: names_read(name) for name in names}
+    used = frozenset[str]().union(*read.values())
+    assert used == set(values), f"templates read {sorted(used)}, given are {sorted(values)}"
+    return {name: environment().get_template(name).render(values) for name in names}
+
+
+def names_read(template: str) -> frozenset[str]:
+    """The names that a template takes from its context.
+
+    >>> "functions" in names_read("c/kernel.h.j2")
+    True
+    """
+    return frozenset(meta.find_undeclared_variables(environment().parse(template_source(template))))
+
+
+def template_source(template: str) -> str:
+    """The text of a template as it stands in its file."""
+    return (templates_folder() / template).read_text(encoding="utf-8")
+
+
+def template_hashes() -> dict[str, str]:
+    """The SHA-256 of each template of the package by its path, for the manifest.
+
+    >>> "numpy/kernel.py.j2" in template_hashes()
+    True
+    """
+    folder = templates_folder()
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.glob("*/*.j2"))
+    }

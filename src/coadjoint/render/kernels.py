@@ -1,0 +1,323 @@
+"""Render: Programs and names of one system become the files of its generated folder.
+
+Comes in: a `KernelContext`, which holds all that a generated file says. Goes out: text by file
+name. The choice of what to print is made here, in plain records; the templates loop and print.
+Read next: `templates/numpy/kernel.py.j2`, then `coadjoint.render.write`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from coadjoint.lower.program import FUNCTIONS, Output, Program, Statement, operation, walk
+from coadjoint.render.environment import render_templates
+from coadjoint.render.printers import WIDTH
+
+#: Template of each rendered file.
+TEMPLATES: Final = {
+    "kernel.py": "numpy/kernel.py.j2",
+    "__init__.py": "numpy/__init__.py.j2",
+    "kernel.c": "c/kernel.c.j2",
+    "kernel.h": "c/kernel.h.j2",
+}
+
+#: What each function of a kernel is, for its readers.
+SUMMARIES: Final = {
+    "rhs": "Time derivative of the state",
+    "jacobian": "Derivative of rhs by the state, one row for each rate",
+    "energy": "Energy",
+    "observables": "Observables, one row for each component",
+    "poisson_tensor": "Poisson tensor, brackets of the components of the state",
+}
+
+NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."
+
+#: Members that the NumPy kernel evaluates at a time (measured: docs/decisions/numpy-kernels.md).
+CHUNK: Final = 8192
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A named block of state, parameters or observables, as the generated package declares it.
+
+    Attributes:
+        name: As in the spec.
+        shape: ``()``, ``(n,)`` or ``(n, m)``.
+        unit: Unit text, ``"1"`` if dimensionless.
+        components: One name per component, row by row.
+        default: One value per component, or None.
+        positive: Whether every component must be positive.
+        conserved: Whether the motion conserves it.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    unit: str
+    components: tuple[str, ...]
+    default: tuple[float, ...] | None = None
+    positive: bool = False
+    conserved: bool = False
+
+    def arguments(self) -> list[str]:
+        """The arguments of its declaration, as text; what has its usual value is left out."""
+        given = [quoted(self.name), f"shape={tuple_text(map(str, self.shape))}"]
+        given += [f"unit={quoted(self.unit)}"]
+        given += [f"components={tuple_text(map(quoted, self.components))}"]
+        if self.default is not None:
+            given += [f"default={tuple_text(map(repr, self.default))}"]
+        given += ["positive=True"] * self.positive + ["conserved=True"] * self.conserved
+        return given
+
+
+@dataclass(frozen=True)
+class KernelContext:
+    """All that the generated files of one system say.
+
+    Attributes:
+        name: Name of the system, the prefix of its C functions.
+        spec: Path of the spec for readers, relative: ``derivations/heavy_top.toml``.
+        spec_sha256: Hash of the spec's bytes; part of the id.
+        license: SPDX expression of the spec's licence, or "".
+        routes: How the equations were derived, one line each.
+        equations: The equations, one line each, in safe names and operators only.
+        state: Quantities of the state, in order.
+        parameters: Quantities of the parameters, in order.
+        observables: Quantities that the function ``observables`` returns, in order.
+        programs: The functions, in order.
+    """
+
+    name: str
+    spec: str
+    spec_sha256: str
+    license: str
+    routes: tuple[str, ...]
+    equations: tuple[str, ...]
+    state: tuple[Quantity, ...]
+    parameters: tuple[Quantity, ...]
+    observables: tuple[Quantity, ...]
+    programs: tuple[Program, ...]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One component of an input: its row, name and unit."""
+
+    index: int
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Function:
+    """One Program, arranged for the templates.
+
+    Attributes:
+        name: Name in Python; in C the system's name stands before it.
+        summary: What it is, with its shape.
+        costs: Its operation counts, as lines.
+        shape: Shape for one member, as Python text.
+        state: Components of the state that it reads.
+        parameters: Components of the parameters that it reads.
+        python_inputs: The lines that take these from the arrays in Python.
+        of_parameters: Statements that depend on parameters alone.
+        of_member: The other statements.
+        outputs: One per row of the result.
+    """
+
+    name: str
+    summary: str
+    costs: list[str]
+    shape: str
+    state: tuple[Row, ...]
+    parameters: tuple[Row, ...]
+    python_inputs: tuple[str, ...]
+    of_parameters: tuple[Statement, ...]
+    of_member: tuple[Statement, ...]
+    outputs: tuple[Output, ...]
+
+
+def render_system(context: KernelContext, extra: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The files of one generated folder.
+
+    Args:
+        context: What the files say.
+        extra: Further texts of the folder by file name (``certificate.json``), part of the id.
+
+    Returns:
+        Text by file name, ``extra`` included.
+    """
+    extra = dict(extra or {})
+    identity = fingerprint(context.spec_sha256, {**_render(context, "0" * 16), **extra})
+    return {**_render(context, identity), **extra}
+
+
+def fingerprint(spec_sha256: str, texts: Mapping[str, str]) -> str:
+    """Sixteen hexadecimal digits that change with any byte of the spec or of a file.
+
+    >>> fingerprint("", {"a": "b"}) == fingerprint("", {"ab": ""})
+    False
+    """
+    content = json.dumps([spec_sha256, sorted(texts.items())])
+    return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+def elementary_functions(programs: Iterable[Program]) -> tuple[str, ...]:
+    """Functions beyond sqrt that Programs call; where there are none, all targets agree in bits."""
+    called = {
+        operation(node)
+        for program in programs
+        for value in program.values()
+        for node in walk(value)
+    }
+    return tuple(name for name in FUNCTIONS if name in called and name != "sqrt")
+
+
+def _render(context: KernelContext, identity: str) -> dict[str, str]:
+    """The rendered files, given the id."""
+    rendered = render_templates(
+        tuple(TEMPLATES.values()),
+        {
+            "name": context.name,
+            "spec": context.spec,
+            "licence": _licence(context.license),
+            "id": identity,
+            "chunk": CHUNK,
+            "routes": _wrapped(context.routes),
+            "equations": _wrapped(context.equations),
+            "state": _rows(context.state),
+            "parameters": _rows(context.parameters),
+            "functions": [_function(program) for program in context.programs],
+            "elementary": tuple_text(map(quoted, elementary_functions(context.programs))),
+            "shapes": _shapes(context.programs),
+            "declared": {
+                "STATE": [quantity.arguments() for quantity in context.state],
+                "PARAMETERS": [quantity.arguments() for quantity in context.parameters],
+                "OBSERVABLES": [quantity.arguments() for quantity in context.observables],
+            },
+        },
+    )
+    return {file: rendered[template] for file, template in TEMPLATES.items()}
+
+
+def _licence(expression: str) -> str:
+    """The line of a file's head that states its licence."""
+    return f"SPDX-License-Identifier: {expression}" if expression else NO_LICENSE
+
+
+def _wrapped(lines: Iterable[str]) -> list[str]:
+    """Lines for the head of a file, the long ones continued on indented lines."""
+    return [
+        piece
+        for line in lines
+        for piece in textwrap.wrap(
+            line,
+            WIDTH - 8,
+            subsequent_indent="    ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    ]
+
+
+def _rows(quantities: Iterable[Quantity]) -> list[Row]:
+    """The components of an input array, row by row."""
+    named = [(name, quantity.unit) for quantity in quantities for name in quantity.components]
+    return [Row(index, name, unit) for index, (name, unit) in enumerate(named)]
+
+
+def _function(program: Program) -> Function:
+    """A Program as the templates read it."""
+    used = program.used()
+    return Function(
+        name=program.name,
+        summary=_summary(program),
+        costs=_costs(program),
+        shape=tuple_text(map(str, program.shape)),
+        state=_read(program.state, used),
+        parameters=_read(program.parameters, used),
+        python_inputs=(
+            *_unpacked(program.state, used, "state"),
+            *_unpacked(program.parameters, used, "parameters"),
+        ),
+        of_parameters=program.at_level("parameters"),
+        of_member=program.at_level("member"),
+        outputs=program.outputs,
+    )
+
+
+def _read(names: Sequence[str], used: frozenset[str]) -> tuple[Row, ...]:
+    """The components that a Program reads; C warns of the others."""
+    return tuple(Row(index, name, "") for index, name in enumerate(names) if name in used)
+
+
+def _summary(program: Program) -> str:
+    """One sentence on a function."""
+    shape = ", ".join([*map(str, program.shape), "..."])
+    return f"{SUMMARIES[program.name]}, shape ({shape})."
+
+
+def _costs(program: Program) -> list[str]:
+    """What a call costs, so that a heavier kernel shows in the diff."""
+    costs = [f"Operations per member: {_counts(program, 'member')}."]
+    if program.at_level("parameters"):
+        costs += [f"Of the parameters alone: {_counts(program, 'parameters')}."]
+    return _wrapped(costs)
+
+
+def _counts(program: Program, level: str) -> str:
+    """Operation counts as text: ``9 add, 15 multiply``."""
+    counts = program.operation_counts(level)
+    return ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "none"
+
+
+def _unpacked(names: Sequence[str], used: frozenset[str], source: str) -> list[str]:
+    """Python lines that take the used names from ``source``, as many to a line as fit.
+
+    All of them on one line where that fits, as a book names them; an unused name is ``_``.
+    """
+    slots = [name if name in used else "_" for name in names]
+    if not used & set(names):
+        return []
+    line = f"    {', '.join(slots)} = {source}"
+    if len(slots) > 1 and len(line) <= WIDTH:
+        return [line.strip()]
+    lines, start = [], 0
+    for stop in range(1, len(slots) + 1):
+        piece = _piece(slots, start, stop, source)
+        if stop == len(slots) or len(_piece(slots, start, stop + 1, source)) > WIDTH - 4:
+            lines += [piece] if set(slots[start:stop]) != {"_"} else []
+            start = stop
+    return lines
+
+
+def _piece(slots: Sequence[str], start: int, stop: int, source: str) -> str:
+    """The line that takes a stretch of rows."""
+    rows = str(start) if stop == start + 1 else f"{start}:{stop}"
+    return f"{', '.join(slots[start:stop])} = {source}[{rows}]"
+
+
+def _shapes(programs: Sequence[Program]) -> list[str]:
+    """The entries of the table of functions."""
+    return [
+        f"{quoted(program.name)}: {tuple_text(map(str, program.shape))}" for program in programs
+    ]
+
+
+def tuple_text(entries: Iterable[str]) -> str:
+    """Texts as a Python tuple.
+
+    >>> tuple_text([]), tuple_text(["3"]), tuple_text(["3", "4"])
+    ('()', '(3,)', '(3, 4)')
+    """
+    listed = list(entries)
+    return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
+
+
+def quoted(text: str) -> str:
+    """A Python string literal in double quotes."""
+    return json.dumps(text)
