@@ -8,7 +8,6 @@ Read next: `templates/numpy/kernel.py.j2` and its twin `templates/c/kernel.c.j2`
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
@@ -104,16 +103,3 @@ def names_read(template: str) -> frozenset[str]:
 def template_source(template: str) -> str:
     """The text of a template as it stands in its file."""
     return (templates_folder() / template).read_text(encoding="utf-8")
-
-
-def template_hashes() -> dict[str, str]:
-    """The SHA-256 of each template of the package by its path, for the manifest.
-
-    >>> "numpy/kernel.py.j2" in template_hashes()
-    True
-    """
-    folder = templates_folder()
-    return {
-        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(folder.glob("*/*.j2"))
-    }

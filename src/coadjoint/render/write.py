@@ -2,7 +2,7 @@
 
 Comes in: all texts of all systems, computed before anything is written. Goes out: a folder per
 system and ``manifest.json``, written last. A killed or failed run leaves whole files; where it
-leaves old ones beside new ones, their ids and the manifest tell so, and the next run heals the tree.
+leaves old ones beside new ones, their ids and the manifest tell, and the next run heals the tree.
 Read next: `coadjoint.render.compare`.
 """
 
@@ -17,7 +17,7 @@ import secrets
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -40,28 +40,18 @@ class GeneratedSystem:
     """One system ready to be written.
 
     Attributes:
-        id: The id that its files carry.
-        spec_sha256: Hash of the spec's bytes.
-        route: The route whose equations were emitted.
-        rungs: The rungs of the ladder that were passed.
         texts: Text by file name.
+        record: What the manifest says of it beside the hashes of its files: id, hash of the spec,
+            route, rungs passed; JSON values.
     """
 
-    id: str
-    spec_sha256: str
-    route: str
-    rungs: tuple[int, ...]
-    texts: Mapping[str, str] = field(repr=False)
+    texts: Mapping[str, str]
+    record: Mapping[str, Any]
 
-    def record(self) -> dict[str, Any]:
+    def entry(self) -> dict[str, Any]:
         """Its entry in the manifest."""
-        return {
-            "id": self.id,
-            "spec_sha256": self.spec_sha256,
-            "route": self.route,
-            "rungs": list(self.rungs),
-            "files": {name: text_hash(text) for name, text in self.texts.items()},
-        }
+        files = {name: text_hash(text) for name, text in self.texts.items()}
+        return {**self.record, "files": files}
 
 
 def text_hash(text: str) -> str:
@@ -73,7 +63,7 @@ def manifest_text(systems: Mapping[str, Mapping[str, Any]], templates: Mapping[s
     """The manifest as text: sorted, so that the same tree has the same bytes.
 
     Args:
-        systems: Entries by system, as `GeneratedSystem.record` makes them.
+        systems: Entries by system, as `GeneratedSystem.entry` makes them.
         templates: Hashes of the templates by path.
 
     >>> manifest_text({}, {"c/kernel.c.j2": "00"}).splitlines()[1]
@@ -119,7 +109,7 @@ def write_systems(
         folder.mkdir(parents=True, exist_ok=True)
     with locked(folder, on_wait):
         kept = {} if complete else read_manifest(folder)["systems"]
-        entries = kept | {name: system.record() for name, system in systems.items()}
+        entries = kept | {name: system.entry() for name, system in systems.items()}
         contents = {name: system.texts for name, system in systems.items()}
         write_folders(folder, contents, last={MANIFEST: manifest_text(entries, templates)})
         for name, texts in contents.items():

@@ -1,0 +1,274 @@
+"""Cross-check, comparing: kernels against 50 digits, and NumPy against exact C bit for bit.
+
+Comes in: a `Subject`, the functions of one system in every form. Goes out: figures, or a
+`CrossCheckError` that shows the point and the two values. There is no absolute tolerance anywhere:
+with one, 1e-9 and 2e-9 would be close.
+Read next: `coadjoint.crosscheck.ladder`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coadjoint.crosscheck.oracle import (
+    Bounded,
+    OutsideDomain,
+    Reference,
+    distance_in_envelopes,
+    error_in_envelopes,
+    error_in_ulp,
+    oracle,
+)
+from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points, cancelling, safe_exponent
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower.program import Program
+from coadjoint.render.kernels import elementary_functions
+
+#: Largest k of + - * / sqrt, and of kernels that call other functions (measured: 2.8 and 7.1).
+K_ARITHMETIC: Final = 4.0
+K_ELEMENTARY: Final = 16.0
+#: Members compared at a time: few enough for the cache.
+BLOCK: Final = 10_000
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Errors of one function of one target against 50 digits.
+
+    Attributes:
+        k: Largest error in units of 2^-53 times the envelope.
+        ulp: Largest error in units of the last place, where terms do not cancel.
+        points: Points at which the equations have a value.
+    """
+
+    k: float
+    ulp: float
+    points: int
+
+
+@dataclass(frozen=True)
+class Subject:
+    """One system in every form that is compared.
+
+    Attributes:
+        programs: Its functions by name.
+        reference: Its equations.
+        system: The loaded system.
+        targets: The targets to evaluate.
+    """
+
+    programs: Mapping[str, Program]
+    reference: Reference
+    system: Any
+    targets: tuple[str, ...]
+
+    @cached_property
+    def elementary(self) -> bool:
+        """Whether functions beyond sqrt are called, so that bits are not promised."""
+        return bool(elementary_functions(self.programs.values()))
+
+    @property
+    def threshold(self) -> float:
+        """The largest k allowed."""
+        return K_ELEMENTARY if self.elementary else K_ARITHMETIC
+
+    @cached_property
+    def points(self) -> Points:
+        """Where the system is evaluated."""
+        quantities = self.system.PARAMETERS.values()
+        positive = tuple(each.positive for each in quantities for _ in each.components)
+        states = len(next(iter(self.programs.values())).state)
+        return Points(states, positive, safe_exponent(self.programs, self.elementary))
+
+    def evaluate(self, function: str, batch: Batch, target: str) -> Array:
+        """The outputs of one function, ``(rows, N)``."""
+        values = getattr(self.system, function)(batch.state, batch.parameters, target=target)
+        rows = len(self.programs[function].outputs)
+        return np.asarray(values, dtype=np.float64).reshape(rows, batch.state.shape[1])
+
+    def inputs(self, batch: Batch, member: int) -> dict[str, float]:
+        """State and parameters of one member by name."""
+        program = next(iter(self.programs.values()))
+        shared = batch.parameters.ndim == 1
+        own = batch.parameters if shared else batch.parameters[:, member]
+        values = [*batch.state[:, member].tolist(), *own.tolist()]
+        return dict(zip((*program.state, *program.parameters), values, strict=True))
+
+    def failure(
+        self, function: str, row: int, batch: Batch, member: int, **parts: Any
+    ) -> CrossCheckError:
+        """A disagreement at one member; ``parts`` are the rung, the values and what was allowed."""
+        output = self.programs[function].outputs[row].label
+        point = {name: repr(value) for name, value in self.inputs(batch, member).items()}
+        shown = ", ".join(f"{name} {value}" for name, value in parts.items() if name != "rung")
+        where = ", ".join(f"{name} = {value}" for name, value in point.items())
+        return CrossCheckError(
+            f"rung {parts['rung']}: {self.system.name}.{function}, output {output}: {shown}; "
+            f"at {where}. The kernel does not compute the equations: look at what changed last in "
+            "lowering, printers, templates or compiler flags.",
+            system=self.system.name,
+            function=function,
+            output=output,
+            point=point,
+            **parts,
+        )
+
+
+def against_oracle(subject: Subject, function: str, count: int) -> dict[str, Figures]:
+    """Compare every target of one function with the equations.
+
+    Args:
+        subject: The system.
+        function: Which function.
+        count: How many points; a fifth of them is moved to where an output nearly cancels.
+
+    Raises:
+        CrossCheckError: An error is above the threshold, or fewer than half of the points can be
+            evaluated at all.
+    """
+    worst = {target: Figures(0.0, 0.0, 0) for target in subject.targets}
+    for batch in _hard_batches(subject, function, -(-count // 5)):
+        results = {each: subject.evaluate(function, batch, each) for each in subject.targets}
+        for member in range(batch.state.shape[1]):
+            try:
+                exact = oracle(subject.reference, function, subject.inputs(batch, member))
+            except OutsideDomain:
+                continue
+            for target, values in results.items():
+                found = _errors(subject, function, target, values[:, member], exact, batch, member)
+                worst[target] = _worse(worst[target], found)
+            _check_together(subject, function, results, exact, batch, member)
+    reached = min(figures.points for figures in worst.values())
+    if 2 * reached < count or not reached:
+        raise CrossCheckError(
+            f"rung 4: {subject.system.name}.{function} has a value at only {reached} of {count} "
+            "points; expected half of them at least. Declare which parameters are positive.",
+            rung=4,
+            system=subject.system.name,
+            function=function,
+            found=reached,
+            expected=count,
+        )
+    return worst
+
+
+def _hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]:
+    """Each family, and one more that is moved to where one output nearly cancels."""
+    yield from subject.points.families(seed=0, count=share).values()
+    start = subject.points.families(seed=1, count=share)["random"]
+    yield cancelling(
+        lambda state, own: subject.evaluate(function, Batch(state, own), "numpy"), start, seed=2
+    )
+
+
+def _errors(
+    subject: Subject,
+    function: str,
+    target: str,
+    computed: Array,
+    exact: list[Bounded],
+    batch: Batch,
+    member: int,
+) -> Figures:
+    """The errors of one member; raises if k is above the threshold."""
+    pairs = list(zip(computed.tolist(), exact, strict=True))
+    ks = [error_in_envelopes(value, bounded) for value, bounded in pairs]
+    row = max(range(len(ks)), key=ks.__getitem__)
+    if not ks[row] <= subject.threshold:
+        values = {target: pairs[row][0], "exact": float(exact[row].value)}
+        limits = {"k": ks[row], "threshold": subject.threshold}
+        raise subject.failure(function, row, batch, member, rung=4, **values, **limits)
+    ulp = max(error_in_ulp(value, bounded) for value, bounded in pairs)
+    return Figures(ks[row], ulp, 1)
+
+
+def _worse(one: Figures, other: Figures) -> Figures:
+    """The larger errors, the points together."""
+    return Figures(max(one.k, other.k), max(one.ulp, other.ulp), one.points + other.points)
+
+
+def _check_together(
+    subject: Subject,
+    function: str,
+    results: Mapping[str, Array],
+    exact: list[Bounded],
+    batch: Batch,
+    member: int,
+) -> None:
+    """Rung 5 where bits are not promised: NumPy and exact C are within twice the threshold."""
+    if not (subject.elementary and "c" in results):
+        return
+    for row, bounded in enumerate(exact):
+        one, other = (float(results[target][row, member]) for target in ("numpy", "c"))
+        k = distance_in_envelopes(one, other, bounded)
+        if not k <= 2 * subject.threshold:
+            parts = {
+                "rung": 5,
+                "numpy": one,
+                "c": other,
+                "k": k,
+                "threshold": 2 * subject.threshold,
+            }
+            raise subject.failure(function, row, batch, member, **parts)
+
+
+def equal_bits(subject: Subject, count: int) -> dict[str, int]:
+    """Compare NumPy with exact C bit for bit; NaN equals NaN, and 0 is not -0.
+
+    Args:
+        subject: The system; with functions beyond sqrt nothing is compared, since their last bits
+            belong to the libraries (`against_oracle` holds them to twice the threshold).
+        count: How many points for each function, odd batches and special values beside them.
+
+    Returns:
+        Points compared by function; all of them were equal.
+
+    Raises:
+        CrossCheckError: Two results differ in a bit.
+    """
+    equal = dict.fromkeys(subject.programs, 0)
+    if subject.elementary:
+        return equal
+    for batch in _bit_batches(subject.points, count):
+        for function in equal:
+            one, other = (subject.evaluate(function, batch, each) for each in ("numpy", "c"))
+            different = differing(one, other)
+            if different.any():
+                row, member = np.argwhere(different)[0].tolist()
+                values = {"numpy": float(one[row, member]), "c": float(other[row, member])}
+                raise subject.failure(function, row, batch, member, rung=5, **values)
+            equal[function] += batch.state.shape[1]
+    return equal
+
+
+def _bit_batches(points: Points, count: int) -> Iterator[Batch]:
+    """Blocks of every family, special values and odd sizes; parameters shared in every other."""
+    yield from _both_ways(points.special(seed, size) for seed, size in enumerate(ODD_SIZES))
+    yield from _both_ways(iter([points.special(99, BLOCK)]))
+    for seed in range(-(-count // BLOCK)):
+        quarter = -(-min(BLOCK, count - seed * BLOCK) // 4)
+        for number, batch in enumerate(points.families(seed + 10, quarter).values()):
+            yield batch.shared() if (seed + number) % 2 else batch
+
+
+def _both_ways(batches: Iterator[Batch]) -> Iterator[Batch]:
+    """Each batch with parameters of its own and with shared ones."""
+    for batch in batches:
+        yield batch
+        yield batch.shared()
+
+
+def differing(one: Array, other: Array) -> NDArray[np.bool_]:
+    """Where two arrays differ in their bits, NaN apart.
+
+    >>> differing(np.array([0.0, np.nan, 1.0]), np.array([-0.0, -np.nan, 1.0])).tolist()
+    [True, False, False]
+    """
+    different = one.view(np.int64) != other.view(np.int64)
+    return np.asarray(different & ~(np.isnan(one) & np.isnan(other)))

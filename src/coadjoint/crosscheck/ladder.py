@@ -1,0 +1,122 @@
+"""Cross-check, the ladder: rungs 3, 4 and 5 for one system, and their figures.
+
+Comes in: Programs, the texts printed from them, the equations, and the loaded system. Goes out: a
+`Report`, or a `CrossCheckError` that names function, output, target, point and values.
+
+    rung 3   emitted text, parsed back, equals the Program
+    rung 4   NumPy, exact C and fast C against 50 digits: k <= 4, or 16 with functions beyond sqrt
+    rung 5   NumPy equals exact C bit for bit; with functions beyond sqrt, within 2 k
+
+Rungs 1 and 2, claims and lowering, are exact and come earlier. NumPy agreeing with C proves almost
+nothing by itself: both are printed from one Program.
+Read next: `coadjoint.pipeline`, which runs this before anything is written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+from coadjoint.build.compiler import find_compiler
+from coadjoint.crosscheck.compare import Figures, Subject, against_oracle, equal_bits
+from coadjoint.crosscheck.oracle import Reference
+from coadjoint.crosscheck.parse_back import check_c, check_python
+from coadjoint.errors import CompilerError
+from coadjoint.lower.program import Program
+
+TARGETS: Final = ("numpy", "c", "c-fast")
+NO_COMPILER: Final = "not run: no compiler"
+#: Points against 50 digits for a whole system: about a second of a processor.
+ORACLE_POINTS: Final = 2000
+#: Points of bitwise comparison for each function.
+BIT_POINTS: Final = 200_000
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the numeric rungs found; a rung that fails raises instead.
+
+    Attributes:
+        system: Name of the system.
+        rungs: Status by number of the rung: ``"passed"`` or why it was not run.
+        threshold: The k that was allowed.
+        figures: By function and target.
+        equal: Points at which NumPy and exact C have the same bits, by function; none are counted
+            with functions beyond sqrt, where NumPy and C libraries may differ in the last bits.
+    """
+
+    system: str
+    rungs: Mapping[int, str]
+    threshold: float
+    figures: Mapping[str, Mapping[str, Figures]]
+    equal: Mapping[str, int]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every rung ran and passed."""
+        return all(status == "passed" for status in self.rungs.values())
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """The targets that were checked."""
+        return tuple(next(iter(self.figures.values())))
+
+    @property
+    def k(self) -> float:
+        """The largest k of all functions and targets."""
+        return max(each.k for targets in self.figures.values() for each in targets.values())
+
+    def as_record(self) -> dict[str, Any]:
+        """The report as plain JSON values; k of fast C may differ from machine to machine."""
+        return asdict(self) | {"rungs": {str(rung): status for rung, status in self.rungs.items()}}
+
+
+def crosscheck(
+    programs: Mapping[str, Program],
+    texts: Mapping[str, str],
+    reference: Reference,
+    system: Any,
+    targets: Sequence[str] | None = None,
+    oracle_points: int = ORACLE_POINTS,
+    bit_points: int = BIT_POINTS,
+) -> Report:
+    """Run rungs 3, 4 and 5.
+
+    Args:
+        programs: The functions by name.
+        texts: The rendered files by name.
+        reference: The equations.
+        system: The loaded system: ``name``, ``PARAMETERS`` and one method per function, called
+            with ``state``, ``parameters`` and ``target``.
+        targets: What to compare; by default all, or NumPy alone without a compiler.
+        oracle_points: Points against 50 digits, shared out among the functions.
+        bit_points: Points of bitwise comparison for each function.
+
+    Raises:
+        CrossCheckError: A rung failed.
+    """
+    chosen = available_targets() if targets is None else tuple(targets)
+    for program in programs.values():
+        check_python(program, texts["kernel.py"])
+        check_c(program, texts["kernel.c"], system.name)
+    subject = Subject(programs, reference, system, chosen)
+    share = oracle_points // len(programs)
+    figures = {name: against_oracle(subject, name, share) for name in programs}
+    equal = equal_bits(subject, bit_points) if "c" in chosen else {}
+    complete = set(TARGETS) <= set(chosen)
+    rungs = {
+        3: "passed",
+        4: "passed" if complete else f"{', '.join(chosen)}; the others {NO_COMPILER}",
+        5: "passed" if "c" in chosen else NO_COMPILER,
+    }
+    return Report(system.name, rungs, subject.threshold, figures, equal)
+
+
+def available_targets() -> tuple[str, ...]:
+    """All targets, or NumPy alone where there is no compiler."""
+    try:
+        find_compiler()
+    except CompilerError:
+        return ("numpy",)
+    return TARGETS

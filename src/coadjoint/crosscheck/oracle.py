@@ -1,0 +1,195 @@
+"""Cross-check, oracle: equations to 50 digits, with the envelope of their rounding errors.
+
+Comes in: a `Reference`, which evaluates the *equations* in any arithmetic, and exact doubles. Goes
+out: for each output the exact value and its envelope, the value that the same formula would have if
+every addend and factor were replaced by its magnitude. The error of a floating-point kernel is
+measured against the envelope, k = |computed - exact| / (2^-53 envelope): raw ulp say nothing where
+terms cancel. A wrong sign gives k of about 1e16, so the step from 4 to there is unmistakable.
+Read next: `coadjoint.crosscheck.points`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, localcontext
+from fractions import Fraction
+from typing import Final, Protocol, TypeVar
+
+from mpmath import MPContext
+
+Value = TypeVar("Value")
+
+#: Decimal digits carried: 50 are promised of each output relative to its envelope, and even a
+#: million operations lose no more than 6 of these.
+DIGITS: Final = 60
+
+#: Above this ratio of envelope to magnitude, a divisor may be nothing but rounding error, and a
+#: bound of first order says nothing about the quotient.
+LARGEST_CONDITION: Final = Decimal(2**40)
+
+# `decimal` is written in C and 10 times as fast as `mpmath`, which is asked for sin and cos alone.
+# Contexts of our own: nobody's precision is changed by a check.
+_CONTEXT: Final = Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)
+_DIGITS: Final = MPContext()
+_DIGITS.dps = DIGITS
+_UNIT: Final = Decimal(2.0**-53)
+_FLOOR: Final = Decimal(2.0**-1074)
+
+
+class Reference(Protocol):
+    """Evaluates the equations, not the Program, in any arithmetic that has ``+ * /`` and ``-u``."""
+
+    def evaluate(
+        self,
+        function: str,
+        inputs: Mapping[str, Value],
+        number: Callable[[Fraction], Value],
+        call: Callable[[str, Value], Value],
+    ) -> list[Value]:
+        """All outputs of one function, row by row."""
+        ...
+
+
+class OutsideDomain(Exception):  # noqa: N818  # not an error: a point that says nothing
+    """The equations have no value at a point, or none that doubles could find."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounded:
+    """A value to 50 digits and the envelope of what rounding may do to it.
+
+    Attributes:
+        value: The exact value, up to 60 digits.
+        envelope: At least ``|value|``; how far cancellation and steep functions amplify errors.
+    """
+
+    value: Decimal
+    envelope: Decimal
+
+    def __add__(self, other: Bounded) -> Bounded:
+        return Bounded(self.value + other.value, self.envelope + other.envelope)
+
+    def __mul__(self, other: Bounded) -> Bounded:
+        return Bounded(self.value * other.value, self.envelope * other.envelope)
+
+    def __truediv__(self, other: Bounded) -> Bounded:
+        size = abs(other.value)
+        if other.envelope >= LARGEST_CONDITION * size:
+            raise OutsideDomain
+        condition = other.envelope / size
+        return Bounded(self.value / other.value, self.envelope / size * condition)
+
+    def __neg__(self) -> Bounded:
+        return Bounded(-self.value, self.envelope)
+
+
+def exact(value: float | Fraction) -> Bounded:
+    """A double or a rational constant in this arithmetic.
+
+    >>> exact(Fraction(-1, 4)).envelope
+    Decimal('0.25')
+    """
+    if isinstance(value, Fraction):
+        taken = _CONTEXT.divide(Decimal(value.numerator), Decimal(value.denominator))
+    else:
+        taken = _CONTEXT.create_decimal(value)
+    return Bounded(taken, abs(taken))
+
+
+def call(function: str, argument: Bounded) -> Bounded:
+    """``f(u)``, with envelope ``|f(u)| + |f'(u)| envelope(u)``.
+
+    Raises:
+        OutsideDomain: The square root or logarithm of a number that rounding may make negative.
+    """
+    u = argument.value
+    if function in ("sqrt", "log") and argument.envelope >= LARGEST_CONDITION * u:
+        if function == "sqrt" and argument.envelope == 0:
+            return argument
+        raise OutsideDomain
+    value, slope = _FUNCTIONS[function](u)
+    return Bounded(value, abs(value) + abs(slope) * argument.envelope)
+
+
+def _sqrt(u: Decimal) -> tuple[Decimal, Decimal]:
+    root = u.sqrt()
+    return root, 1 / (2 * root)
+
+
+def _sine_and_cosine(u: Decimal) -> tuple[Decimal, Decimal]:
+    cosine, sine = _DIGITS.cos_sin(_DIGITS.mpf(str(u)))
+    return Decimal(_DIGITS.nstr(sine, DIGITS)), Decimal(_DIGITS.nstr(cosine, DIGITS))
+
+
+#: Value and slope of each function; only the magnitude of the slope is used.
+_FUNCTIONS: Final[dict[str, Callable[[Decimal], tuple[Decimal, Decimal]]]] = {
+    "sqrt": _sqrt,
+    "sin": _sine_and_cosine,
+    "cos": lambda u: _sine_and_cosine(u)[::-1],
+    "exp": lambda u: (u.exp(),) * 2,
+    "log": lambda u: (u.ln(), 1 / u),
+}
+
+
+def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> list[Bounded]:
+    """The outputs of one function at one point, exact, with their envelopes.
+
+    Args:
+        reference: The equations.
+        function: Which function.
+        inputs: State and parameter components by name; doubles, taken as exact.
+
+    Raises:
+        OutsideDomain: The equations have no value there.
+    """
+    with localcontext(_CONTEXT):
+        known = {name: exact(value) for name, value in inputs.items()}
+        try:
+            return reference.evaluate(function, known, exact, call)
+        except ArithmeticError as error:  # e.g. the exponential of 1e300
+            raise OutsideDomain from error
+
+
+def error_in_envelopes(computed: float, bounded: Bounded) -> float:
+    """The error k = |computed - exact| / (2^-53 envelope + 2^-1074).
+
+    The floor of one smallest subnormal stands for results that no double is near.
+
+    >>> error_in_envelopes(1.0, exact(1.0)), error_in_envelopes(float("nan"), exact(1.0))
+    (0.0, inf)
+    """
+    if not math.isfinite(computed):
+        return math.inf
+    with localcontext(_CONTEXT):
+        error = abs(Decimal(computed) - bounded.value)
+        return float(error / (_UNIT * bounded.envelope + _FLOOR))
+
+
+def distance_in_envelopes(one: float, other: float, bounded: Bounded) -> float:
+    """How far two computed values are apart, in the unit of `error_in_envelopes`.
+
+    >>> distance_in_envelopes(1.0, 1.0 + 2.0**-52, exact(1.0))
+    2.0
+    """
+    if not (math.isfinite(one) and math.isfinite(other)):
+        return math.inf
+    with localcontext(_CONTEXT):
+        return float(abs(Decimal(one) - Decimal(other)) / (_UNIT * bounded.envelope + _FLOOR))
+
+
+def error_in_ulp(computed: float, bounded: Bounded) -> float:
+    """The error in units of the last place, for readers; 0 where terms cancel.
+
+    Cancelling means an envelope of more than twice the magnitude: an error in units of the last
+    place would say nothing there (6e11 of them with a perfect kernel).
+
+    >>> error_in_ulp(1.0 + 2.0**-52, exact(1.0))
+    1.0
+    """
+    with localcontext(_CONTEXT):
+        if bounded.envelope > 2 * abs(bounded.value):
+            return 0.0
+        error = abs(Decimal(computed) - bounded.value)
+        return float(error / Decimal(math.ulp(float(bounded.value))))

@@ -1,0 +1,201 @@
+"""Cross-check, points: where kernels are compared, random and hard, the same in every run.
+
+Comes in: names, signs and a seed. Goes out: batches of state and parameters, component first. The
+hard families are those in which faults of floating-point code show: outputs near cancellation,
+nearly equal parameters, zeros and small integers, huge and tiny magnitudes; and, for comparisons of
+bits alone, overflow, infinities, NaN and subnormals.
+Read next: `coadjoint.crosscheck.ladder`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coadjoint.lower.program import Program, run
+
+Array = NDArray[np.float64]
+#: Evaluates one function on states ``(n, N)`` and parameters ``(k,)`` or ``(k, N)``.
+Evaluate = Callable[[Array, Array], Array]
+
+SEED: Final = 20110707
+#: Batches that end in the middle of any vector register, and the single member.
+ODD_SIZES: Final = (1, 2, 3, 7, 8, 15, 17, 1001)
+
+SPECIAL: Final = np.array(
+    [
+        *(0.0, -0.0, 1.0, -1.0, 1.5, np.inf, -np.inf, np.nan),
+        *(2.0**-1074, -(2.0**-1074), 2.0**-1030, 2.0**-1022, -(2.0**-1022)),
+        *(np.finfo(np.float64).max, -np.finfo(np.float64).max, 1e200, -1e160, 1e-170, -1e-200),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Members on which a kernel is evaluated.
+
+    Attributes:
+        state: Shape ``(n, N)``.
+        parameters: Shape ``(k,)`` if shared, else ``(k, N)``.
+    """
+
+    state: Array
+    parameters: Array
+
+    def shared(self) -> Batch:
+        """The same states with the first member's parameters for all."""
+        return Batch(self.state, np.ascontiguousarray(self.parameters[:, 0]))
+
+
+@dataclass(frozen=True)
+class Points:
+    """A source of batches for one system.
+
+    Attributes:
+        states: Number of state components.
+        positive: For each parameter component, whether it must be positive.
+        exponent: Binary exponent that magnitudes may reach, so that no product leaves the range.
+    """
+
+    states: int
+    positive: tuple[bool, ...]
+    exponent: int
+
+    def families(self, seed: int, count: int) -> Mapping[str, Batch]:
+        """Finite points with results in range, ``count`` of each family."""
+        makers = {
+            "random": self._random,
+            "nearly equal": self._nearly_equal,
+            "integers": self._integers,
+            "huge and tiny": self._huge_and_tiny,
+        }
+        shape = (self.states + len(self.positive), count)
+        return {
+            name: self._batch(maker(np.random.default_rng([SEED, seed, number]), shape))
+            for number, (name, maker) in enumerate(makers.items())
+        }
+
+    def special(self, seed: int, count: int) -> Batch:
+        """Overflow, infinities, NaN, subnormals and signed zeros among ordinary numbers."""
+        generator = np.random.default_rng([SEED, seed, 99])
+        shape = (self.states + len(self.positive), count)
+        ordinary = generator.normal(size=shape)
+        strange = generator.choice(SPECIAL, size=shape)
+        return self._batch(np.where(generator.random(shape) < 0.3, strange, ordinary))
+
+    def _batch(self, rows: Array) -> Batch:
+        """Rows as state and parameters, those declared positive made so."""
+        parameters = rows[self.states :]
+        signs = np.array(self.positive, dtype=bool)[:, np.newaxis]
+        positive = np.where(np.abs(parameters) > 0, np.abs(parameters), 1.0)
+        return Batch(rows[: self.states], np.where(signs, positive, parameters))
+
+    def _random(self, generator: np.random.Generator, shape: tuple[int, int]) -> Array:
+        """Normal numbers in one half of the members, six decades of magnitude in the other."""
+        normal = generator.normal(size=shape)
+        wide = np.copysign(10.0 ** generator.uniform(-3, 3, shape), normal)
+        return np.where(np.arange(shape[1]) % 2 == 0, normal, wide)
+
+    def _nearly_equal(self, generator: np.random.Generator, shape: tuple[int, int]) -> Array:
+        """All components of a member equal up to sign and a few units in the last place."""
+        base = np.exp(generator.normal(size=(1, shape[1])))
+        nudge = 1 + generator.integers(-4, 5, shape) * 2.0**-52
+        return np.asarray(base * nudge * generator.choice([-1.0, 1.0], shape))
+
+    def _integers(self, generator: np.random.Generator, shape: tuple[int, int]) -> Array:
+        return generator.choice([-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, 3.0], size=shape)
+
+    def _huge_and_tiny(self, generator: np.random.Generator, shape: tuple[int, int]) -> Array:
+        """Each component of its own magnitude, over the whole range that stays finite."""
+        powers = generator.integers(-self.exponent, self.exponent + 1, shape)
+        return np.ldexp(
+            generator.choice([-1.0, 1.0], shape) * generator.uniform(1, 2, shape), powers
+        )
+
+
+def cancelling(evaluate: Evaluate, batch: Batch, seed: int) -> Batch:
+    """Move one state component of each member so that one output nearly cancels.
+
+    Args:
+        evaluate: The function, e.g. its NumPy kernel.
+        batch: Where to start, with parameters for each member.
+        seed: Chooses the outputs and components.
+    """
+    generator = np.random.default_rng([SEED, seed, 7])
+    members = np.arange(batch.state.shape[1])
+    outputs = evaluate(batch.state, batch.parameters).reshape(-1, members.size).shape[0]
+    row = generator.integers(outputs, size=members.size)
+    column = generator.integers(batch.state.shape[0], size=members.size)
+
+    def moved(component: Array) -> Array:
+        state = batch.state.copy()
+        state[column, members] = component
+        return state
+
+    def output(component: Array) -> Array:
+        values = evaluate(moved(component), batch.parameters).reshape(-1, members.size)
+        return np.asarray(values[row, members])
+
+    start = batch.state[column, members]
+    with np.errstate(all="ignore"):
+        root = _secant(output, start, start * 1.001 + 1e-3)
+        usable = np.isfinite(root) & (np.abs(root) < 1e3 * (1 + np.abs(start)))
+    return Batch(moved(np.where(usable, root, start)), batch.parameters)
+
+
+def _secant(f: Callable[[Array], Array], x0: Array, x1: Array, steps: int = 4) -> Array:
+    """A few secant steps towards a zero; a step that is not finite is not taken."""
+    f0, f1 = f(x0), f(x1)
+    for _ in range(steps):
+        step = f1 * (x1 - x0) / (f1 - f0)
+        x0, f0, x1 = x1, f1, x1 - np.where(np.isfinite(step), step, 0.0)
+        f1 = f(x1)
+    return x1
+
+
+@dataclass(frozen=True, slots=True)
+class _Degree:
+    """How many inputs an intermediate result may multiply or divide; an arithmetic for `run`."""
+
+    degree: int
+
+    def __add__(self, other: _Degree) -> _Degree:
+        return _Degree(max(self.degree, other.degree))
+
+    def __mul__(self, other: _Degree) -> _Degree:
+        return _Degree(self.degree + other.degree)
+
+    __truediv__ = __mul__
+
+    def __neg__(self) -> _Degree:
+        return self
+
+
+def safe_exponent(programs: Mapping[str, Program], elementary: bool) -> int:
+    """The binary exponent e such that inputs in ``2^-e .. 2^e`` keep every result in range.
+
+    Args:
+        programs: All functions of a system.
+        elementary: Whether they call functions beyond sqrt, which leave any range quickly.
+    """
+    largest = max(
+        (degree for program in programs.values() for degree in _degrees(program)), default=1
+    )
+    return 5 if elementary else 900 // max(largest, 1)
+
+
+def _degrees(program: Program) -> Iterator[int]:
+    """Degrees of the outputs; what an output is made of has no larger one."""
+    inputs = {name: _Degree(1) for name in (*program.state, *program.parameters)}
+    outputs = run(program, inputs, _constant, lambda function, argument: argument)
+    return (output.degree for output in outputs)
+
+
+def _constant(value: Fraction) -> _Degree:
+    return _Degree(0)
