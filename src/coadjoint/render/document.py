@@ -1,0 +1,124 @@
+"""Render, documents: a derivation as plain text, as a LaTeX file or as a web page.
+
+Comes in: a `coadjoint.derive.document.Document` as plain JSON values, so that it may come from a
+child process. Goes out: text. Titles and sources are free text of a spec: each format escapes
+whatever a template prints, unless the template marks a formula as safe, and formulas are made of
+restricted names only.
+Read next: `templates/document/text.j2`, the shortest of the three.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Any, Final
+
+from jinja2 import FileSystemLoader, StrictUndefined
+from jinja2.sandbox import ImmutableSandboxedEnvironment
+from markupsafe import Markup
+
+from coadjoint.resources import templates_folder
+
+FORMATS: Final = ("text", "latex", "html")
+#: Columns of the text format; longer formulas go on under their right-hand side.
+WIDTH: Final = 100
+
+_LATEX_ESCAPES: Final = str.maketrans(
+    {character: f"\\{character}" for character in "{}$&#_%"}
+    | {
+        "\\": r"\textbackslash{}",
+        "^": r"\textasciicircum{}",
+        "~": r"\textasciitilde{}",
+        "<": r"\textless{}",
+        ">": r"\textgreater{}",
+    }
+)
+
+
+def render_document(document: Mapping[str, Any], form: str = "text") -> str:
+    """A derivation, ready to read.
+
+    Args:
+        document: The fields of a `coadjoint.derive.document.Document`.
+        form: ``"text"``, ``"latex"`` or ``"html"``.
+
+    >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": "", "lines": ()}
+    >>> top = {"name": "top", "title": "A top", "source": "", "description": "", "route": "r"}
+    >>> print(render_document({**top, "sections": [section]}))
+    A top
+    =====
+    System top, route r.
+    <BLANKLINE>
+    1. Momenta
+       mu = dl/dxi
+    <BLANKLINE>
+    """
+    return _environment(form).get_template(f"document/{form}.j2").render(document=document)
+
+
+@cache
+def _environment(form: str) -> ImmutableSandboxedEnvironment:
+    """The environment of a format: everything printed is escaped, unless marked safe."""
+    delimiters = {"variable_start_string": "<<", "variable_end_string": ">>"} | {
+        "block_start_string": "<%",
+        "block_end_string": "%>",
+        "comment_start_string": "<#",
+        "comment_end_string": "#>",
+    }
+    made = ImmutableSandboxedEnvironment(
+        loader=FileSystemLoader(templates_folder()),
+        undefined=StrictUndefined,
+        autoescape=form == "html",
+        finalize=_unless_safe(latex_escaped if form == "latex" else printable),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
+    )
+    made.filters["aligned"] = aligned
+    return made
+
+
+def _unless_safe(escape: Callable[[str], str]) -> Callable[[Any], Any]:
+    """``escape`` for every printed value that no template has marked as safe."""
+    return lambda value: value if isinstance(value, Markup) else escape(str(value))
+
+
+def printable(text: str) -> str:
+    r"""Text without control characters, which a terminal would obey.
+
+    >>> printable("a\x1b[2Jb\nc")
+    'a [2Jb c'
+    """
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
+def latex_escaped(text: str) -> str:
+    r"""Text in which LaTeX sees no command.
+
+    >>> latex_escaped(r"\write18{rm}")
+    '\\textbackslash{}write18\\{rm\\}'
+    """
+    return printable(text).translate(_LATEX_ESCAPES)
+
+
+def aligned(lines: Sequence[Mapping[str, str]]) -> list[str]:
+    """Lines ``left = right`` with their equals signs in one column, long ones continued.
+
+    >>> aligned([{"text": "a = 1"}, {"text": "long = 2"}])
+    ['a    = 1', 'long = 2']
+    """
+    sides = [line["text"].split(" = ", 1) for line in lines]
+    width = max((len(left) for left, _ in sides), default=0)
+    return [
+        piece
+        for left, right in sides
+        for piece in textwrap.wrap(
+            f"{left:<{width}} = {right}",
+            WIDTH - 6,
+            subsequent_indent=" " * (width + 3),
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    ]
