@@ -28,7 +28,9 @@ def read_c(text: str, name: str) -> list[Body]:
         raise failure(f"kernel.c has no function {name!r}", name)
     body = re.sub(r"/\*.*?\*/", "", found[1], flags=re.DOTALL)
     branches = re.fullmatch(
-        r"\s*if \(parameters_stride == 0\) \{(.*)\} else \{(.*)\}\s*|(.*)", body, re.DOTALL
+        r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
+        body,
+        re.DOTALL,
     )
     assert branches, "the last alternative matches anything"
     if branches[3] is not None:
@@ -69,11 +71,20 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
     elif given:
         body.inputs[given[1]] = ("parameters", int(given[2]))
     elif assigned:
-        body.statements.append((assigned[1], _Reader(assigned[2], name).whole()))
+        body.statements.append((assigned[1], read_expression(assigned[2], name)))
     elif output:
-        body.outputs.append((int(output[1]), _Reader(output[2], name).whole()))
+        body.outputs.append((int(output[1]), read_expression(output[2], name)))
     elif line and not re.fullmatch(r"\(void\)\w+", line):
         raise failure(f"kernel.c: {line!r} is no line of our template", name)
+
+
+def read_expression(text: str, name: str) -> Node:
+    """A node from a C expression; ``name`` is the function it stands in, for messages.
+
+    >>> read_expression("a - 2.0", "rhs")
+    Add(left=Symbol(name='a'), right=Negate(operand=Number(value=Fraction(2, 1))))
+    """
+    return _Reader(text, name).whole()
 
 
 class _Reader:

@@ -29,6 +29,15 @@ def read_python(text: str, name: str) -> Body:
     return body
 
 
+def read_expression(text: str, name: str) -> Node:
+    """A node from a Python expression; ``name`` is the function it stands in, for messages.
+
+    >>> read_expression("-np.sqrt(a)", "rhs")
+    Negate(operand=Call(function='sqrt', argument=Symbol(name='a')))
+    """
+    return _node(ast.parse(text.strip(), mode="eval").body, name)
+
+
 def _functions(module: ast.Module, name: str) -> dict[str, ast.FunctionDef]:
     """The functions of a module that does nothing but define them, each once."""
     functions: dict[str, ast.FunctionDef] = {}
@@ -68,9 +77,9 @@ def _read_assignment(target: ast.expr, value: ast.expr, body: Body, name: str) -
         case (ast.Name(), ast.Subscript(ast.Name(array), ast.Constant(row))):
             _read_names([target], array, row, body, name)
         case (ast.Name(id=assigned), _):
-            body.statements.append((assigned, _python_node(value, name)))
+            body.statements.append((assigned, _node(value, name)))
         case (ast.Subscript(ast.Name("out"), ast.Constant(int(row))), _):
-            body.outputs.append((row, _python_node(value, name)))
+            body.outputs.append((row, _node(value, name)))
         case _:
             raise failure(f"kernel.py: {ast.unparse(target)!r} is assigned", name)
 
@@ -86,7 +95,7 @@ def _read_names(
             body.inputs[target.id] = (array, first + offset)
 
 
-def _python_node(tree: ast.expr, name: str) -> Node:
+def _node(tree: ast.expr, name: str) -> Node:
     """A node from the forms that the printer writes, and from no others."""
     match tree:
         case ast.Name(id=symbol):
@@ -94,12 +103,12 @@ def _python_node(tree: ast.expr, name: str) -> Node:
         case ast.Constant(value=float(value)):
             return Number(Fraction(value))
         case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return Negate(_python_node(operand, name))
+            return Negate(_node(operand, name))
         case ast.BinOp(left=left, op=operator, right=right):
             sign = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}.get(type(operator))
             if sign:
-                return joined(_python_node(left, name), sign, _python_node(right, name))
+                return joined(_node(left, name), sign, _node(right, name))
         case ast.Call(ast.Attribute(ast.Name("np"), function), [argument], []):
             if function in FUNCTIONS:
-                return Call(function, _python_node(argument, name))
+                return Call(function, _node(argument, name))
     raise failure(f"kernel.py: {ast.unparse(tree)!r} is no form of a Program", name)

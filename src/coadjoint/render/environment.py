@@ -18,7 +18,7 @@ from jinja2 import FileSystemLoader, StrictUndefined, meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from coadjoint.errors import SpecError
-from coadjoint.render.printers import c_assignment, python_assignment, python_entry
+from coadjoint.render.printers import c_assignment, python_assignment, python_call
 from coadjoint.resources import templates_folder
 
 #: What would begin or end a comment or a string, or glue two lines together, in C or in Python.
@@ -38,7 +38,7 @@ def environment() -> ImmutableSandboxedEnvironment:
     )
     made.filters["python_assignment"] = python_assignment
     made.filters["c_assignment"] = c_assignment
-    made.filters["python_entry"] = python_entry
+    made.filters["python_call"] = python_call
     return made
 
 

@@ -194,6 +194,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "functions": [_function(program) for program in context.programs],
             "elementary": tuple_text(map(quoted, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
+            "system": _system(context.name, identity),
             "declared": {
                 "STATE": [quantity.arguments() for quantity in context.state],
                 "PARAMETERS": [quantity.arguments() for quantity in context.parameters],
@@ -202,6 +203,12 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
         },
     )
     return {file: rendered[template] for file, template in TEMPLATES.items()}
+
+
+def _system(name: str, identity: str) -> list[str]:
+    """The arguments of the System that a generated package makes."""
+    tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
+    return [quoted(name), *tables, quoted(identity)]
 
 
 def _licence(expression: str) -> str:

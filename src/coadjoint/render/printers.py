@@ -183,19 +183,19 @@ def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str
     return _indented([f"{to} ={note}", *("    " + text for text in inner)], column)
 
 
-def python_entry(arguments: Sequence[str], function: str, column: int = 4) -> str:
-    """``function(arguments),`` as one entry of a list, broken as our formatter breaks it.
+def python_call(arguments: Sequence[str], to: str, column: int, end: str = "") -> str:
+    """``to(arguments)`` and ``end``, broken as our formatter breaks it.
 
-    >>> python_entry(['"m"', "shape=()"], "Quantity")
+    >>> python_call(['"m"', "shape=()"], to="Quantity", column=4, end=",")
     'Quantity("m", shape=()),'
     """
     joined = ", ".join(arguments)
-    if column + len(f"{function}({joined}),") <= WIDTH:
-        return f"{function}({joined}),"
+    if column + len(f"{to}({joined}){end}") <= WIDTH:
+        return f"{to}({joined}){end}"
     if column + 4 + len(joined) <= WIDTH:
-        return _indented([f"{function}(", "    " + joined, "),"], column)
+        return _indented([f"{to}(", "    " + joined, f"){end}"], column)
     lines = ["    " + line for entry in arguments for line in _entry_lines(entry, column + 4)]
-    return _indented([f"{function}(", *lines, "),"], column)
+    return _indented([f"{to}(", *lines, f"){end}"], column)
 
 
 def _entry_lines(entry: str, column: int) -> list[str]:

@@ -1,0 +1,369 @@
+"""Writing: each file is old or new, whatever fails and whenever a run is killed."""
+
+import errno
+import fcntl
+import json
+import os
+import re
+import resource
+import signal
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from coadjoint.errors import OutputError
+from coadjoint.render import write
+from coadjoint.render.compare import compare_tree, is_intact
+from coadjoint.render.write import (
+    LOCK,
+    MANIFEST,
+    MARK,
+    TEMPORARY,
+    GeneratedSystem,
+    locked,
+    manifest_text,
+    read_manifest,
+    write_systems,
+)
+
+CALLS = ("open", "write", "fsync", "replace", "unlink")
+
+
+def systems(version, names=("heavy_top", "rigid_body")):
+    """Two systems of two files each, all of whose bytes tell the version."""
+    return {
+        name: GeneratedSystem(
+            {
+                "kernel.py": f"{MARK.decode()} {name} {version}\n" * 50,
+                "kernel.c": f"/* {name} {version} */\n" * 50,
+            },
+            {"id": version, "spec_sha256": "0", "route": "euler-poincare", "rungs": [1, 2, 3]},
+        )
+        for name in names
+    }
+
+
+def tree(version):
+    """What `write_systems` must leave of a version, text by path."""
+    made = systems(version)
+    texts = {
+        f"{name}/{file}": text
+        for name, system in made.items()
+        for file, text in system.texts.items()
+    }
+    entries = {name: system.entry() for name, system in made.items()}
+    return {**texts, MANIFEST: manifest_text(entries, {"c": version})}
+
+
+def put(folder, version, **options):
+    """Write a version."""
+    write_systems(folder, systems(version), {"c": version}, **options)
+
+
+def on_disk(folder):
+    """Text by path, the lock file apart."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_text()
+        for path in folder.rglob("*")
+        if path.is_file() and path.name != LOCK
+    }
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A tree with version "old" in it."""
+    put(tmp_path, "old")
+    return tmp_path
+
+
+def test_what_is_written_is_what_was_given(folder):
+    """Files, folders and manifest are the given ones and nothing else."""
+    assert on_disk(folder) == tree("old")
+    assert compare_tree(tree("old"), folder) == []
+    put(folder, "new")
+    assert on_disk(folder) == tree("new")
+
+
+def test_manifest_is_sorted_and_free_of_time_and_place(folder):
+    """The manifest is the same text for the same tree, whatever the order of the systems."""
+    text = (folder / MANIFEST).read_text()
+    content = json.loads(text)
+    assert text == json.dumps(content, indent=2, sort_keys=True) + "\n"
+    assert content["schema"] == 1
+    assert sorted(content["systems"]["heavy_top"]) == [
+        "files",
+        "id",
+        "route",
+        "rungs",
+        "spec_sha256",
+    ]
+    turned = dict(reversed(systems("old").items()))
+    write_systems(folder, turned, {"c": "old"})
+    assert (folder / MANIFEST).read_text() == text
+    assert str(folder) not in text
+
+
+def test_other_systems_stay_in_a_partial_run(folder):
+    """Writing one system leaves the other and its entry in the manifest alone."""
+    write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"})
+    assert is_intact(folder, "heavy_top")
+    assert is_intact(folder, "rigid_body")
+    assert "old" in (folder / "rigid_body/kernel.py").read_text()
+    entries = read_manifest(folder)["systems"]
+    assert [entries[name]["id"] for name in ("heavy_top", "rigid_body")] == ["new", "old"]
+
+
+def test_stale_outputs_are_removed(folder):
+    """Files that a system no longer has go, and in a complete run systems that are gone."""
+    (folder / "heavy_top/kernel.f90").write_text("stale")
+    (folder / "mine").mkdir()
+    (folder / "mine/notes.txt").write_text("not generated")
+    write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"}, complete=True)
+    assert not (folder / "heavy_top/kernel.f90").exists()
+    assert not (folder / "rigid_body").exists()
+    assert (folder / "mine/notes.txt").read_text() == "not generated"
+    assert list(read_manifest(folder)["systems"]) == ["heavy_top"]
+
+
+def test_leftovers_of_killed_runs_are_removed(folder):
+    """Temporary files of another process disappear in the next run."""
+    for place in (folder, folder / "heavy_top"):
+        (place / ".coadjoint-0123456789abcdef.tmp").write_text("torn")
+    put(folder, "new")
+    assert on_disk(folder) == tree("new")
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[]", '{"schema": 99}'])
+def test_a_damaged_manifest_counts_as_none(folder, damage):
+    """A manifest that cannot be read is never trusted, and the next run writes it anew."""
+    (folder / MANIFEST).write_text(damage)
+    assert read_manifest(folder)["systems"] == {}
+    assert not is_intact(folder, "heavy_top")
+    put(folder, "new")
+    assert on_disk(folder) == tree("new")
+
+
+def test_intact_means_the_very_bytes(folder):
+    """A changed byte, a missing file and an extra file are each noticed."""
+    assert is_intact(folder, "heavy_top")
+    assert not is_intact(folder, "no_such_system")
+    kernel = folder / "heavy_top/kernel.c"
+    text = kernel.read_text()
+    kernel.write_text(text + " ")
+    assert not is_intact(folder, "heavy_top")
+    kernel.write_text(text)
+    (folder / "heavy_top/extra.py").write_text("")
+    assert not is_intact(folder, "heavy_top")
+    (folder / "heavy_top/extra.py").unlink()
+    kernel.unlink()
+    assert not is_intact(folder, "heavy_top")
+
+
+def test_a_symlink_at_an_output_is_replaced_and_not_followed(folder, tmp_path_factory):
+    """The file that a planted link points to keeps its bytes."""
+    victim = tmp_path_factory.mktemp("elsewhere") / "victim"
+    victim.write_text("precious")
+    (folder / "heavy_top/kernel.c").unlink()
+    (folder / "heavy_top/kernel.c").symlink_to(victim)
+    (folder / MANIFEST).unlink()
+    (folder / MANIFEST).symlink_to(victim)
+    put(folder, "new")
+    assert victim.read_text() == "precious"
+    assert not (folder / "heavy_top/kernel.c").is_symlink()
+    assert on_disk(folder) == tree("new")
+
+
+def test_a_symlink_at_a_folder_is_refused(folder, tmp_path_factory):
+    """A system's folder that is a link leads nowhere."""
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    for name in ("heavy_top", "rigid_body"):
+        (folder / name).rename(elsewhere / name)
+        (folder / name).symlink_to(elsewhere / name)
+    with pytest.raises(OutputError, match="heavy_top"):
+        put(folder, "new")
+    assert "old" in (elsewhere / "heavy_top/kernel.c").read_text()
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_read_only_folder_is_named(folder):
+    """A folder without write permission is an error that names it; old files stay."""
+    (folder / "heavy_top").chmod(0o500)
+    with pytest.raises(OutputError, match="heavy_top"):
+        put(folder, "new")
+    (folder / "heavy_top").chmod(0o700)
+    assert on_disk(folder) == tree("old")
+
+
+class Spoiler:
+    """Stands in for calls of the operating system; the chosen one does something else."""
+
+    def __init__(self, monkeypatch, at, act):
+        self.count, self.at, self.act = 0, at, act
+        self.seen = Counter()
+        for name in CALLS:
+            monkeypatch.setattr(write.os, name, self.watched(name, getattr(os, name)))
+
+    def watched(self, name, real):
+        """A stand-in for one call."""
+
+        def call(*args, **options):
+            self.count += 1
+            self.seen[name] += 1
+            if self.count == self.at:
+                self.act(name)
+            return real(*args, **options)
+
+        return call
+
+
+def calls_of_a_run(folder):
+    """How many calls a run makes, so that each can fail in turn."""
+    with pytest.MonkeyPatch.context() as patch:
+        spoiler = Spoiler(patch, at=0, act=lambda name: None)
+        put(folder, "old")
+    assert min(spoiler.seen[name] for name in ("open", "write", "fsync", "replace")) > 0
+    return spoiler.count
+
+
+def check_whole(folder):
+    """Every file is all old or all new, and no temporary file is called a result."""
+    found = {
+        name: text
+        for name, text in on_disk(folder).items()
+        if not TEMPORARY.fullmatch(Path(name).name)
+    }
+    old, new = tree("old"), tree("new")
+    assert found.keys() == old.keys()
+    for name, text in found.items():
+        assert text in (old[name], new[name]), name
+    return found
+
+
+@pytest.mark.parametrize("code", ["ENOSPC", "EROFS", "EACCES", "EIO"])
+def test_any_call_may_fail(folder, code):
+    """Whichever call fails: the error names a path, files are whole, the next run heals."""
+    for at in range(1, calls_of_a_run(folder) + 1):
+        put(folder, "old")
+
+        def fail(name):
+            raise OSError(getattr(errno, code), os.strerror(getattr(errno, code)))
+
+        with pytest.MonkeyPatch.context() as patch:
+            spoiler = Spoiler(patch, at, fail)
+            with pytest.raises(OutputError, match=re.escape(str(folder))) as caught:
+                put(folder, "new")
+        assert os.strerror(getattr(errno, code)) in str(caught.value)
+        assert caught.value.path.startswith(str(folder))
+        found = check_whole(folder)
+        assert not any(TEMPORARY.fullmatch(path.name) for path in folder.rglob("*"))
+        if not spoiler.seen["replace"]:
+            assert found == tree("old")
+    put(folder, "new")
+    assert on_disk(folder) == tree("new")
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path):
+    """A file where the generated folder should be is an error that names it."""
+    (tmp_path / "generated").write_text("a file")
+    with pytest.raises(OutputError, match="generated") as caught:
+        put(tmp_path / "generated", "new")
+    assert "File exists" in str(caught.value)
+
+
+def in_child(act):
+    """Run ``act`` in a forked child; its exit status, or minus the signal that ended it."""
+    child = os.fork()
+    if child == 0:
+        try:
+            act()
+        finally:
+            os._exit(7)
+    _, status = os.waitpid(child, 0)
+    return os.waitstatus_to_exitcode(status)
+
+
+def test_a_run_may_be_killed_at_any_call(folder):
+    """Kill -9 at each step: files are whole, a mixture is not called intact, the next run heals."""
+    mixtures = 0
+    for at in range(1, calls_of_a_run(folder) + 1):
+        put(folder, "old")
+
+        def act(at=at):
+            Spoiler(pytest.MonkeyPatch(), at, lambda name: os.kill(os.getpid(), signal.SIGKILL))
+            put(folder, "new")
+
+        assert in_child(act) == -signal.SIGKILL
+        found = check_whole(folder)
+        for name in ("heavy_top", "rigid_body"):
+            versions = {
+                text == tree("new")[path] for path, text in found.items() if path.startswith(name)
+            }
+            if len(versions) == 2:
+                mixtures += 1
+                assert not is_intact(folder, name)
+        put(folder, "new")
+        assert on_disk(folder) == tree("new")
+    assert mixtures > 0, "the kills fell between files too"
+
+
+def test_a_full_disk_leaves_the_old_tree(folder):
+    """A real limit on file size: nothing is replaced, nothing is left over."""
+
+    def act():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        try:
+            put(folder, "new")
+        except OutputError as error:
+            os._exit(0 if "File too large" in str(error) and "heavy_top" in str(error) else 1)
+
+    assert in_child(act) == 0
+    assert on_disk(folder) == tree("old")
+
+
+def test_two_runs_at_once_end_as_one_of_them(folder):
+    """Writers race six times; the tree is always that of a single run."""
+    for _ in range(6):
+        children = []
+        for version in ("old", "new"):
+            child = os.fork()
+            if child == 0:
+                put(folder, version)
+                os._exit(0)
+            children.append(child)
+        assert [os.waitpid(child, 0)[1] for child in children] == [0, 0]
+        assert on_disk(folder) in (tree("old"), tree("new"))
+
+
+def test_a_second_run_says_that_it_waits(folder):
+    """While another holds the lock, a run calls back once and waits; else it does not."""
+    waited = []
+    put(folder, "old", on_wait=lambda: waited.append("early"))
+    handle = os.open(folder / LOCK, os.O_RDWR)
+    fcntl.flock(handle, fcntl.LOCK_EX)
+
+    def release():
+        waited.append("waiting")
+        os.close(handle)
+
+    with locked(folder, on_wait=release):
+        assert waited == ["waiting"]
+
+
+def test_data_reaches_the_disk_before_the_rename(folder, monkeypatch):
+    """Every temporary file is synced before any takes its place, each folder after."""
+    order = []
+    for name in ("fsync", "replace"):
+        real = getattr(os, name)
+        monkeypatch.setattr(
+            write.os,
+            name,
+            lambda *args, real=real, name=name, **options: (
+                order.append(name),
+                real(*args, **options),
+            )[1],
+        )
+    put(folder, "new")
+    expected = ["fsync"] * 5 + (["replace"] * 2 + ["fsync"]) * 2 + ["replace", "fsync"]
+    assert order == expected
