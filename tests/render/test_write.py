@@ -24,9 +24,11 @@ from coadjoint.render.write import (
     locked,
     manifest_text,
     read_manifest,
+    tree_texts,
     write_systems,
 )
 
+IDS = {"old": "0123456789abcdef", "new": "fedcba9876543210"}
 CALLS = ("open", "write", "fsync", "replace", "unlink")
 
 
@@ -35,10 +37,13 @@ def systems(version, names=("heavy_top", "rigid_body")):
     return {
         name: GeneratedSystem(
             {
-                "kernel.py": f"{MARK.decode()} {name} {version}\n" * 50,
+                "kernel.py": f"{MARK.decode()} {name} {version}\n" * 50
+                + f'ID = "{IDS[version]}"\n',
                 "kernel.c": f"/* {name} {version} */\n" * 50,
             },
-            {"id": version, "spec_sha256": "0", "route": "euler-poincare", "rungs": [1, 2, 3]},
+            spec_sha256="0",
+            route="euler-poincare",
+            rungs=(1, 2, 3),
         )
         for name in names
     }
@@ -47,13 +52,8 @@ def systems(version, names=("heavy_top", "rigid_body")):
 def tree(version):
     """What `write_systems` must leave of a version, text by path."""
     made = systems(version)
-    texts = {
-        f"{name}/{file}": text
-        for name, system in made.items()
-        for file, text in system.texts.items()
-    }
-    entries = {name: system.entry() for name, system in made.items()}
-    return {**texts, MANIFEST: manifest_text(entries, {"c": version})}
+    entries = {name: system.record() for name, system in made.items()}
+    return tree_texts(made, manifest_text(entries, {"c": version}))
 
 
 def put(folder, version, **options):
@@ -111,7 +111,7 @@ def test_other_systems_stay_in_a_partial_run(folder):
     assert is_intact(folder, "rigid_body")
     assert "old" in (folder / "rigid_body/kernel.py").read_text()
     entries = read_manifest(folder)["systems"]
-    assert [entries[name]["id"] for name in ("heavy_top", "rigid_body")] == ["new", "old"]
+    assert [entries[name]["id"] for name in ("heavy_top", "rigid_body")] == [IDS["new"], IDS["old"]]
 
 
 def test_stale_outputs_are_removed(folder):
@@ -119,7 +119,7 @@ def test_stale_outputs_are_removed(folder):
     (folder / "heavy_top/kernel.f90").write_text("stale")
     (folder / "mine").mkdir()
     (folder / "mine/notes.txt").write_text("not generated")
-    write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"}, complete=True)
+    write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"}, keep=["heavy_top"])
     assert not (folder / "heavy_top/kernel.f90").exists()
     assert not (folder / "rigid_body").exists()
     assert (folder / "mine/notes.txt").read_text() == "not generated"

@@ -94,6 +94,7 @@ def crosscheck(
         bit_points: Points of bitwise comparison for each function.
 
     Raises:
+        CompilerError: The compiler asked for does not work.
         CrossCheckError: A rung failed.
     """
     chosen = available_targets() if targets is None else tuple(targets)
@@ -114,9 +115,15 @@ def crosscheck(
 
 
 def available_targets() -> tuple[str, ...]:
-    """All targets, or NumPy alone where there is no compiler."""
+    """All targets, or NumPy alone where there is no compiler.
+
+    Raises:
+        CompilerError: One was asked for that does not work.
+    """
     try:
         find_compiler()
-    except CompilerError:
+    except CompilerError as error:
+        if error.found:
+            raise
         return ("numpy",)
     return TARGETS

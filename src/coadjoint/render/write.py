@@ -15,7 +15,7 @@ import os
 import re
 import secrets
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,17 +41,46 @@ class GeneratedSystem:
 
     Attributes:
         texts: Text by file name.
-        record: What the manifest says of it beside the hashes of its files: id, hash of the spec,
-            route, rungs passed; JSON values.
+        spec_sha256: Hash of the spec's bytes.
+        route: The route whose equations were emitted.
+        rungs: The rungs of the ladder that were passed.
     """
 
     texts: Mapping[str, str]
-    record: Mapping[str, Any]
+    spec_sha256: str
+    route: str
+    rungs: tuple[int, ...]
 
-    def entry(self) -> dict[str, Any]:
+    def record(self) -> dict[str, Any]:
         """Its entry in the manifest."""
-        files = {name: text_hash(text) for name, text in self.texts.items()}
-        return {**self.record, "files": files}
+        return {
+            "id": identity_of(self.texts),
+            "spec_sha256": self.spec_sha256,
+            "route": self.route,
+            "rungs": list(self.rungs),
+            "files": {name: text_hash(text) for name, text in self.texts.items()},
+        }
+
+
+def identity_of(texts: Mapping[str, str]) -> str:
+    """The id that the files of a system carry.
+
+    >>> identity_of({"kernel.py": 'ID = "0123456789abcdef"'})
+    '0123456789abcdef'
+    """
+    found = re.search(r'^ID = "([0-9a-f]{16})"$', texts["kernel.py"], re.MULTILINE)
+    assert found, "every kernel.py is rendered with its id"
+    return found[1]
+
+
+def tree_texts(systems: Mapping[str, GeneratedSystem], manifest: str) -> dict[str, str]:
+    """Every text of a tree by its path below the generated folder."""
+    texts = {
+        f"{name}/{file}": text
+        for name, system in systems.items()
+        for file, text in system.texts.items()
+    }
+    return {**texts, MANIFEST: manifest}
 
 
 def text_hash(text: str) -> str:
@@ -63,7 +92,7 @@ def manifest_text(systems: Mapping[str, Mapping[str, Any]], templates: Mapping[s
     """The manifest as text: sorted, so that the same tree has the same bytes.
 
     Args:
-        systems: Entries by system, as `GeneratedSystem.entry` makes them.
+        systems: Entries by system, as `GeneratedSystem.record` makes them.
         templates: Hashes of the templates by path.
 
     >>> manifest_text({}, {"c/kernel.c.j2": "00"}).splitlines()[1]
@@ -86,7 +115,7 @@ def write_systems(
     folder: Path,
     systems: Mapping[str, GeneratedSystem],
     templates: Mapping[str, str],
-    complete: bool = False,
+    keep: Collection[str] | None = None,
     on_wait: Callable[[], None] = lambda: None,
 ) -> None:
     """Write systems and the manifest into the generated tree.
@@ -98,8 +127,8 @@ def write_systems(
         folder: The generated tree; made if missing.
         systems: What to write, by name.
         templates: Hashes of the templates by path, for the manifest.
-        complete: Whether the tree consists of these systems alone; others are then removed. Else
-            they stay as they are.
+        keep: The systems that belong to the tree, written now or before; others are removed. None
+            keeps every one.
         on_wait: Called once if another run holds the lock.
 
     Raises:
@@ -108,14 +137,18 @@ def write_systems(
     with _reported(folder):
         folder.mkdir(parents=True, exist_ok=True)
     with locked(folder, on_wait):
-        kept = {} if complete else read_manifest(folder)["systems"]
-        entries = kept | {name: system.entry() for name, system in systems.items()}
+        entries = {
+            name: entry
+            for name, entry in read_manifest(folder)["systems"].items()
+            if keep is None or name in keep
+        }
+        entries |= {name: system.record() for name, system in systems.items()}
         contents = {name: system.texts for name, system in systems.items()}
         write_folders(folder, contents, last={MANIFEST: manifest_text(entries, templates)})
         for name, texts in contents.items():
             _remove_strangers(folder / name, texts)
-        if complete:
-            _remove_other_systems(folder, systems)
+        if keep is not None:
+            _remove_other_systems(folder, keep)
 
 
 def write_folders(
@@ -199,11 +232,11 @@ def _remove_strangers(folder: Path, texts: Mapping[str, str]) -> None:
                 path.unlink()
 
 
-def _remove_other_systems(folder: Path, systems: Mapping[str, GeneratedSystem]) -> None:
+def _remove_other_systems(folder: Path, keep: Collection[str]) -> None:
     """Remove folders of systems that are gone, known by the first line of their kernel."""
     for path in folder.iterdir():
         with _reported(path):
-            if path.name not in systems and not path.is_symlink() and _is_generated(path):
+            if path.name not in keep and not path.is_symlink() and _is_generated(path):
                 shutil.rmtree(path)
 
 
