@@ -1,0 +1,96 @@
+"""Commands: what SYSTEM and SPEC on the command line mean.
+
+Comes in: a word of the command line. Goes out: the path of a spec, or a loaded system. A name means
+a shipped system; anything with a slash or ending in ``.toml`` is a file. Names are never looked up
+in the working folder, so that a command does not run code that lies there by chance.
+"""
+
+from __future__ import annotations
+
+import os
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from coadjoint.errors import SpecError
+from coadjoint.resources import derivations_folder, systems_folder
+
+if TYPE_CHECKING:
+    from coadjoint.solve.system import System
+
+
+def shipped_names() -> list[str]:
+    """Names of the shipped systems, sorted.
+
+    >>> "heavy_top" in shipped_names()
+    True
+    """
+    return sorted(path.stem for path in derivations_folder().glob("*.toml"))
+
+
+def is_path(system: str) -> bool:
+    """Whether a word means a file.
+
+    >>> is_path("heavy_top"), is_path("my.toml"), is_path("./heavy_top")
+    (False, True, True)
+    """
+    return "/" in system or os.sep in system or system.endswith(".toml")
+
+
+def spec_path(system: str) -> Path:
+    """The spec that a word of the command line means.
+
+    Raises:
+        SpecError: No shipped system of that name; the nearest one is named.
+    """
+    if is_path(system):
+        return Path(system)
+    names = shipped_names()
+    if system not in names:
+        near = get_close_matches(system, names, n=1)
+        hint = f"Did you mean {near[0]!r}?" if near else "A spec of your own is a path: ./my.toml."
+        raise SpecError(
+            f"no shipped system is called {system!r}; expected one of {', '.join(names)}. {hint}",
+            found=system,
+        )
+    return derivations_folder() / f"{system}.toml"
+
+
+def load_system(system: str) -> System:
+    """The system of a word: a shipped one, or that of a spec, built if it has changed.
+
+    Raises:
+        CoadjointError: The spec is not in order, or the shipped system has not been generated.
+    """
+    path = spec_path(system)
+    if is_path(system):
+        from coadjoint.cli.output import progress_bars
+        from coadjoint.loading import load
+
+        with progress_bars() as progress:
+            return load(path, progress=progress)
+    from coadjoint.solve.system import load_folder
+
+    folder = systems_folder() / path.stem
+    if not (folder / "__init__.py").is_file():
+        raise SpecError(
+            f"{folder}: the system {path.stem!r} has not been generated. "
+            f"Run `coadjoint regenerate {path.stem}`.",
+            found=path.stem,
+        )
+    return load_folder(folder)
+
+
+def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """What a shell may complete: names of shipped systems, and specs in the folder at hand."""
+    folder, _, begun = incomplete.rpartition("/")
+    lead = f"{folder}/" if folder else ""
+    names = [] if folder else shipped_names()
+    files = [f"{lead}{path.name}" for path in sorted(Path(folder or ".").glob("*.toml"))]
+    return [word for word in [*names, *files] if word.startswith(lead + begun)]
+
+
+#: The argument ``SYSTEM|SPEC`` of a command.
+system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete=_complete)

@@ -1,0 +1,90 @@
+"""Command ``crosscheck``: the ladder's numeric rungs on the files as they stand, with figures.
+
+Comes in: a spec and its generated files. Goes out: for each function and target the error against
+50 digits and the points at which NumPy and C have the same bits. Read next:
+`coadjoint.crosscheck.ladder`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from coadjoint import limits
+from coadjoint.cli.arguments import load_system, spec_path, system_argument
+from coadjoint.cli.output import json_option, print_json, print_table
+
+
+@click.command("crosscheck")
+@system_argument
+@click.option(
+    "--points",
+    type=click.IntRange(1, 10_000_000),
+    default=200_000,
+    show_default=True,
+    help="Points at which NumPy and C are compared bit for bit, for each function.",
+)
+@json_option
+def command(system: str, points: int, as_json: bool) -> None:
+    """Check the generated kernels against 50 digits and each other."""
+    from coadjoint.sandbox import run_bounded
+
+    path, folder = spec_path(system), load_system(system).folder
+    report = run_bounded(
+        "coadjoint.cli.crosscheck:report_record",
+        {"path": str(path), "folder": str(folder), "points": points},
+        seconds=limits.WORKER_SECONDS,
+        memory=limits.WORKER_BYTES,
+    )
+    if as_json:
+        print_json(report)
+    else:
+        _print(report, points)
+
+
+def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """Figures of the ladder as JSON values; runs in a bounded child."""
+    from coadjoint.crosscheck.ladder import crosscheck
+    from coadjoint.crosscheck.reference import Reference
+    from coadjoint.derive import derive
+    from coadjoint.lower.lowering import lower
+    from coadjoint.solve.system import load_folder
+    from coadjoint.spec import read_spec
+
+    folder = Path(argument["folder"])
+    equations = derive(read_spec(Path(argument["path"])))
+    texts = {name: (folder / name).read_text("utf-8") for name in ("kernel.py", "kernel.c")}
+    report = crosscheck(
+        lower(equations),
+        texts,
+        Reference(equations),
+        load_folder(folder),
+        bit_points=argument["points"],
+    )
+    return report.as_record()
+
+
+def _print(report: Mapping[str, Any], points: int) -> None:
+    """The figures as a table, and the rungs below it."""
+    rows = []
+    for function, targets in report["figures"].items():
+        for target, figures in targets.items():
+            equal = report["equal"].get(function) if target == "c" else None
+            rows.append(
+                (
+                    function,
+                    target,
+                    f"{figures['k']:.2f}",
+                    f"{figures['ulp']:.3g}",
+                    str(figures["points"]),
+                    "" if equal is None else f"{equal}/{points}",
+                )
+            )
+    columns = ("function", "target", ">k", ">ulp", ">points", ">same bits as NumPy")
+    print_table(columns, rows, title=f"Cross-check of {report['system']}")
+    for rung, status in report["rungs"].items():
+        click.echo(f"rung {rung}: {status}")
+    click.echo(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")

@@ -1,0 +1,76 @@
+"""Command ``new``: a commented spec to start from.
+
+Comes in: a name. Goes out: a file that loads, proves and runs as it stands, for its owner to edit.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import click
+
+from coadjoint.errors import OutputError, SpecError
+
+STARTER: Final = """\
+# A free rigid body, to edit into a system of your own. Try it as it stands:
+#     coadjoint prove {name}.toml
+#     coadjoint simulate {name}.toml --plot {name}.png
+# `coadjoint schema > spec.schema.json` writes a schema, by which editors complete and check
+# this file: make its first line  #:schema spec.schema.json
+
+title = "My system"
+source = "where the equations can be looked up"
+routes = ["euler-poincare", "lie-poisson"] # the first is emitted, the others are proved equal
+
+[algebra]
+name = "so(3)"      # or se(3); others are declared by brackets or matrices
+invariance = "left" # body frame; "right" is the space frame
+
+[variables]
+Omega = {{ role = "velocity", unit = "1/s", doc = "body angular velocity" }}
+Pi = {{ role = "momentum", unit = "kg m^2/s", doc = "body angular momentum" }}
+# Gamma = {{ role = "advected", representation = "vector", doc = "the vertical" }}
+
+[parameters]
+I = {{ shape = [3], positive = true, default = [1, 2, 3], unit = "kg m^2", doc = "inertia" }}
+
+[lagrangian] # quadratic in the velocities
+l = "dot(Omega, diag(I)*Omega)/2"
+
+[observables] # scalars of your own, emitted beside energy, Casimirs and velocities
+spin = {{ expression = "norm(Omega)", unit = "1/s" }}
+
+[claims] # proved at every regeneration; a false one is refuted with a counter-example
+casimirs = ["dot(Pi, Pi)"]
+conserved = ["energy"]
+"""
+
+
+@click.command("new")
+@click.argument("name")
+def command(name: str) -> None:
+    """Write NAME.toml, a commented spec to start from."""
+    from coadjoint.spec.names import system_refusal
+
+    name = name.removesuffix(".toml")
+    refusal = system_refusal(name)
+    if refusal is not None:
+        problem, expected, hint = refusal
+        raise SpecError(f"{problem}; expected {expected}. {hint}".rstrip(), found=name)
+    path = Path(f"{name}.toml")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(STARTER.format(name=name))
+    except FileExistsError:
+        raise SpecError(
+            f"{path}: the file is there already and stays as it is. Choose another name.",
+            path=str(path),
+            found=name,
+        ) from None
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot be written: {error.strerror}. Go to a folder of your own.",
+            path=str(path),
+        ) from error
+    click.echo(f"{path} written; try `coadjoint prove {path}`")

@@ -1,0 +1,105 @@
+"""Commands: how they speak. Tables and JSON to standard output, progress to standard error.
+
+Comes in: rows and records. Goes out: text. rich is imported on first use, since it costs as much
+time as the rest of a small command.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from coadjoint.errors import OutputError
+
+#: Called with system, stage, stages done, stages in all.
+Progress = Callable[[str, str, int, int], None]
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON for programs.")
+
+
+def printable(text: str) -> str:
+    """Text without control characters, which a terminal would obey."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
+def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> None:
+    """A table on standard output; columns whose name begins with ``>`` are aligned to the right.
+
+    In a pipe no cell is ever cut or wrapped, whatever the width.
+    """
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:
+        console.width = 10_000
+    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD)
+    for column in columns:
+        justify = "right" if column.startswith(">") else "left"
+        table.add_column(column.removeprefix(">"), justify=justify)  # type: ignore[arg-type]
+    for row in rows:
+        table.add_row(*(Text(printable(cell)) for cell in row))
+    console.print(table)
+
+
+def print_json(value: Any) -> None:
+    """A record on standard output, as JSON."""
+    click.echo(json.dumps(value, indent=2))
+
+
+@contextmanager
+def progress_bars() -> Iterator[Progress]:
+    """A bar for each system on standard error, if that is a terminal; silence otherwise."""
+    if not sys.stderr.isatty():
+        yield lambda *_: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        TextColumn("{task.fields[system]}"),
+        BarColumn(),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
+        tasks: dict[str, Any] = {}
+
+        def progress(system: str, stage: str, done: int, total: int) -> None:
+            if system not in tasks:
+                tasks[system] = bars.add_task(stage, total=total, system=system)
+            bars.update(tasks[system], description=stage, completed=done, total=total)
+
+        yield progress
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file that the user named.
+
+    Raises:
+        OutputError: It cannot be written; the message names it.
+    """
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot be written: {error.strerror}. Choose another file or free the place.",
+            path=str(path),
+        ) from error
+
+
+def plural(count: int, noun: str) -> str:
+    """A count in words.
+
+    >>> plural(1, "system"), plural(3, "system")
+    ('1 system', '3 systems')
+    """
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

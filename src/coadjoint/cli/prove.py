@@ -1,0 +1,80 @@
+"""Command ``prove``: every claim about a system, proved or refuted.
+
+Comes in: a spec. Goes out: its certificate, with the time that each proof took, and a
+counter-example for what is false. Read next: `coadjoint.prove.claims`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from coadjoint import limits
+from coadjoint.cli.arguments import spec_path, system_argument
+from coadjoint.cli.output import json_option, print_json, print_table
+
+
+@click.command("prove")
+@system_argument
+@json_option
+def command(system: str, as_json: bool) -> int:
+    """Prove every claim about a system, or refute it.
+
+    Jacobi identity, Casimirs, conserved quantities, and equality of the routes.
+    """
+    from coadjoint.sandbox import run_bounded
+
+    record = run_bounded(
+        "coadjoint.cli.prove:certificate_record",
+        {"path": str(spec_path(system))},
+        seconds=limits.WORKER_SECONDS,
+        memory=limits.WORKER_BYTES,
+    )
+    if as_json:
+        print_json(record)
+    else:
+        _print(record)
+    for claim in _refuted(record):
+        click.echo(f"error: refuted: {claim['statement']}. {_refutation(claim)}", err=True)
+    return 1 if _refuted(record) else 0
+
+
+def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
+    """The certificate of a spec as JSON values, times included; runs in a bounded child."""
+    from coadjoint.prove import prove
+    from coadjoint.spec import read_spec
+
+    certificate = prove(read_spec(Path(argument["path"])))
+    claims = [claim.as_record() | {"seconds": claim.seconds} for claim in certificate.claims]
+    return {"system": certificate.system, "holds": certificate.holds, "claims": claims}
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    """The certificate as a table."""
+    print_table(
+        ("verdict", "statement", "method", ">time"),
+        [
+            (
+                claim["verdict"],
+                claim["statement"],
+                claim["method"],
+                f"{claim['seconds'] * 1e3:.1f} ms",
+            )
+            for claim in record["claims"]
+        ],
+        title=f"Certificate of {record['system']}",
+    )
+
+
+def _refuted(record: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The claims that are false."""
+    return [claim for claim in record["claims"] if claim["verdict"] == "refuted"]
+
+
+def _refutation(claim: Mapping[str, Any]) -> str:
+    """Where a claim fails, and by how much."""
+    point = ", ".join(f"{name} = {value}" for name, value in claim["counterexample"].items())
+    return f"At {point} the difference is {claim['defect']}; expected 0."

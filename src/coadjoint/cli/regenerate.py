@@ -1,0 +1,168 @@
+"""Command ``regenerate``, the main job: specs in, verified kernels out.
+
+Comes in: a folder of specs. Goes out: the generated folder beside it, a table, and the errors of
+systems that failed. Read next: `coadjoint.regenerate`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coadjoint.cli.output import json_option, print_json, print_table, progress_bars
+from coadjoint.errors import CoadjointError, DriftError, SpecError
+from coadjoint.resources import derivations_folder, systems_folder
+
+if TYPE_CHECKING:
+    from coadjoint.regenerate import Outcome, Row
+
+folder_options = (
+    click.option(
+        "--derivations",
+        type=click.Path(path_type=Path),
+        help="Folder of specs. Default: ./derivations if it is there, else the shipped ones.",
+    ),
+    click.option(
+        "--output",
+        type=click.Path(path_type=Path),
+        help="Generated folder. Default: `generated` beside the folder of specs.",
+    ),
+)
+
+
+def with_folders(function: Any) -> Any:
+    """Add ``--derivations`` and ``--output`` to a command."""
+    for option in reversed(folder_options):
+        function = option(function)
+    return function
+
+
+@click.command("regenerate")
+@click.argument("names", nargs=-1, metavar="[SYSTEM]...")
+@click.option("--check", is_flag=True, help="Write nothing; compare with a fresh run, 1 on drift.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=lambda: os.cpu_count() or 1,
+    show_default="processors",
+    help="Systems worked on at a time.",
+)
+@with_folders
+@json_option
+def command(
+    names: tuple[str, ...],
+    check: bool,
+    jobs: int,
+    derivations: Path | None,
+    output: Path | None,
+    as_json: bool,
+) -> int:
+    """Derive, prove, check and write systems that have changed."""
+    from coadjoint import regenerate as engine
+
+    source, target = folders(derivations, output)
+    paths = spec_paths(source, names)
+    complete = not names
+    try:
+        with progress_bars() as progress:
+            if check:
+                outcome = engine.check(
+                    paths, target, jobs=jobs, complete=complete, progress=progress
+                )
+            else:
+                outcome = engine.regenerate(
+                    paths,
+                    target,
+                    jobs=jobs,
+                    complete=complete,
+                    progress=progress,
+                    on_wait=lambda: click.echo(f"waiting for another run in {target}", err=True),
+                )
+    except DriftError as drift:
+        show_drift(drift)
+        raise
+    (print_json(_record(outcome)) if as_json else _print(outcome))
+    return report_failures(outcome.failures)
+
+
+def folders(derivations: Path | None, output: Path | None) -> tuple[Path, Path]:
+    """The folder of specs and the generated folder that are meant."""
+    here = Path("derivations")
+    shipped = derivations_folder()
+    source = derivations or (here if here.is_dir() else shipped)
+    beside = systems_folder() if source.resolve() == shipped.resolve() else None
+    return source, output or beside or source.parent / "generated"
+
+
+def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
+    """The specs of a folder, or those of the given names.
+
+    Raises:
+        SpecError: There is none, or none of a given name.
+    """
+    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    if not found:
+        raise SpecError(
+            f"{folder}: no spec is there; expected files ending in .toml. "
+            "Write one with `coadjoint new`, or name the folder with --derivations.",
+            path=str(folder),
+        )
+    for name in names:
+        if name not in found:
+            near = get_close_matches(name, found, n=1)
+            hint = f" Did you mean {near[0]!r}?" if near else ""
+            raise SpecError(
+                f"{folder}: no spec is called {name!r}; expected one of {', '.join(found)}.{hint}",
+                path=str(folder),
+                found=name,
+            )
+    return [found[name] for name in dict.fromkeys(names)] if names else list(found.values())
+
+
+def report_failures(failures: Mapping[str, CoadjointError]) -> int:
+    """Print what failed on standard error; the highest exit status of all."""
+    for error in failures.values():
+        click.echo(f"error: {error}", err=True)
+    return max((error.exit_status for error in failures.values()), default=0)
+
+
+def show_drift(drift: DriftError) -> None:
+    """The differences, with the beginning of each diff."""
+    for each in drift.differences:
+        click.echo(f"{each['kind']}: {each['path']}")
+        if each["diff"]:
+            click.echo(each["diff"])
+
+
+def _print(outcome: Outcome) -> None:
+    """The table of a run."""
+    columns = ("system", ">dim", "routes", ">proved", ">operations", ">k", "targets", ">time")
+    print_table(columns, [_cells(row) for row in outcome.rows])
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    """One line of the table."""
+    return (
+        row.system,
+        str(row.dimension),
+        ", ".join(row.routes),
+        f"{row.proved}/{row.claims}",
+        str(row.operations),
+        f"{row.k:.2f}",
+        ", ".join(row.targets),
+        f"{row.seconds:.1f} s" if row.fresh else "unchanged",
+    )
+
+
+def _record(outcome: Outcome) -> dict[str, Any]:
+    """A run as JSON values."""
+    return {
+        "systems": [asdict(row) for row in outcome.rows],
+        "failures": {name: error.as_record() for name, error in outcome.failures.items()},
+    }

@@ -1,0 +1,58 @@
+"""Command ``show``: a derivation, step by step, as text, LaTeX or a web page.
+
+Comes in: a spec. Goes out: a document. Read next: `coadjoint.derive.document` and
+`coadjoint.render.document`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import click
+
+from coadjoint import limits
+from coadjoint.cli.arguments import spec_path, system_argument
+from coadjoint.cli.output import write_text
+
+
+@click.command("show")
+@system_argument
+@click.option("--route", help="One of the spec's routes. Default: the first, which is emitted.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "latex", "html"]),
+    default="text",
+    show_default=True,
+    help="latex is a complete file, html one self-contained page.",
+)
+@click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
+def command(system: str, route: str | None, form: str, output: Path | None) -> None:
+    """Show a derivation, step by step."""
+    from coadjoint.render.document import render_document
+    from coadjoint.sandbox import run_bounded
+
+    record = run_bounded(
+        "coadjoint.cli.show:document_record",
+        {"path": str(spec_path(system)), "route": route},
+        seconds=limits.WORKER_SECONDS,
+        memory=limits.WORKER_BYTES,
+    )
+    text = render_document(record, form)
+    if output is None:
+        click.echo(text, nl=False)
+    else:
+        write_text(output, text)
+
+
+def document_record(argument: Mapping[str, str | None]) -> dict[str, Any]:
+    """A derivation as plain JSON values; runs in a bounded child."""
+    from coadjoint.derive import derive
+    from coadjoint.derive.document import document
+    from coadjoint.spec import read_spec
+
+    equations = derive(read_spec(Path(str(argument["path"]))), argument["route"])
+    return asdict(document(equations))

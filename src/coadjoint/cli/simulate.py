@@ -1,0 +1,196 @@
+"""Command ``simulate``: a trajectory, the drift of its invariants, and a picture.
+
+Comes in: a system, or a spec that is built first, with parameters and an initial state from the
+command line. Goes out: tables or JSON, and files that were asked for. Read next:
+`coadjoint.solve.simulate`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coadjoint.cli.arguments import load_system, system_argument
+from coadjoint.cli.output import json_option, print_json, print_table, write_text
+
+if TYPE_CHECKING:
+    from coadjoint.solve.quantities import Quantities
+    from coadjoint.solve.solution import Solution
+    from coadjoint.solve.system import System
+
+Assignment = tuple[str, list[float]]
+
+
+def _assignments(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> list[Assignment]:
+    """Each ``NAME=1,2,3``, or ``1,2,3`` with no name, as name and numbers."""
+    read = []
+    for text in given:
+        name, _, numbers = text.rpartition("=")
+        try:
+            read.append((name.strip(), [float(number) for number in numbers.split(",")]))
+        except ValueError:
+            raise click.BadParameter(
+                f"{text!r} is not of the form NAME=1,2,3 with decimal numbers."
+            ) from None
+    return read
+
+
+@click.command("simulate")
+@system_argument
+@click.option(
+    "--set",
+    "parameters",
+    metavar="NAME=NUMBERS",
+    callback=_assignments,
+    multiple=True,
+    help="A parameter, e.g. I=1,2,3; the others have their defaults. Repeatable.",
+)
+@click.option(
+    "--state",
+    metavar="NAME=NUMBERS",
+    callback=_assignments,
+    multiple=True,
+    help="Initial value of a quantity or component, e.g. Pi=1,0,0, or of the whole state without "
+    "a name. Default: each vector of unit length along (1, 2, 3, ...), each scalar 1. Repeatable.",
+)
+@click.option("--time", type=float, default=10.0, show_default=True, help="How long.")
+@click.option("--method", default="auto", show_default=True, help="auto is DOP853.")
+@click.option("--rtol", type=float, default=1e-10, show_default=True, help="Relative tolerance.")
+@click.option(
+    "--samples",
+    type=click.IntRange(2, 10_000_000),
+    default=1001,
+    show_default=True,
+    help="Evenly spaced samples.",
+)
+@click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
+@click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
+@json_option
+def command(
+    system: str,
+    parameters: list[Assignment],
+    state: list[Assignment],
+    time: float,
+    method: str,
+    rtol: float,
+    samples: int,
+    plot: Path | None,
+    table: Path | None,
+    as_json: bool,
+) -> int:
+    """Integrate a trajectory; show the drift of invariants."""
+    loaded = load_system(system)
+    solution = loaded.simulate(
+        initial_state(loaded.STATE, state),
+        (0.0, time),
+        dict(parameters),
+        method=method,
+        rtol=rtol,
+        samples=samples,
+    )
+    (print_json(_record(loaded, solution)) if as_json else _print(loaded, solution))
+    if table is not None:
+        write_text(table, trajectory_csv(loaded, solution))
+    if plot is not None:
+        solution.plot(plot)
+    return 0 if solution.status == "OK" else 1
+
+
+def initial_state(quantities: Quantities, given: Iterable[Assignment]) -> list[float]:
+    """The whole initial state: defaults, with what was given put in.
+
+    Raises:
+        KernelArgumentError: A name is unknown.
+        BadParameter: A wrong number of values.
+    """
+    state = default_state(quantities)
+    for name, values in given:
+        rows = quantities.rows(name) if name else slice(0, len(state))
+        expected = state[rows] if isinstance(rows, slice) else [state[rows]]
+        if len(values) != len(expected):
+            raise click.BadParameter(
+                f"{name or 'the state'} has {len(values)} values {values}; "
+                f"expected {len(expected)}.",
+                param_hint="--state",
+            )
+        state[rows if isinstance(rows, slice) else slice(rows, rows + 1)] = values
+    return state
+
+
+def default_state(quantities: Quantities) -> list[float]:
+    """Each vector of unit length along (1, 2, 3, ...), no special direction; each scalar 1."""
+    state = []
+    for quantity in quantities.values():
+        direction = range(1, len(quantity.components) + 1)
+        length = math.sqrt(sum(n * n for n in direction))
+        state += [n / length for n in direction]
+    return state
+
+
+def trajectory_csv(system: System, solution: Solution) -> str:
+    """Time, state and observables, one row for each sample, in digits that read back exactly."""
+    names = (*system.STATE.components, *system.OBSERVABLES.components)
+    columns = [solution.time.tolist(), *(solution[name].tolist() for name in names)]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", *names])
+    writer.writerows(zip(*columns, strict=True))
+    return text.getvalue()
+
+
+def _print(system: System, solution: Solution) -> None:
+    """Where it began and ended, and what became of the invariants."""
+    end = f"t = {solution.time_reached:g}"
+    print_table(
+        ("state", ">t = 0", f">{end}", "unit"),
+        [
+            (name, f"{first:.12g}", f"{last:.12g}", system.STATE.of_component(name).unit)
+            for name, first, last in _ends(solution, system.STATE.components)
+        ],
+        title=f"{system.title} ({system.name})",
+    )
+    print_table(
+        ("observable", ">t = 0", f">{end}", "unit", ">drift"),
+        [
+            (
+                name,
+                f"{first:.12g}",
+                f"{last:.12g}",
+                system.OBSERVABLES.of_component(name).unit,
+                f"{solution.drift[name]:.1e}" if name in solution.drift else "",
+            )
+            for name, first, last in _ends(solution, system.OBSERVABLES.components)
+        ],
+    )
+    click.echo(f"status: {solution.status}. {solution.message}".rstrip())
+
+
+def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, float]]:
+    """First and last value of several components."""
+    return [(name, float(solution[name][0]), float(solution[name][-1])) for name in names]
+
+
+def _record(system: System, solution: Solution) -> dict[str, Any]:
+    """The run as JSON values."""
+    ends = _ends(solution, (*system.STATE.components, *system.OBSERVABLES.components))
+    units = {
+        name: quantities.of_component(name).unit
+        for quantities in (system.STATE, system.OBSERVABLES)
+        for name in quantities.components
+    }
+    return {
+        "system": system.name,
+        "status": solution.status,
+        "message": solution.message,
+        "time": solution.time_reached,
+        "initial": {name: first for name, first, _ in ends},
+        "final": {name: last for name, _, last in ends},
+        "units": units,
+        "drift": {name: float(drift) for name, drift in solution.drift.items()},
+    }
