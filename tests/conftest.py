@@ -23,7 +23,9 @@ def rational_points(names, count, seed=0):
     """Random nonzero rationals by name."""
     source = random.Random(seed)
     return [
-        {n: Fraction(source.choice((-1, 1)) * source.randint(1, 99), source.randint(1, 20))
-         for n in names}
+        {
+            n: Fraction(source.choice((-1, 1)) * source.randint(1, 99), source.randint(1, 20))
+            for n in names
+        }
         for _ in range(count)
     ]

@@ -7,6 +7,7 @@ Routes share the algebra and the Setting, never each other's results: their agre
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from coadjoint.callable_module import make_callable
 from coadjoint.derive import euler_poincare, lie_poisson
 from coadjoint.derive.equations import Equations, Exact, Step
 from coadjoint.derive.setting import Setting, make_setting
@@ -40,3 +41,5 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
             found=chosen,
         )
     return ROUTES[chosen](setting or make_setting(spec))
+
+make_callable(__name__, "derive")

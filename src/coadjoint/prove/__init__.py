@@ -3,7 +3,10 @@
 Comes in: a Spec or its Equations. Goes out: a `Certificate`. Read next: `coadjoint.prove.claims`.
 """
 
+from coadjoint.callable_module import make_callable
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.claims import prove
 
 __all__ = ["Certificate", "Claim", "Verdict", "prove"]
+
+make_callable(__name__, "prove")

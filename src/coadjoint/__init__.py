@@ -1,0 +1,63 @@
+"""coadjoint: declared mechanical systems to proved equations and verified NumPy and C kernels.
+
+    >>> from coadjoint.systems import heavy_top  # doctest: +SKIP
+    >>> import coadjoint
+    >>> mine = coadjoint.load("my_robot.toml")  # doctest: +SKIP
+
+Importing this package, or a generated system, loads neither SymPy nor NumPy; each public name below
+loads what it needs on first use. To read the engine, begin with `coadjoint.pipeline`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from coadjoint.errors import CoadjointError
+
+if TYPE_CHECKING:
+    from coadjoint.derive import Equations, derive
+    from coadjoint.loading import load
+    from coadjoint.prove import Certificate, prove
+    from coadjoint.solve.system import System
+    from coadjoint.spec import Spec, read_spec
+
+__version__ = "0.1.0"
+__all__ = [
+    "Certificate",
+    "CoadjointError",
+    "Equations",
+    "Spec",
+    "System",
+    "derive",
+    "load",
+    "prove",
+    "read_spec",
+]
+
+#: Module of each public name that is loaded on first use.
+_HOMES = {
+    "Certificate": "coadjoint.prove",
+    "Equations": "coadjoint.derive",
+    "Spec": "coadjoint.spec",
+    "System": "coadjoint.solve.system",
+    "derive": "coadjoint.derive",
+    "load": "coadjoint.loading",
+    "prove": "coadjoint.prove",
+    "read_spec": "coadjoint.spec",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, from its module.
+
+    `coadjoint.derive` and `coadjoint.prove` are folders of modules as well as functions; importing
+    a submodule binds it here, so those two modules can be called (`coadjoint.callable_module`).
+    """
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOMES])

@@ -1,0 +1,125 @@
+"""The library: a generated folder's C kernel, compiled or taken from the cache, and loaded.
+
+Comes in: a folder with ``kernel.c`` and ``kernel.h``. Goes out: a `Library` whose functions ctypes can
+call. A fresh object is compared with the NumPy kernel before it enters the cache, so that a compiler
+that lies is noticed once and for all.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import platform
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from coadjoint.build.cache import fetch, store
+from coadjoint.build.compiler import Compiler, compile_kernel, find_compiler
+from coadjoint.errors import CompilerError, OutputError
+
+_SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
+#: count, state, state_stride, parameters, parameters_stride, out, out_stride
+_SIGNATURE = (_SIZE, _ADDRESS, _SIZE, _ADDRESS, _SIZE, _ADDRESS, _SIZE)
+
+
+class Library:
+    """A loaded kernel.
+
+    Args:
+        path: The shared object.
+        name: Name of the system, the prefix of its functions.
+        identity: The id that the object must carry.
+
+    Raises:
+        CompilerError: It cannot be loaded, or carries another id.
+    """
+
+    def __init__(self, path: Path, name: str, identity: str) -> None:
+        self.name = name
+        try:
+            # CDLL, not PyDLL: calls release the interpreter lock.
+            self._handle = ctypes.CDLL(str(path))
+            found = ctypes.string_at(ctypes.addressof(self._symbol(f"{name}_id", identity)))
+        except (OSError, ValueError) as error:
+            raise CompilerError(
+                f"the compiled kernel of {name} cannot be loaded: {error}. "
+                "Set CC to another compiler.",
+                found=str(error),
+            ) from error
+        if found.decode("ascii", "replace") != identity:
+            raise CompilerError(
+                f"the compiled kernel of {name} carries the id {found!r}; expected {identity!r}. "
+                "Run `coadjoint regenerate`.",
+                found=found.decode("ascii", "replace"),
+                expected=identity,
+            )
+
+    def _symbol(self, symbol: str, identity: str) -> ctypes.Array[ctypes.c_char]:
+        """A character array of the object, one longer than the id."""
+        return (ctypes.c_char * (len(identity) + 1)).in_dll(self._handle, symbol)
+
+    def function(self, function: str) -> Callable[..., None]:
+        """One function of the kernel by its bare name."""
+        found: Any = self._handle[f"{self.name}_{function}"]
+        found.argtypes, found.restype = _SIGNATURE, None
+        return found  # type: ignore[no-any-return]
+
+
+def load_library(
+    folder: Path, name: str, identity: str, build: str, verify: Callable[[Library], None]
+) -> Library:
+    """Load the C kernel of a generated folder, compiling it unless the cache has it.
+
+    Args:
+        folder: The generated folder.
+        name: Name of the system.
+        identity: The id of its files.
+        build: ``exact`` or ``fast``.
+        verify: Raises if a fresh library computes something else than the NumPy kernel.
+
+    Raises:
+        CompilerError: There is no compiler, it failed, or its object is wrong.
+    """
+    compiler = find_compiler()
+    sources = {file: (folder / file).read_bytes() for file in ("kernel.c", "kernel.h")}
+    key = _key(compiler, sources, build)
+    cached = fetch(key)
+    if cached is not None:
+        return Library(cached, name, identity)
+    with tempfile.TemporaryDirectory(prefix="coadjoint-build-") as temporary:
+        for file, content in sources.items():
+            (Path(temporary) / file).write_bytes(content)
+        fresh = compile_kernel(compiler, Path(temporary), build)
+        library = Library(fresh, name, identity)
+        verify(library)
+        try:
+            store(key, fresh.read_bytes())
+        except OutputError:
+            pass  # the library in hand is good; the next process compiles again
+        return library
+
+
+def _key(compiler: Compiler, sources: dict[str, bytes], build: str) -> str:
+    """Hash of all that an object depends on, the processor of ``-march=native`` included."""
+    content = {
+        "sources": {file: hashlib.sha256(text).hexdigest() for file, text in sources.items()},
+        "command": [shutil.which(compiler.command[0]), *compiler.command[1:]],
+        "version": compiler.version,
+        "flags": compiler.flags(build),
+        "machine": [platform.system(), platform.machine(), _processor()],
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _processor() -> str:
+    """What tells processors apart that share a home folder."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    wanted = ("model name", "flags", "Features", "CPU part")
+    return "\n".join(dict.fromkeys(line for line in lines if line.startswith(wanted)))

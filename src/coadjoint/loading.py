@@ -1,0 +1,38 @@
+"""Load: a spec of one's own becomes a System, derived, proved, compiled and kept in the cache.
+
+Comes in: the path of a spec. Goes out: the same kind of object as a shipped system. The work is that
+of `coadjoint regenerate`, into a private folder of the cache; an unchanged spec loads at once and
+without SymPy.
+"""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+
+from coadjoint.build.cache import cache_folder
+from coadjoint.fingerprint import digest
+from coadjoint.regenerate import Progress, regenerate
+from coadjoint.solve.system import System, load_folder
+
+
+def load(path: str | PathLike[str], *, progress: Progress = lambda *_: None) -> System:
+    """Derive, prove, compile and load the system of a spec file.
+
+    Args:
+        path: A spec in TOML.
+        progress: Told of every stage: system, stage, stages done, stages in all.
+
+    Raises:
+        SpecError: The file is not a spec.
+        DerivationError: Its equations cannot be derived.
+        ClaimError: One of its claims is false.
+        CrossCheckError: Two forms of one function disagree.
+    """
+    source = Path(path)
+    # One folder for each place of a spec, so that equal names of different people do not collide.
+    folder = cache_folder() / "systems" / digest(str(source.resolve()))[:16]
+    outcome = regenerate([source], folder, progress=progress)
+    for error in outcome.failures.values():
+        raise error
+    return load_folder(folder / source.stem)

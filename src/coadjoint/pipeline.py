@@ -1,0 +1,165 @@
+"""The whole flow on one page: from a declared system to verified kernels. Read this first.
+
+    spec file -> read_spec -> Spec          coadjoint.spec
+              -> derive -> Equations        coadjoint.derive, one module per route
+              -> prove -> Certificate       coadjoint.prove
+              -> lower -> Programs          coadjoint.lower
+              -> render_system -> texts     coadjoint.render and templates/
+              -> System                     coadjoint.build and coadjoint.solve: compiled, loaded
+              -> crosscheck -> Report       coadjoint.crosscheck
+
+Comes in: a Spec. Goes out: the texts of its generated folder, proved and checked; they are written
+elsewhere. Read next: `coadjoint.regenerate`, which runs this for many systems in bounded children and
+writes what passed.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from coadjoint.crosscheck.ladder import Report, crosscheck
+from coadjoint.crosscheck.reference import Reference
+from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.document import equation_lines
+from coadjoint.lower.check import check_inverse
+from coadjoint.lower.lowering import lower
+from coadjoint.lower.program import Program
+from coadjoint.prove import Certificate, prove
+from coadjoint.render.kernels import KernelContext, Quantity, render_system
+from coadjoint.solve.system import load_folder
+from coadjoint.spec import Parameter, Spec, Variable
+
+#: Called with the name of the stage that begins.
+Progress = Callable[[str], None]
+STAGES = ("derive", "prove", "lower", "render", "compile", "cross-check")
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """A system as text, with everything that can be proved without running it.
+
+    Attributes:
+        equations: The emitted route.
+        certificate: What was proved about it.
+        programs: Its functions.
+        texts: Text of each file of its generated folder.
+    """
+
+    equations: Equations
+    certificate: Certificate
+    programs: dict[str, Program]
+    texts: dict[str, str]
+
+
+def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
+    """Derive, prove, lower and render one system: the exact rungs.
+
+    Raises:
+        DerivationError: A route cannot be followed.
+        ClaimError: A claim is false; the message shows where.
+        CrossCheckError: Lowering changed a value.
+    """
+    progress("derive")
+    setting = make_setting(spec)
+    routes = [derive(spec, route, setting=setting) for route in spec.routes]
+    first = routes[0]
+    progress("prove")
+    certificate = prove(spec, routes).require()
+    progress("lower")
+    programs = lower(first)
+    for program in programs.values():
+        check_inverse(first, program)
+    progress("render")
+    extra = {"certificate.json": certificate_json(spec, certificate)}
+    texts = render_system(kernel_context(first, programs), extra)
+    return Rendered(first, certificate, programs, texts)
+
+
+def verify(rendered: Rendered, progress: Progress = lambda stage: None, **points: int) -> Report:
+    """Compile, load and cross-check a rendered system: the numeric rungs.
+
+    Args:
+        rendered: What `render` returned.
+        progress: Told of each stage.
+        points: ``oracle_points`` and ``bit_points`` of `coadjoint.crosscheck.ladder.crosscheck`.
+
+    Raises:
+        CompilerError: The compiler failed.
+        CrossCheckError: Two forms of one function disagree.
+    """
+    progress("compile")
+    with tempfile.TemporaryDirectory(prefix="coadjoint-") as folder:
+        for name, text in rendered.texts.items():
+            (Path(folder) / name).write_text(text, encoding="utf-8")
+        system = load_folder(Path(folder))
+        progress("cross-check")
+        reference = Reference(rendered.equations)
+        return crosscheck(rendered.programs, rendered.texts, reference, system, **points)
+
+
+def kernel_context(equations: Equations, programs: dict[str, Program]) -> KernelContext:
+    """What the generated files of a system say; of a spec's free text, nothing."""
+    spec = equations.spec
+    first, *others = spec.routes
+    proved = [f"Proved equal to the route {route}." for route in others]
+    return KernelContext(
+        name=spec.name,
+        spec=f"derivations/{spec.name}.toml",
+        spec_sha256=spec.sha256,
+        license=spec.license,
+        routes=(f"Route {first} on {spec.algebra.name}, {spec.invariance} invariant.", *proved),
+        equations=equation_lines(equations),
+        state=tuple(map(_quantity, spec.state)),
+        parameters=tuple(map(_quantity, spec.parameters)),
+        observables=_observables(spec),
+        programs=tuple(programs.values()),
+    )
+
+
+def _quantity(declared: Variable | Parameter) -> Quantity:
+    """A variable or parameter as the generated package declares it."""
+    default = getattr(declared, "default", None)
+    return Quantity(
+        declared.name,
+        declared.shape,
+        declared.unit,
+        declared.components,
+        None if default is None else tuple(map(float, default)),
+        getattr(declared, "positive", False),
+    )
+
+
+def _observables(spec: Spec) -> tuple[Quantity, ...]:
+    """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
+    conserved = {formula.text.strip() for formula in spec.conserved}
+    casimirs = [
+        Quantity(f"casimir{n}", (), "1", (f"casimir{n}",), conserved=True)
+        for n in range(1, len(spec.casimirs) + 1)
+    ]
+    declared = [
+        Quantity(entry.name, (), entry.unit, (entry.name,), conserved=entry.name in conserved)
+        for entry in spec.observables
+    ]
+    energy = Quantity("energy", (), "1", ("energy",), conserved=True)
+    return (energy, *casimirs, *map(_quantity, spec.having_role("velocity")), *declared)
+
+
+def certificate_json(spec: Spec, certificate: Certificate) -> str:
+    """The certificate with the spec's free text, for programs and documents."""
+    quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
+    record: dict[str, Any] = {
+        "title": spec.title,
+        "source": spec.source,
+        "description": spec.description,
+        "docs": {quantity.name: quantity.doc for quantity in quantities if quantity.doc}
+        | {entry.name: entry.doc for entry in spec.observables if entry.doc},
+        "casimirs": [formula.text for formula in spec.casimirs],
+        "routes": list(spec.routes),
+        "claims": certificate.as_record()["claims"],
+    }
+    return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

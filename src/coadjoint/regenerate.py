@@ -1,0 +1,259 @@
+"""Regenerate: many systems through the pipeline in bounded children, and what passed written.
+
+Comes in: spec files and an output folder. Goes out: rows of a table, and the generated folder,
+replaced atomically with its manifest last. Nothing is written for a system that fails a rung, and
+nothing at all if any fails; an unchanged system is not derived again. Read next:
+`coadjoint.render.write`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from hashlib import sha256
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from coadjoint import limits
+from coadjoint.errors import CoadjointError, DriftError, SpecError
+from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
+
+#: Called with system, stage, number of stages done, number of stages.
+Progress = Callable[[str, str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the final table.
+
+    Attributes:
+        system: Name of the system.
+        dimension: Number of state components.
+        routes: Routes followed, the emitted one first.
+        proved: Claims proved.
+        claims: Claims in all.
+        operations: Floating-point operations of ``rhs`` for one member.
+        k: Largest error against 50 digits, in units of 2^-53 times the envelope.
+        targets: Targets that were checked.
+        seconds: How long it took; 0 if nothing was to do.
+        fresh: Whether the system was derived in this run.
+    """
+
+    system: str
+    dimension: int
+    routes: tuple[str, ...]
+    proved: int
+    claims: int
+    operations: int
+    k: float
+    targets: tuple[str, ...]
+    seconds: float
+    fresh: bool
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one run.
+
+    Attributes:
+        rows: Systems that passed, in the order of the specs.
+        failures: Errors of the others, by system.
+    """
+
+    rows: tuple[Row, ...]
+    failures: Mapping[str, CoadjointError]
+
+
+@dataclass(frozen=True)
+class _Source:
+    """One spec on its way: its file, its bytes' hash, and the fingerprint of what it yields."""
+
+    path: Path
+    sha256: str
+
+    @property
+    def name(self) -> str:
+        return self.path.stem
+
+    @property
+    def fingerprint(self) -> str:
+        return digest({"engine": engine_fingerprint(), "spec": self.sha256, "name": self.name})
+
+
+def regenerate(
+    paths: Sequence[Path],
+    output: Path,
+    *,
+    jobs: int = 1,
+    complete: bool = False,
+    progress: Progress = lambda *_: None,
+    on_wait: Callable[[], None] = lambda: None,
+) -> Outcome:
+    """Derive, prove, check and write systems that have changed.
+
+    Args:
+        paths: Spec files; the stem is the system's name.
+        output: The generated folder.
+        jobs: How many systems are worked on at a time.
+        complete: Whether these are all the systems of the folder; others are then removed.
+        progress: Told of every stage of every system.
+        on_wait: Called if another run holds the lock of the folder.
+
+    Returns:
+        A row for each system that passed and the errors of the others, of which nothing is written.
+
+    Raises:
+        SpecError: A file cannot be read.
+        OutputError: The folder cannot be written; what stood there is untouched.
+    """
+    sources = _sources(paths)
+    rows = {source.name: row for source in sources if (row := _unchanged(source, output))}
+    pending = [source for source in sources if source.name not in rows]
+    records, failures = _build_all(pending, jobs, progress)
+    if records or complete:
+        names = {source.name for source in sources}
+        systems = {name: _generated_system(record) for name, record in records.items()}
+        keep = names if complete else None
+        write_systems(output, systems, template_hashes(), keep, on_wait)
+    for source in pending:
+        if source.name in records:
+            rows[source.name] = Row(**records[source.name]["row"])
+            _remember(source, records[source.name])
+    return Outcome(tuple(rows[s.name] for s in sources if s.name in rows), failures)
+
+
+def check(
+    paths: Sequence[Path],
+    output: Path,
+    *,
+    jobs: int = 1,
+    complete: bool = False,
+    progress: Progress = lambda *_: None,
+) -> Outcome:
+    """Derive everything afresh and compare with what is checked in; nothing is written.
+
+    Args:
+        paths: Spec files.
+        output: The generated folder.
+        jobs: How many systems are worked on at a time.
+        complete: Whether these are all the systems of the folder, so that others are extra.
+        progress: Told of every stage of every system.
+
+    Raises:
+        DriftError: Files are missing, extra or changed; its ``differences`` list them.
+    """
+    sources = _sources(paths)
+    records, failures = _build_all(sources, jobs, progress)
+    systems = {name: _generated_system(record) for name, record in records.items()}
+    entries = {name: system.record() for name, system in systems.items()}
+    if not complete:
+        entries = read_manifest(output)["systems"] | entries
+    fresh = tree_texts(systems, manifest_text(entries, template_hashes()))
+    differences = [
+        difference
+        for difference in compare_tree(fresh, output)
+        if complete or _concerns(difference.path, records)
+    ]
+    if differences:
+        raise DriftError(
+            f"{output}: {len(differences)} of the generated files differ from a fresh run: "
+            + ", ".join(f"{each.path} ({each.kind})" for each in differences)
+            + ". Run `coadjoint regenerate` and commit what it writes.",
+            path=str(output),
+            differences=[asdict(each) for each in differences],
+        )
+    return Outcome(tuple(Row(**records[s.name]["row"]) for s in sources if s.name in records),
+                   failures)
+
+
+def _concerns(path: str, records: Mapping[str, Any]) -> bool:
+    """Whether a path belongs to the systems at hand or to the tree as a whole."""
+    return "/" not in path or path.split("/")[0] in records
+
+
+def _sources(paths: Sequence[Path]) -> list[_Source]:
+    """Spec files with their hashes.
+
+    Raises:
+        SpecError: A file cannot be read, or two have one name.
+    """
+    sources = [_Source(path, sha256(read_bytes(path)).hexdigest()) for path in paths]
+    names = [source.name for source in sources]
+    doubled = sorted({name for name in names if names.count(name) > 1})
+    if doubled:
+        raise SpecError(
+            f"two specs are called {doubled[0]!r}; expected one file for each name. Rename one.",
+            found=doubled[0],
+        )
+    return sources
+
+
+# -- building, in bounded children ------------------------------------------------------------------
+
+
+def _build_all(
+    sources: Sequence[_Source], jobs: int, progress: Progress
+) -> tuple[dict[str, dict[str, Any]], dict[str, CoadjointError]]:
+    """Records of the systems that passed, and errors of the others."""
+    records: dict[str, dict[str, Any]] = {}
+    failures: dict[str, CoadjointError] = {}
+
+    def run(source: _Source) -> None:
+        def report(stage: str, done: int, total: int) -> None:
+            progress(source.name, stage, done, total)
+
+        try:
+            records[source.name] = run_bounded(
+                "coadjoint.regenerate:build_record",
+                {"path": str(source.path)},
+                seconds=limits.WORKER_SECONDS,
+                memory=limits.WORKER_BYTES,
+                on_progress=report,
+            )
+        except CoadjointError as error:
+            failures[source.name] = error
+
+    # Threads only wait for children; a lost child is an error of its system, never a hang.
+    with ThreadPoolExecutor(max_workers=max(1, jobs)) as pool:
+        list(pool.map(run, sources))
+    return records, failures
+
+
+def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
+    """One system through the pipeline, as plain JSON values; runs in a bounded child."""
+    from coadjoint import pipeline
+    from coadjoint.spec import read_spec
+
+    start = perf_counter()
+    spec = read_spec(Path(argument["path"]))
+    total = len(pipeline.STAGES)
+
+    def progress(stage: str) -> None:
+        report_progress(stage, pipeline.STAGES.index(stage), total)
+
+    rendered = pipeline.render(spec, progress)
+    report = pipeline.verify(rendered, progress)
+    report_progress("done", total, total)
+    row = Row(
+        system=spec.name,
+        dimension=len(rendered.programs["rhs"].state),
+        routes=spec.routes,
+        proved=rendered.certificate.count(Verdict.PROVED),
+        claims=len(rendered.certificate.claims),
+        operations=sum(rendered.programs["rhs"].operation_counts().values()),
+        k=report.k,
+        targets=report.targets,
+        seconds=perf_counter() - start,
+        fresh=True,
+    )
+    passed = [rung for rung, status in report.rungs.items() if status == "passed"]
+    return {
+        "row": asdict(row),
+        "texts": rendered.texts,
+        "spec_sha256": spec.sha256,
+        "route": spec.routes[0],
+        "rungs": [1, 2, *passed],
+    }

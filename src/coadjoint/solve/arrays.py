@@ -1,0 +1,256 @@
+"""Arrays: what may be passed to a kernel, and how it is laid out.
+
+Comes in: whatever a person passes. Goes out: a `Call` of float64, C-contiguous, component-first
+arrays, or an error that says what was found and what is expected. Nothing is cast with loss.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError, KernelTypeError
+from coadjoint.solve.quantities import Quantities
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+
+class Call:
+    """One evaluation, checked.
+
+    Args:
+        system: Whose function it is.
+        function: Name of the function.
+        state: State as `System.rhs` takes it.
+        parameters: Parameters as `System.rhs` takes them.
+        out: Result array, or None for a new one.
+        bound: Whether ``state`` and ``out`` must be used in place.
+
+    Attributes:
+        state: ``(n, members)``.
+        parameters: ``(k,)`` shared or ``(k, members)``.
+        block: The result as its shape for one member followed by ``members``, a view of `result`.
+        result: The result in its full shape.
+        members: Number of members.
+
+    Raises:
+        KernelArgumentError: Something has a wrong shape, name, sign, or overlaps.
+        KernelTypeError: Something is not numeric in a way that float64 can hold.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        function: str,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None,
+        out: Array | None,
+        *,
+        bound: bool = False,
+    ) -> None:
+        if function not in system.functions:
+            raise KernelArgumentError(
+                f"{system.name} has no function {function!r}; expected one of "
+                f"{', '.join(system.functions)}.",
+                found=function,
+            )
+        packed = as_float64(state, "state") if bound else pack(state, system.STATE, "state")
+        if bound and packed is not state:
+            raise KernelArgumentError(
+                "bind reads the state in place; expected a C-contiguous float64 array.",
+                found=str(type(state).__name__),
+            )
+        _check_rows(packed, system.STATE, "state", system.name)
+        batch = packed.shape[1:]
+        values = pack_parameters(system, parameters)
+        if values.shape[1:] not in ((), batch):
+            raise KernelArgumentError(
+                f"parameters have the batch shape {values.shape[1:]}, the state {batch}; expected "
+                "the same, or parameters shared by all members.",
+                found=list(values.shape[1:]),
+                expected=list(batch),
+            )
+        shape = system.functions[function] + batch
+        self.members = math.prod(batch)
+        self.state = packed.reshape(system.STATE.size, self.members)
+        shared = values.ndim == 1
+        self.parameters = values if shared else values.reshape(values.shape[0], self.members)
+        if bound and out is None:
+            raise KernelArgumentError(
+                f"bind writes into out; expected an array of shape {shape}.", expected=list(shape)
+            )
+        self.result = np.empty(shape) if out is None else _check_out(out, shape)
+        for name, array in (("state", self.state), ("parameters", self.parameters)):
+            if out is not None and np.shares_memory(out, array):
+                raise KernelArgumentError(
+                    f"out shares memory with {name}; the kernel would read what it has written. "
+                    "Pass an array of its own.",
+                    found=name,
+                )
+        self.block = self.result.reshape(*system.functions[function], self.members)
+
+
+def as_float64(value: Any, name: str) -> Array:
+    """A value as a C-contiguous float64 array; the same object if it is one already.
+
+    Raises:
+        KernelTypeError: It is complex, text, object, or would lose digits.
+        KernelArgumentError: It is ragged.
+    """
+    if isinstance(value, np.ndarray) and value.dtype == np.float64 and value.flags.c_contiguous:
+        if value.dtype.isnative and value.flags.aligned:
+            return value
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise KernelArgumentError(
+            f"{name} is ragged: {error}. Expected rows of one length.", found=name
+        ) from error
+    if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        raise KernelTypeError(
+            f"{name} has the type {array.dtype}; expected real numbers that float64 holds. "
+            "Convert it yourself if a loss is meant.",
+            found=str(array.dtype),
+            expected="float64",
+        )
+    converted = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+    if array.dtype.kind in "iu" and not _same_integers(array, converted):
+        raise KernelTypeError(
+            f"{name} holds integers beyond 2^53, which float64 would round. "
+            "Convert it yourself if a loss is meant.",
+            found=str(array.dtype),
+            expected="float64",
+        )
+    return converted
+
+
+def _same_integers(array: NDArray[Any], converted: Array) -> bool:
+    """Whether integers kept their value."""
+    return array.dtype.itemsize < 8 or bool((np.abs(converted) <= 2.0**53).all())
+
+
+def pack(values: Any, quantities: Quantities, name: str) -> Array:
+    """A packed array, or one put together from a mapping by quantity or component.
+
+    Raises:
+        KernelArgumentError: A name is unknown, missing, or has the wrong shape.
+    """
+    if not isinstance(values, Mapping):
+        return as_float64(values, name)
+    return _assemble({}, values, quantities, name)
+
+
+def pack_parameters(system: System, parameters: Any) -> Array:
+    """Parameters as ``(k,)`` or ``(k, *batch)``, defaults filled in and signs checked.
+
+    Raises:
+        KernelArgumentError: As for `pack`, or a value that must be positive is not.
+    """
+    quantities = system.PARAMETERS
+    if parameters is None or isinstance(parameters, Mapping):
+        defaults = {
+            component: value
+            for quantity in quantities.values()
+            if quantity.default is not None
+            for component, value in zip(quantity.components, quantity.default, strict=True)
+        }
+        packed = _assemble(defaults, parameters or {}, quantities, "parameters")
+    else:
+        packed = as_float64(parameters, "parameters")
+        _check_rows(packed, quantities, "parameters", system.name)
+    for quantity in quantities.values():
+        for component in quantity.components if quantity.positive else ():
+            row = packed[quantities.rows(component)]
+            if not (row > 0).all():
+                raise KernelArgumentError(
+                    f"parameter {component} of {system.name} is {np.min(row):g}; expected a "
+                    "positive value.",
+                    found=float(np.min(row)),
+                    component=component,
+                )
+    return packed
+
+
+def _assemble(
+    defaults: Mapping[str, float], given: Mapping[str, Any], quantities: Quantities, name: str
+) -> Array:
+    """One array from defaults and named values, all broadcast to one batch shape."""
+    parts: dict[str, Any] = dict(defaults)
+    for key, value in given.items():
+        rows = quantities.rows(key)
+        array = as_float64(value, f"{name}[{key!r}]")
+        if isinstance(rows, int):
+            parts[quantities.components[rows]] = array
+            continue
+        quantity = quantities[key]
+        if array.shape[: len(quantity.shape)] != quantity.shape:
+            raise KernelArgumentError(
+                f"{name}[{key!r}] has the shape {array.shape}; expected {quantity.shape}, "
+                "followed by the batch if it differs from member to member.",
+                found=list(array.shape),
+                expected=list(quantity.shape),
+            )
+        flat = array.reshape(len(quantity.components), *array.shape[len(quantity.shape) :])
+        parts |= dict(zip(quantity.components, flat, strict=True))
+    missing = [component for component in quantities.components if component not in parts]
+    if missing:
+        raise KernelArgumentError(
+            f"{name} lacks {', '.join(missing)}, which have no default. "
+            f"Pass them by name, e.g. {{{missing[0]!r}: 1.0}}.",
+            found=missing,
+        )
+    ordered = [parts[component] for component in quantities.components]
+    try:
+        batch = np.broadcast_shapes(*(np.shape(part) for part in ordered))
+    except ValueError as error:
+        raise KernelArgumentError(
+            f"{name} have batch shapes that do not fit together: {error}.", found=name
+        ) from error
+    packed = np.empty((len(ordered), *batch))
+    for row, part in enumerate(ordered):
+        packed[row] = part
+    return packed
+
+
+def _check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
+    """The first axis must have one row per component."""
+    if array.ndim == 0 or array.shape[0] != quantities.size:
+        raise KernelArgumentError(
+            f"{name} of {system} has the shape {array.shape}; expected ({quantities.size},) or "
+            f"({quantities.size}, ...), the rows being {', '.join(quantities.components)}.",
+            found=list(array.shape),
+            expected=quantities.size,
+        )
+
+
+def _check_out(out: Any, shape: tuple[int, ...]) -> Array:
+    """A result array that can be written in place."""
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or not out.dtype.isnative:
+        found = str(out.dtype) if isinstance(out, np.ndarray) else type(out).__name__
+        raise KernelTypeError(
+            f"out has the type {found}; expected a float64 array.", found=found, expected="float64"
+        )
+    problem = (
+        f"has the shape {out.shape}"
+        if out.shape != shape
+        else "is read-only"
+        if not out.flags.writeable
+        else "is not C-contiguous"
+        if not out.flags.c_contiguous
+        else ""
+    )
+    if problem:
+        raise KernelArgumentError(
+            f"out {problem}; expected a writeable, C-contiguous array of shape {shape}.",
+            found=problem,
+            expected=list(shape),
+        )
+    return out

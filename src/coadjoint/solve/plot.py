@@ -1,0 +1,188 @@
+"""Pictures of a trajectory: on its momentum sphere or in components, invariants' drift below.
+
+Comes in: a `Solution`. Goes out: a matplotlib figure, or a picture file. matplotlib is an extra and
+is imported here alone.
+"""
+
+from __future__ import annotations
+
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError, OutputError
+
+if TYPE_CHECKING:
+    from coadjoint.solve.solution import Solution
+
+#: Colours that stay apart for colour-blind readers (Okabe and Ito, 2008).
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+#: Relative change of |m|^2 below which a three-vector is drawn on its sphere.
+ON_SPHERE = 1e-6
+#: Below this, a drift is drawn as this: zero has no logarithm.
+FLOOR = 1e-17
+
+
+def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
+    """Draw a solution.
+
+    Args:
+        solution: What to draw.
+        path: File to write (PNG, PDF or SVG by its ending); None to return the figure.
+
+    Raises:
+        KernelArgumentError: matplotlib is not installed, or does not know the ending.
+        OutputError: The file cannot be written.
+    """
+    figure = _figure(headless=path is not None)
+    sphere = _sphere_quantity(solution)
+    heights = [3.2, 1.0] if sphere else [2.2, 1.0]
+    grid = figure.add_gridspec(2, 1, height_ratios=heights)
+    if sphere:
+        _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
+    else:
+        _draw_components(figure, grid[0], solution)
+    _draw_drift(figure.add_subplot(grid[1]), solution)
+    figure.suptitle(solution.system.title, fontsize=13)
+    if path is None:
+        return figure
+    _save(figure, Path(fspath(path)))
+    return None
+
+
+def _figure(*, headless: bool) -> Any:
+    """An empty figure; without a path, one that pyplot can show."""
+    try:
+        if headless:
+            from matplotlib.figure import Figure
+
+            return Figure(figsize=(7.2, 7.6), layout="constrained", dpi=150)
+        from matplotlib import pyplot
+
+        return pyplot.figure(figsize=(7.2, 7.6), layout="constrained")
+    except ImportError as error:
+        raise KernelArgumentError(
+            "plot needs matplotlib, which is not installed. Run `pip install 'coadjoint[plot]'`.",
+            found="matplotlib",
+        ) from error
+
+
+def _save(figure: Any, path: Path) -> None:
+    """Write the picture beside its place and move it there."""
+    temporary = path.with_name(f".{path.stem}.tmp{path.suffix}")
+    try:
+        figure.savefig(temporary)
+        temporary.replace(path)
+    except ValueError as error:
+        raise KernelArgumentError(
+            f"{path} cannot be drawn: {error}. Expected an ending such as .png, .pdf or .svg.",
+            found=path.suffix,
+        ) from error
+    except OSError as error:
+        raise OutputError(
+            f"{path} could not be written: {error.strerror}. Choose another file.", path=str(path)
+        ) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _sphere_quantity(solution: Solution) -> str:
+    """The first three-vector of the state whose length is conserved, or ""."""
+    for name, quantity in solution.system.STATE.items():
+        if quantity.shape == (3,):
+            square = (solution[name] ** 2).sum(axis=0)
+            if square[0] > 0 and np.ptp(square) <= ON_SPHERE * square.max():
+                return name
+    return ""
+
+
+def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
+    """The trajectory of a vector on its sphere, the side that faces away drawn faint."""
+    vector = solution[name]
+    radius = float(np.sqrt((vector[:, 0] ** 2).sum()))
+    angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25))
+    ball = (
+        radius * np.sin(height) * np.cos(angle),
+        radius * np.sin(height) * np.sin(angle),
+        radius * np.cos(height),
+    )
+    axes.plot_surface(*ball, color="#d9e2ec", alpha=0.25, linewidth=0, shade=False)
+    axes.plot_wireframe(*ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6)
+    axes.computed_zorder = False
+    axes.plot(*vector, color=COLOURS[0], linewidth=1.1, zorder=3)
+    axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
+    axes.scatter(*vector[:, -1:], color=COLOURS[2], s=36, marker="s", zorder=4, label="end")
+    unit = _unit(solution.system.STATE[name].unit)
+    symbol = _symbol(name)
+    for n, set_label in enumerate((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), 1):
+        set_label(f"{symbol}$_{n}$ {unit}", fontsize=9)
+    axes.set_box_aspect((1, 1, 1))
+    axes.tick_params(labelsize=7)
+    axes.view_init(elev=24, azim=-52)
+    axes.legend(loc="upper left", fontsize=8, frameon=False)
+    axes.set_title(
+        f"{symbol} on the sphere |{symbol}| = {radius:.4g}, "
+        f"t = {solution.time[0]:g} .. {solution.time_reached:g}",
+        fontsize=10,
+    )
+
+
+def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
+    """Components of each state quantity against time, one panel for each."""
+    quantities = list(solution.system.STATE.items())
+    panels = place.subgridspec(len(quantities), 1)
+    shared = None
+    for n, (name, quantity) in enumerate(quantities):
+        axes = figure.add_subplot(panels[n], sharex=shared)
+        shared = shared or axes
+        for colour, component in zip(_colours(), quantity.components, strict=False):
+            axes.plot(
+                solution.time, solution[component], color=colour, linewidth=1.0, label=component
+            )
+        axes.set_ylabel(f"{_symbol(name)} {_unit(quantity.unit)}", fontsize=9)
+        axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
+        axes.legend(loc="upper right", ncols=min(6, len(quantity.components)), fontsize=8)
+        axes.grid(alpha=0.3)
+
+
+def _draw_drift(axes: Any, solution: Solution) -> None:
+    """Change of each conserved observable relative to its largest size, on a logarithmic axis."""
+    for colour, name in zip(_colours(), solution.conserved, strict=False):
+        size = float(np.abs(solution[name]).max()) or 1.0
+        change = np.abs(solution.change(name)) / size
+        axes.semilogy(
+            solution.time,
+            np.maximum(change, FLOOR),
+            color=colour,
+            linewidth=0.9,
+            label=f"{name} ({solution.drift[name]:.0e})",
+        )
+    axes.set_xlabel("time [s]", fontsize=9)
+    axes.set_ylabel("relative change", fontsize=9)
+    axes.set_title("Invariants: change since the start (largest)", fontsize=10)
+    axes.tick_params(labelsize=8)
+    axes.grid(alpha=0.3)
+    if solution.conserved:
+        axes.legend(fontsize=8, ncols=3, loc="lower right")
+
+
+def _colours() -> Any:
+    """The colours, again and again."""
+    while True:
+        yield from COLOURS
+
+
+def _unit(unit: str) -> str:
+    """A unit for an axis."""
+    return "" if unit in ("", "1") else f"[{unit}]"
+
+
+def _symbol(name: str) -> str:
+    """A Greek name as its letter, in matplotlib's own TeX; other names as they are."""
+    greek = {
+        "Pi", "Gamma", "Omega", "Xi", "Lambda", "Sigma", "Phi", "Psi", "Theta", "Delta",
+        "alpha", "beta", "gamma", "delta", "mu", "nu", "xi", "eta", "chi", "phi", "psi", "theta",
+    }  # fmt: skip
+    return rf"$\{name}$" if name in greek else name

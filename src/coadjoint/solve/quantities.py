@@ -1,0 +1,116 @@
+"""Quantities: what the rows of state, parameters and observables are called.
+
+Comes in: the declarations of a generated package. Goes out: an immutable mapping from names to rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from html import escape
+
+from coadjoint.errors import KernelArgumentError
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A named block of rows.
+
+    Attributes:
+        name: As in the spec, e.g. ``Pi``.
+        shape: ``()``, ``(n,)`` or ``(n, m)``.
+        unit: Unit text, ``"1"`` if dimensionless, ``""`` if not stated.
+        components: Name of each row.
+        default: One value per row, or None.
+        positive: Whether every value must be positive.
+        conserved: Whether the motion conserves it.
+    """
+
+    name: str
+    shape: tuple[int, ...] = ()
+    unit: str = "1"
+    components: tuple[str, ...] = ()
+    default: tuple[float, ...] | None = None
+    positive: bool = False
+    conserved: bool = False
+
+
+class Quantities(Mapping[str, Quantity]):
+    """Quantities by name, in the order of their rows.
+
+    >>> state = Quantities(Quantity("Pi", (2,), "1", ("Pi1", "Pi2")), Quantity("s", (), "1", ("s",)))
+    >>> state.components, state.size, state.rows("Pi"), state.rows("s")
+    (('Pi1', 'Pi2', 's'), 3, slice(0, 2, None), 2)
+    """
+
+    def __init__(self, *quantities: Quantity) -> None:
+        self._by_name = {quantity.name: quantity for quantity in quantities}
+        self._rows: dict[str, slice | int] = {}
+        row = 0
+        for quantity in quantities:
+            for n, component in enumerate(quantity.components):
+                self._rows[component] = row + n
+            if quantity.shape:
+                self._rows[quantity.name] = slice(row, row + len(quantity.components))
+            row += len(quantity.components)
+
+    def __getitem__(self, name: str) -> Quantity:
+        return self._by_name[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._by_name)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of all rows."""
+        return tuple(name for quantity in self.values() for name in quantity.components)
+
+    @property
+    def size(self) -> int:
+        """Number of rows."""
+        return len(self.components)
+
+    def rows(self, name: str) -> slice | int:
+        """The rows of a quantity, or the row of a component.
+
+        Raises:
+            KernelArgumentError: No such name; the nearest one is suggested.
+        """
+        if name in self._rows:
+            return self._rows[name]
+        near = get_close_matches(name, self._rows, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        raise KernelArgumentError(
+            f"{name!r} is not one of {', '.join(self)}.{hint}", found=name, expected=list(self)
+        )
+
+    def of_component(self, name: str) -> Quantity:
+        """The quantity that a name belongs to, whole or component."""
+        if name in self._by_name:
+            return self._by_name[name]
+        return next(q for q in self.values() if name in q.components)
+
+    def _table(self) -> list[tuple[str, ...]]:
+        rows = [("name", "shape", "unit", "default")]
+        for q in self.values():
+            default = "" if q.default is None else ", ".join(f"{value:g}" for value in q.default)
+            rows.append((q.name, str(q.shape), q.unit, default))
+        return rows
+
+    def __repr__(self) -> str:
+        widths = [max(map(len, column)) for column in zip(*self._table(), strict=True)]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+            for row in self._table()
+        ]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        head, *rows = [[escape(cell) for cell in row] for row in self._table()]
+        body = "".join("<tr><td>" + "</td><td>".join(row) + "</td></tr>" for row in rows)
+        return f"<table><tr><th>{'</th><th>'.join(head)}</th></tr>{body}</table>"

@@ -1,0 +1,178 @@
+"""The Solution: one trajectory with names, units, observables and the drift of what is conserved.
+
+Comes in: times and states. Goes out: a record that people index by name, print, plot and export.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from html import escape
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+
+class Solution:
+    """One trajectory.
+
+    ``solution["Pi"]`` is ``(3, T)``, ``solution["Pi1"]`` and ``solution["energy"]`` are ``(T,)``.
+
+    Attributes:
+        system: The System that was simulated.
+        time: Sample times, ``(T,)``, up to where the integration came.
+        state: States, ``(n, T)``.
+        parameters: Packed parameters, ``(k,)``.
+        status: ``OK``, ``NONFINITE`` (the rates stopped being finite) or ``STEP_UNDERFLOW`` (no step
+            was small enough).
+        message: What the integrator said, empty if all is well.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        time: Array,
+        state: Array,
+        parameters: Array,
+        status: str,
+        message: str,
+    ) -> None:
+        self.system = system
+        self.time = time
+        self.state = np.ascontiguousarray(state)
+        self.parameters = parameters
+        self.status = status
+        self.message = message
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, name: str) -> Array:
+        if name in ("t", "time"):
+            return self.time
+        # A name of the state first: observables may repeat it, never contradict it.
+        for quantities, values in self._tables:
+            if name in quantities or name in quantities.components:
+                found: Array = values[quantities.rows(name)]
+                return found
+        names = [*self.system.STATE, *self.system.OBSERVABLES]
+        raise KernelArgumentError(
+            f"{name!r} is not in this solution; expected one of {', '.join(names)} or 'time'.",
+            found=name,
+            expected=names,
+        )
+
+    @property
+    def _tables(self) -> list[tuple[Any, Array]]:
+        return [
+            (self.system.STATE, self.state),
+            (self.system.OBSERVABLES, self.observables),
+        ]
+
+    @cached_property
+    def observables(self) -> Array:
+        """Observables along the trajectory, one row per component."""
+        return self.system.observables(self.state, self.parameters)
+
+    @cached_property
+    def drift(self) -> dict[str, float]:
+        """Largest change of each conserved observable, relative to its largest size.
+
+        ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout.
+        """
+        return {name: _relative(self.change(name), self[name]) for name in self.conserved}
+
+    @property
+    def conserved(self) -> tuple[str, ...]:
+        """Names of the observables that the motion conserves."""
+        quantities = self.system.OBSERVABLES.values()
+        return tuple(quantity.name for quantity in quantities if quantity.conserved)
+
+    def change(self, name: str) -> Array:
+        """``q(t) - q(0)`` of an observable or state component, ``(T,)``."""
+        values = self[name]
+        return values - values[..., :1]
+
+    @property
+    def time_reached(self) -> float:
+        """The last time that was reached."""
+        return float(self.time[-1])
+
+    @property
+    def final(self) -> dict[str, float]:
+        """The last state by component."""
+        names = self.system.STATE.components
+        return dict(zip(names, self.state[:, -1].tolist(), strict=True))
+
+    def summary(self) -> dict[str, Any]:
+        """Final state and drift as plain JSON values."""
+        parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
+        return {
+            "system": self.system.name,
+            "status": self.status,
+            "message": self.message,
+            "time": self.time_reached,
+            "samples": len(self),
+            "parameters": dict(parameters),
+            "final": self.final,
+            "drift": self.drift,
+        }
+
+    def to_xarray(self) -> Any:
+        """The solution as an `xarray.Dataset` with units.
+
+        Raises:
+            KernelArgumentError: xarray is not installed; the message has the pip command.
+        """
+        try:
+            import xarray
+        except ImportError as error:
+            raise KernelArgumentError(
+                "to_xarray needs xarray, which is not installed. Run `pip install 'coadjoint[data]'`.",
+                found="xarray",
+            ) from error
+        variables: dict[str, Any] = {}
+        for quantities, _ in reversed(self._tables):
+            for name, quantity in quantities.items():
+                lead = [name + "_component"] if quantity.shape else []
+                dims = ([*lead, "time"], self[name], {"units": quantity.unit})
+                variables[name] = dims
+        attributes = {"system": self.system.name, "title": self.system.title, "id": self.system.id}
+        return xarray.Dataset(variables, coords={"time": self.time}, attrs=attributes)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+        """Draw the trajectory and the drift of its invariants below; see `coadjoint.solve.plot`.
+
+        Args:
+            path: Picture file to write; None to return the figure for showing.
+        """
+        from coadjoint.solve.plot import plot
+
+        return plot(self, path)
+
+    def __repr__(self) -> str:
+        lines = [
+            f"<Solution of {self.system.name}: {self.status}, {len(self)} samples, "
+            f"t = {self.time[0]:g} .. {self.time_reached:g}>"
+        ]
+        lines += [f"  drift of {name}: {value:.1e}" for name, value in self.drift.items()]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return f"<pre>{escape(repr(self))}</pre>"
+
+
+def _relative(change: Array, values: Array) -> float:
+    """Largest change over largest size."""
+    size = float(np.abs(values).max())
+    return float(np.abs(change).max()) / size if size else 0.0

@@ -1,0 +1,293 @@
+"""The System: one generated folder as an object, light to import and complete to use.
+
+Comes in: the declarations in a generated ``__init__.py``. Goes out: functions of state and parameters
+by the C kernel or the NumPy kernel, and simulations. Only names are held here; arrays, kernels and
+integrators load on first use, so that importing a system costs next to nothing.
+Read next: `coadjoint.solve.arrays` for what may be passed, `coadjoint.solve.kernels` for who computes.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from importlib.machinery import ModuleSpec
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+from coadjoint.errors import OutputError
+from coadjoint.solve.quantities import Quantities, Quantity
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from coadjoint.solve.kernels import Kernels
+    from coadjoint.solve.solution import Solution
+
+    Array = NDArray[Any]
+
+__all__ = ["Quantities", "Quantity", "System", "load_folder"]
+
+Target = Literal["c", "numpy", "c-fast"]
+
+
+class System:
+    """A mechanical system with verified kernels.
+
+    All functions are vectorised: a state has shape ``(n,)`` for one member or ``(n, *batch)``, and the
+    result has the shape of the function for one member followed by ``batch``.
+
+    Attributes:
+        name: Name of the system.
+        folder: Where its generated files stand.
+        STATE: Quantities of the state, in order.
+        PARAMETERS: Quantities of the parameters, in order.
+        OBSERVABLES: Quantities of the observables, in order.
+        functions: Shape of the result of each function for one member.
+        elementary: Functions beyond ``+ - * / sqrt`` that the kernels call.
+        id: The id that all files of the folder carry.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        file: str,
+        state: Quantities,
+        parameters: Quantities,
+        observables: Quantities,
+        functions: Mapping[str, tuple[int, ...]],
+        elementary: Sequence[str],
+        identity: str,
+    ) -> None:
+        self.name = name
+        self.folder = Path(file).parent
+        self.STATE = state
+        self.PARAMETERS = parameters
+        self.OBSERVABLES = observables
+        self.functions = MappingProxyType(dict(functions))
+        self.elementary = tuple(elementary)
+        self.id = identity
+
+    # -- functions ------------------------------------------------------------------------------------
+
+    def rhs(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """Time derivative of the state, shape ``(n, *batch)``.
+
+        Args:
+            state: ``(n,)`` or ``(n, *batch)``, or a mapping by name: ``{"Pi": [...], ...}``.
+            parameters: Packed, ``(k,)`` for all members or ``(k, *batch)``; or a mapping by name,
+                ``{"I": [1, 2, 3], "m": masses}``, that overrides defaults; None for the defaults.
+            target: ``"c"``, ``"numpy"``, or ``"c-fast"`` (fused operations: not the same bits).
+            out: Where to write the result: float64, C-contiguous, apart from the inputs.
+
+        Returns:
+            ``out``, or a new array.
+
+        Raises:
+            KernelArgumentError: A shape, name, sign or aliasing that cannot be right.
+            KernelTypeError: A type that cannot become float64 without loss.
+        """
+        return self.evaluate("rhs", state, parameters, target, out)
+
+    def jacobian(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """Derivative of `rhs` by the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
+        return self.evaluate("jacobian", state, parameters, target, out)
+
+    def energy(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """Energy, shape ``batch``; arguments as in `rhs`."""
+        return self.evaluate("energy", state, parameters, target, out)
+
+    def observables(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """All observables, one row for each component of ``OBSERVABLES``; arguments as in `rhs`."""
+        return self.evaluate("observables", state, parameters, target, out)
+
+    def poisson_tensor(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """Brackets ``{x_i, x_j}`` of the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
+        return self.evaluate("poisson_tensor", state, parameters, target, out)
+
+    def evaluate(
+        self,
+        function: str,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """One of the ``functions`` by name; arguments as in `rhs`."""
+        from coadjoint.solve.arrays import Call
+
+        call = Call(self, function, state, parameters, out)
+        self._kernels.run(function, call, target)
+        return call.result
+
+    def bind(
+        self,
+        function: str,
+        state: Array,
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        out: Array | None = None,
+        target: Target = "c",
+    ) -> Callable[[], None]:
+        """A call without arguments that evaluates ``state`` as it then is into ``out``.
+
+        All checks are made once, here. For loops of one's own: a call costs less than a microsecond
+        beyond the kernel.
+
+        Args:
+            function: Name of a function.
+            state: A float64, C-contiguous array, read at each call.
+            parameters: As in `rhs`; copied now.
+            out: As in `rhs`, and not optional: it is where the results appear.
+            target: As in `rhs`.
+        """
+        from coadjoint.solve.arrays import Call
+
+        call = Call(self, function, state, parameters, out, bound=True)
+        return self._kernels.bind(function, call, target)
+
+    def pack(self, parameters: ArrayLike | Mapping[str, ArrayLike] | None = None) -> Array:
+        """Parameters as one array ``(k,)`` or ``(k, *batch)``, defaults filled in."""
+        from coadjoint.solve.arrays import pack_parameters
+
+        return pack_parameters(self, parameters)
+
+    def simulate(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        t: ArrayLike,
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        *,
+        method: str = "auto",
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+        samples: int = 1001,
+        target: Target = "c",
+    ) -> Solution:
+        """Integrate one trajectory.
+
+        Args:
+            state: Initial state, ``(n,)`` or by name.
+            t: ``(start, end)``, or an increasing sequence of three times or more at which to sample.
+            parameters: As in `rhs`, shared.
+            method: A method of `scipy.integrate.solve_ivp`; ``"auto"`` is ``"DOP853"``, order 8.
+            rtol: Relative tolerance of a step.
+            atol: Absolute tolerance of a step.
+            samples: Number of evenly spaced samples when ``t`` is a pair.
+            target: Kernel that computes the rates.
+
+        Returns:
+            The labelled trajectory, with observables and the drift of what is conserved.
+
+        Raises:
+            KernelArgumentError: The state is a batch, times do not increase, or a name is unknown.
+        """
+        from coadjoint.solve.simulate import simulate
+
+        return simulate(
+            self,
+            state,
+            t,
+            parameters,
+            method=method,
+            rtol=rtol,
+            atol=atol,
+            samples=samples,
+            target=target,
+        )
+
+    # -- what is known about it -----------------------------------------------------------------------
+
+    @cached_property
+    def _kernels(self) -> Kernels:
+        from coadjoint.solve.kernels import Kernels
+
+        return Kernels(self)
+
+    @cached_property
+    def certificate(self) -> Mapping[str, Any]:
+        """What was proved: ``certificate.json``, with title, source and docs of the spec."""
+        path = self.folder / "certificate.json"
+        found: dict[str, Any] = json.loads(path.read_text()) if path.is_file() else {}
+        return MappingProxyType(found)
+
+    @property
+    def title(self) -> str:
+        """Title of the spec."""
+        return str(self.certificate.get("title") or self.name)
+
+    @property
+    def source(self) -> str:
+        """Source that the spec names."""
+        return str(self.certificate.get("source", ""))
+
+    @property
+    def docs(self) -> Mapping[str, str]:
+        """Explanations of quantities by name."""
+        return dict(self.certificate.get("docs", {}))
+
+    def __repr__(self) -> str:
+        state, parameters = ", ".join(self.STATE.components), ", ".join(self.PARAMETERS.components)
+        return f"<System {self.name}: state {state}; parameters {parameters or 'none'}>"
+
+
+def load_folder(folder: Path) -> System:
+    """The System of a generated folder outside any package.
+
+    Raises:
+        OutputError: The folder holds no generated system.
+    """
+    spec = spec_from_file_location(f"_coadjoint_{folder.name}", folder / "__init__.py")
+    module = _execute(folder, spec)
+    if not isinstance(getattr(module, "system", None), System):
+        raise OutputError(
+            f"{folder} holds no generated system; expected an __init__.py written by "
+            "`coadjoint regenerate`. Run it again.",
+            path=str(folder),
+        )
+    return module.system  # type: ignore[no-any-return]
+
+
+def _execute(folder: Path, spec: ModuleSpec | None) -> Any:
+    """Run a generated ``__init__.py`` without leaving bytecode beside it."""
+    if spec is None or spec.loader is None or not (folder / "__init__.py").is_file():
+        return None
+    module = module_from_spec(spec)
+    before, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.dont_write_bytecode = before
+    return module

@@ -1,0 +1,114 @@
+"""Routes: invariance, advected quantities of other kinds, and refusals."""
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.errors import DerivationError
+from coadjoint.prove import prove
+from tests.specs import RIGID_BODY, spec
+
+
+def test_right_invariance_runs_the_other_way():
+    """A right-invariant body obeys the same equations with the opposite sign (Holm 2011, 9.1)."""
+    left = derive(spec())
+    right = derive(spec(RIGID_BODY, ('name = "so(3)"', 'name = "so(3)"\ninvariance = "right"')))
+    assert left.rates[0] != 0
+    assert [sympy.expand(a + b) for a, b in zip(left.rates, right.rates, strict=True)] == [0, 0, 0]
+
+
+@pytest.mark.parametrize("invariance", ["left", "right"])
+@pytest.mark.parametrize("representation", ["vector", "adjoint", "coadjoint"])
+def test_routes_agree_for_every_representation(representation, invariance):
+    """Advected quantities of each kind, on both sides: the routes are proved equal."""
+    text = RIGID_BODY.replace('name = "so(3)"', f'name = "so(3)"\ninvariance = "{invariance}"')
+    text = text.replace(
+        'Pi = { role = "momentum" }',
+        'Pi = { role = "momentum" }\n'
+        f'a = {{ role = "advected", representation = "{representation}" }}',
+    ).replace('diag(I)*Omega)/2"', 'diag(I)*Omega)/2 - a1^2*a3 - dot(a, I)"')
+    text = text.replace('["dot(Pi, Pi)"]', '["dot(a, a)", "dot(Pi, a)"]')
+    certificate = prove(spec(text))
+    assert certificate.holds, str(certificate)
+    assert sum(claim.kind == "equivalence" for claim in certificate.claims) >= 2
+
+
+def test_a_lagrangian_without_legendre_transform_is_refused():
+    """A missing kinetic term is named, with the place."""
+    with pytest.raises(DerivationError, match=r"sample.toml:\d+: lagrangian.l: .*Omega3") as caught:
+        derive(spec(RIGID_BODY, ("dot(Omega, diag(I)*Omega)/2", "I1*Omega1^2 + I2*Omega2^2")))
+    assert caught.value.velocity == "Omega3"
+
+
+def test_a_lagrangian_not_quadratic_in_velocities_is_refused():
+    """Omega1^4 has no linear Legendre transform."""
+    with pytest.raises(DerivationError, match="not quadratic in the velocities.*Omega1"):
+        derive(spec(RIGID_BODY, ("/2", "/2 + Omega1^4")))
+
+
+def test_a_full_inertia_tensor_is_inverted_symbolically():
+    """Three coupled velocities: J Omega = Pi holds exactly for the derived velocities."""
+    changes = [
+        ("I = { shape = [3], positive = true, default = [1, 2, 3] }", "J = { shape = [3, 3] }"),
+        ("diag(I)*Omega)/2", "(J + transpose(J))*Omega)/4"),
+    ]
+    equations = derive(spec(RIGID_BODY, *changes))
+    matrix = sympy.Matrix(3, 3, lambda i, j: sympy.Symbol(f"J{i + 1}{j + 1}"))
+    omega = sympy.Matrix(list(equations.velocities.values()))
+    residual = (matrix + matrix.T) / 2 * omega - sympy.Matrix(equations.state)
+    assert residual.applyfunc(sympy.cancel) == sympy.zeros(3, 1)
+
+
+def test_velocities_coupled_beyond_three_are_refused_with_a_way_out():
+    """A fully coupled Kirchhoff body asks for a Hamiltonian instead of exploding."""
+    text = """
+routes = ["euler-poincare"]
+title = "coupled"
+[algebra]
+name = "se(3)"
+[variables]
+Omega = { role = "velocity", block = "rotation" }
+v = { role = "velocity", block = "translation" }
+Pi = { role = "momentum", block = "rotation" }
+P = { role = "momentum", block = "translation" }
+[parameters]
+C = { shape = [3, 3] }
+[lagrangian]
+l = "dot(Omega, Omega)/2 + dot(v, v)/2 + dot(Omega, C*v)"
+"""
+    with pytest.raises(DerivationError, match="couples 6 velocities.*lie-poisson"):
+        derive(spec(text))
+
+
+def test_an_undeclared_route_is_refused():
+    """derive(spec, route) asks for declared routes."""
+    with pytest.raises(DerivationError, match="'lie-poisson' is not declared"):
+        derive(spec(RIGID_BODY, (', "lie-poisson"', "")), "lie-poisson")
+
+
+def test_division_by_zero_in_a_formula_names_the_place():
+    """1/(m - m) is found when the formula is interpreted."""
+    with pytest.raises(DerivationError, match=r"lagrangian.l: .*divides by zero") as caught:
+        derive(spec(RIGID_BODY, ("/2", "/(I1 - I1)")))
+    assert "I1 - I1" in caught.value.found
+
+
+def test_equations_show_themselves_in_a_notebook():
+    """The LaTeX has the definitions and the rates."""
+    shown = derive(spec())._repr_latex_()
+    assert r"\Omega_{1} &= \frac{\Pi_{1}}{I_{1}}" in shown
+    assert r"\dot{\Pi_{1}} &=" in shown
+
+
+def test_elementary_functions_are_derived_through():
+    """A potential sin(Gamma3) gives a torque with cos(Gamma3), by both routes."""
+    text = RIGID_BODY.replace(
+        'Pi = { role = "momentum" }',
+        'Pi = { role = "momentum" }\nGamma = { role = "advected", representation = "vector" }',
+    ).replace('diag(I)*Omega)/2"', 'diag(I)*Omega)/2 - sin(Gamma3)*sqrt(1 + Gamma1^2)"')
+    text = text.replace('["dot(Pi, Pi)"]', '["dot(Gamma, Gamma)", "dot(Pi, Gamma)"]')
+    sample = spec(text)
+    assert prove(sample).holds
+    third = derive(sample).rates[2]
+    assert third.has(sympy.sin) and not third.has(sympy.cos)
+    assert derive(sample).rates[0].has(sympy.cos)

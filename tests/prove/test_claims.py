@@ -1,0 +1,130 @@
+"""Certificates: what holds is proved, what does not is refuted with a point, every time."""
+
+from fractions import Fraction
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive, make_setting
+from coadjoint.errors import ClaimError
+from coadjoint.exact import Field
+from coadjoint.prove import Verdict, prove
+from coadjoint.prove.identities import antisymmetry_defects, casimir_defects, jacobi_defects
+from coadjoint.prove.zero import decide_zero
+from tests.specs import RIGID_BODY, shipped, spec
+
+
+def test_every_claim_of_a_shipped_system_is_proved(system):
+    """No claim is refuted and none rests on numbers alone."""
+    certificate = prove(shipped(system))
+    assert certificate.count(Verdict.PROVED) == len(certificate.claims) >= 13
+    kinds = {claim.kind for claim in certificate.claims}
+    assert kinds == {"algebra", "jacobi", "legendre", "equivalence", "casimir", "conserved"}
+
+
+@pytest.mark.parametrize(
+    ("claim", "kind"),
+    [
+        ('casimirs = ["dot(Pi, Pi) + Pi1"]', "casimir"),
+        ('conserved = ["Pi1"]', "conserved"),
+        ('conserved = ["energy + Omega1"]', "conserved"),
+        ('conserved = ["sin(Pi3)"]', "conserved"),
+    ],
+)
+def test_a_false_claim_is_refuted_with_its_point(claim, kind):
+    """The counter-example is a point of the state, and the value there is not zero."""
+    certificate = prove(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim)))
+    (refuted,) = certificate.refuted
+    assert refuted.kind == kind
+    assert refuted.counterexample
+    assert refuted.defect not in ("", "0")
+    with pytest.raises(ClaimError, match="refuted: .* At .*Pi") as caught:
+        certificate.require()
+    assert caught.value.exit_status == 1
+
+
+def test_the_counterexample_is_one():
+    """Substituting the printed point into the derivative gives the printed value."""
+    sample = spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', 'conserved = ["Pi1"]'))
+    (refuted,) = prove(sample).refuted
+    point = {sympy.Symbol(n): sympy.Rational(v) for n, v in refuted.counterexample.items()}
+    assert derive(sample).rates[0].subs(point) == sympy.Rational(refuted.defect)
+
+
+def test_a_wrong_hamiltonian_is_refuted_on_three_grounds():
+    """A Hamiltonian that is not the Legendre transform is told apart from the Lagrangian's."""
+    wrong = '[hamiltonian]\nh = "dot(Pi, diag(I)*Pi)/2"\n\n[claims]'
+    certificate = prove(spec(RIGID_BODY, ("[claims]", wrong)))
+    statements = [claim.statement for claim in certificate.refuted]
+    assert any("h(dl/dxi)" in s and "lie-poisson" in s for s in statements)
+    assert any("dh/dmu = xi" in s and "lie-poisson" in s for s in statements)
+    assert any("give the same motion" in s for s in statements)
+
+
+def test_energy_with_the_wrong_sign_of_gravity_is_refuted():
+    """h with -m g Gamma.chi against l with -m g Gamma.chi: the routes differ."""
+    heavy = shipped("heavy_top")
+    text = heavy.path.read_text(encoding="utf-8")
+    good = "+ m*g*dot(Gamma, chi)"
+    assert good in text
+    assert prove(spec(text, (good, "- m*g*dot(Gamma, chi)"))).refuted
+
+
+def test_jacobi_of_a_tensor_can_fail():
+    """The so(3) tensor passes; with one entry squared it does not."""
+    field = Field(["x", "y", "z"])
+    x, y, z = (field[n] for n in field.names)
+    tensor = [[field.zero, -z, y], [z, field.zero, -x], [-y, x, field.zero]]
+    assert decide_zero(jacobi_defects(tensor, field.names, field), field).verdict == "proved"
+    spoiled = [list(row) for row in tensor]
+    spoiled[0][1], spoiled[1][0] = -z + y, z - y
+    spoiled[0][2], spoiled[2][0] = y * x, -y * x
+    assert decide_zero(jacobi_defects(spoiled, field.names, field), field).verdict == "refuted"
+
+
+def test_antisymmetry_can_fail():
+    """A symmetric entry is seen."""
+    field = Field(["x"])
+    tensor = [[field.zero, field["x"]], [field["x"], field.zero]]
+    assert decide_zero(antisymmetry_defects(tensor), field).verdict == "refuted"
+
+
+def test_positive_parameters_stay_positive_in_counterexamples():
+    """The printed point respects the declared signs."""
+    certificate = prove(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', 'conserved = ["Pi1"]')))
+    (refuted,) = certificate.refuted
+    inertia = [v for n, v in refuted.counterexample.items() if n.startswith("I")]
+    assert inertia
+    assert all(Fraction(v) > 0 for v in inertia)
+
+
+def test_hidden_zeros_are_supported_numerically_and_say_so():
+    """log(x^2) - 2 log(x) is zero, which the normal form cannot see."""
+    field = Field(["x"], slots=2, positive=["x"])
+    x = field["x"]
+    decision = decide_zero([field.call("log", x**2) - 2 * field.call("log", x)], field)
+    assert decision.verdict is Verdict.SUPPORTED
+    assert "50-digit" in decision.method
+
+
+def test_casimirs_are_judged_by_the_bracket_alone():
+    """The energy is conserved, but it is no Casimir."""
+    setting = make_setting(spec())
+    equations = derive(spec(), setting=setting)
+    decision = decide_zero(casimir_defects(equations, equations.exact.energy), setting.field)
+    assert decision.verdict is Verdict.REFUTED
+
+
+def test_a_certificate_reads_as_a_table():
+    """The text shows verdict, statement and method of each claim."""
+    shown = str(prove(spec()))
+    assert shown.startswith("Certificate of sample")
+    assert "dot(Pi, Pi) is a Casimir" in shown
+    assert " ms)" in shown
+
+
+def test_times_are_not_stored():
+    """A certificate's record is the same in every run."""
+    first, second = prove(spec()).as_record(), prove(spec()).as_record()
+    assert first == second
+    assert "seconds" not in str(first)

@@ -1,0 +1,114 @@
+"""Freshly built kernels, NumPy and C, against the formulas of books in exact arithmetic.
+
+The systems are built here from specs, not imported from `generated/`, so that a change anywhere
+between a spec and a compiled kernel shows.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.solve.system import load_folder
+from tests.sources import textbook
+from tests.specs import shipped
+
+#: Inputs lie in [1/8, 8], so that sums stay below 2^13 and their rounding errors below 2^-37.
+TOLERANCE = 2.0**-37
+SYSTEMS = sorted(textbook.RATES)
+TARGETS = ("numpy", "c", "c-fast")
+MEMBERS = 7
+
+
+@pytest.fixture(scope="module", params=SYSTEMS)
+def built(request, tmp_path_factory):
+    """A system built from its spec, with few points of cross-check: the book is the judge here."""
+    folder = tmp_path_factory.mktemp("built") / request.param
+    folder.mkdir()
+    for name, text in pipeline.render(shipped(request.param)).texts.items():
+        (folder / name).write_text(text)
+    return load_folder(folder)
+
+
+def inputs(name, shared):
+    """Dyadic random states and parameters: exact as doubles and as fractions."""
+    source = np.random.default_rng(11)
+    sizes = len(textbook.STATES[name]), len(textbook.PARAMETERS[name])
+    state, parameters = (
+        source.integers(1, 64, (n, MEMBERS)) / 8 * source.choice([-1, 1], (n, MEMBERS))
+        for n in sizes
+    )
+    parameters = np.abs(parameters) + np.arange(1, sizes[1] + 1)[:, None] / 16
+    return state, parameters[:, 0].copy() if shared else parameters
+
+
+def members(state, parameters):
+    """Each member's state and parameters as fractions."""
+    for n in range(state.shape[1]):
+        own = parameters if parameters.ndim == 1 else parameters[:, n]
+        yield n, [Fraction(x) for x in state[:, n].tolist()], [Fraction(p) for p in own.tolist()]
+
+
+def check(found, expected):
+    """Floats against fractions."""
+    assert np.isfinite(found).all()
+    assert any(expected)
+    for a, b in zip(found, expected, strict=True):
+        assert abs(Fraction(float(a)) - b) <= TOLERANCE * max(1, abs(b)), (float(a), float(b))
+
+
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("shared", [True, False], ids=["shared", "own"])
+def test_rates_are_those_of_the_book(built, target, shared):
+    """rhs of every member equals the textbook's rates."""
+    state, parameters = inputs(built.name, shared)
+    found = built.rhs(state, parameters, target=target)
+    for n, x, p in members(state, parameters):
+        check(found[:, n], textbook.RATES[built.name](x, p))
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_jacobian_is_the_derivative_of_the_book_formula(built, target):
+    """Rates quadratic in the state: central differences of the textbook's are exact."""
+    state, parameters = inputs(built.name, shared=False)
+    found = built.jacobian(state, parameters, target=target)
+    for n, x, p in members(state, parameters):
+        for j in range(len(x)):
+            step = [Fraction(i == j) for i in range(len(x))]
+            up = textbook.RATES[built.name]([a + b for a, b in zip(x, step, strict=True)], p)
+            down = textbook.RATES[built.name]([a - b for a, b in zip(x, step, strict=True)], p)
+            check(found[:, j, n], [(a - b) / 2 for a, b in zip(up, down, strict=True)])
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_observables_are_those_of_the_book(built, target):
+    """Every observable under its name; energy alone, too."""
+    state, parameters = inputs(built.name, shared=False)
+    found = built.observables(state, parameters, target=target)
+    energy = built.energy(state, parameters, target=target)
+    for n, x, p in members(state, parameters):
+        expected = textbook.OBSERVABLES[built.name](x, p)
+        names = built.OBSERVABLES.components
+        assert set(names) == set(expected)
+        check(found[:, n], [expected[name] for name in names])
+        check([energy[n]], [expected["energy"]])
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_poisson_tensor_is_that_of_the_book(built, target):
+    """Every bracket of two state components."""
+    state, parameters = inputs(built.name, shared=True)
+    found = built.poisson_tensor(state, parameters, target=target)
+    for n, x, _ in members(state, parameters):
+        for i, row in enumerate(textbook.TENSORS[built.name](x)):
+            assert found[i, :, n].tolist() == [float(value) for value in row]
+
+
+def test_the_comparison_sees_a_wrong_member(built):
+    """One member's rates moved to another are noticed."""
+    state, parameters = inputs(built.name, shared=False)
+    found = built.rhs(state, parameters)
+    with pytest.raises(AssertionError):
+        for n, x, p in members(state, parameters):
+            check(found[:, (n + 1) % MEMBERS], textbook.RATES[built.name](x, p))
