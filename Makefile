@@ -37,7 +37,7 @@ test-all: setup  ## run all tests
 	$(BIN)/python -P -m pytest -q -n $(JOBS)
 
 bench: setup  ## measure every figure; a peer that is not installed is a line that says so
-	$(BIN)/python -P benchmarks/run.py
+	$(BIN)/python benchmarks/run.py
 
 docs: regenerate  ## redraw docs/pictures; write schema and derivations to build/docs
 	$(BIN)/python -P docs/make.py
