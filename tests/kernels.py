@@ -8,6 +8,7 @@ from __future__ import annotations
 import ctypes
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,8 @@ class TextSystem:
         exec(texts["kernel.py"], self.python)
         self.libraries = {}
         for target, flags in (("c", c_flags), ("c-fast", FUSED)):
-            path = compile_text(texts, folder, flags, f"{target}.so")
+            # A folder of its own: dlopen takes a path it has loaded before for the same library.
+            path = compile_text(texts, Path(tempfile.mkdtemp(dir=folder)), flags)
             self.libraries[target] = ctypes.CDLL(str(path))
 
     def __getattr__(self, function):

@@ -1,0 +1,318 @@
+"""Rungs 4 and 5: good kernels pass, each kind of spoiled kernel is caught by its rung."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coadjoint.crosscheck import ladder
+from coadjoint.crosscheck.compare import Subject, against_oracle, differing, equal_bits
+from coadjoint.crosscheck.ladder import TARGETS, crosscheck
+from coadjoint.errors import CompilerError, CrossCheckError
+from coadjoint.render.kernels import render_system
+from tests.kernels import COMPILER, EXACT, FUSED, ProgramReference, TextSystem
+from tests.programs import HEAVY_TOP, PENDULUM, program
+
+pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+
+
+class TopReference:
+    """The heavy top as in the book, dPi/dt = Pi x Omega + m g Gamma x chi, by vectors."""
+
+    def evaluate(self, function, inputs, number, call):
+        """All outputs of one function."""
+
+        def vector(name):
+            return [inputs[f"{name}{i}"] for i in (1, 2, 3)]
+
+        def cross(a, b):
+            return [
+                a[1] * b[2] + -(a[2] * b[1]),
+                a[2] * b[0] + -(a[0] * b[2]),
+                a[0] * b[1] + -(a[1] * b[0]),
+            ]
+
+        def dot(a, b):
+            return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+        Pi, Gamma, chi = map(vector, ("Pi", "Gamma", "chi"))
+        Omega = [p / i for p, i in zip(Pi, vector("I"), strict=True)]
+        weight = inputs["m"] * inputs["g"]
+        energy = dot(Pi, Omega) / number(2) + weight * dot(Gamma, chi)
+        torque = [weight * each for each in cross(Gamma, chi)]
+        zero = number(0)
+        hats = [[[zero, -z, y], [z, zero, -x], [-y, x, zero]] for x, y, z in (Pi, Gamma)]
+        tensor = [a + b for a, b in zip(*hats, strict=True)]
+        tensor += [row + [zero] * 3 for row in hats[1]]
+        return {
+            "rhs": [p + t for p, t in zip(cross(Pi, Omega), torque, strict=True)]
+            + cross(Gamma, Omega),
+            "energy": [energy],
+            "observables": [energy, dot(Pi, Gamma), *Omega],
+            "poisson_tensor": [entry for row in tensor for entry in row],
+        }[function]
+
+
+def programs_of(context):
+    """Its Programs by name."""
+    return {each.name: each for each in context.programs}
+
+
+def subject(folder, context=HEAVY_TOP, spoil=lambda texts: texts, c_flags=EXACT, reference=None):
+    """A system in every form, its texts spoiled before they are brought to life."""
+    texts = spoil(dict(render_system(context)))
+    system = TextSystem(context, texts, folder, c_flags)
+    return Subject(programs_of(context), reference or TopReference(), system, TARGETS)
+
+
+def replaced(file, good, bad):
+    """A spoiler that replaces text everywhere in one file."""
+
+    def spoil(texts):
+        assert good in texts[file]
+        return {**texts, file: texts[file].replace(good, bad)}
+
+    return spoil
+
+
+def test_the_textbook_top_passes_every_rung(tmp_path):
+    """All functions of all targets keep k <= 4 against the book, and the bits are equal."""
+    texts = render_system(HEAVY_TOP)
+    system = TextSystem(HEAVY_TOP, texts, tmp_path)
+    report = crosscheck(programs_of(HEAVY_TOP), texts, TopReference(), system, TARGETS, 400, 20_000)
+    assert report.passed
+    assert report.targets == TARGETS
+    assert report.threshold == 4
+    assert 0.5 < report.k <= 4
+    assert set(report.figures) == set(report.equal) == set(programs_of(HEAVY_TOP))
+    for targets in report.figures.values():
+        assert all(figures.points == 100 for figures in targets.values())
+    assert all(equal >= 20_000 for equal in report.equal.values())
+    record = json.loads(json.dumps(report.as_record()))
+    assert record["rungs"] == {"3": "passed", "4": "passed", "5": "passed"}
+    assert record["figures"]["rhs"]["c"]["k"] == report.figures["rhs"]["c"].k
+
+
+def test_figures_are_the_same_in_every_run(tmp_path):
+    """Two runs of the oracle give the same figures to the last bit."""
+    subjects = [subject(tmp_path) for _ in range(2)]
+    first, second = (against_oracle(each, "rhs", 100) for each in subjects)
+    assert first == second
+
+
+def test_functions_beyond_sqrt_have_a_wider_threshold(tmp_path):
+    """With sin, cos and exp the threshold is 16, and no bits are promised."""
+    context = PENDULUM
+    texts = render_system(context)
+    system = TextSystem(context, texts, tmp_path)
+    reference = ProgramReference(context.programs)
+    report = crosscheck(programs_of(context), texts, reference, system, TARGETS, 300, 1000)
+    assert report.passed
+    assert report.threshold == 16
+    assert set(report.equal.values()) == {0}
+
+
+GOOD = "Omega3 * Pi2 - Omega2 * Pi3"
+SPOILED = [
+    ("Omega3 * Pi2 + Omega2 * Pi3", "a sign"),
+    ("Omega3 * Pi2 - Omega1 * Pi3", "an index"),
+    ("Omega3 * Pi2 - 1.0000001 * Omega2 * Pi3", "a constant"),
+]
+
+
+@pytest.mark.parametrize(("file", "target"), [("kernel.py", "numpy"), ("kernel.c", "c")])
+@pytest.mark.parametrize(("bad", "fault"), SPOILED, ids=[fault for _, fault in SPOILED])
+def test_rung_4_catches_wrong_formulas(file, target, bad, fault, tmp_path):
+    """A wrong sign, index or constant in one language alone is far above any threshold."""
+    spoiled = subject(tmp_path, spoil=replaced(file, GOOD, bad))
+    with pytest.raises(CrossCheckError) as caught:
+        against_oracle(spoiled, "rhs", 100)
+    error = caught.value
+    assert (error.rung, error.system, error.function) == (4, "heavy_top", "rhs")
+    assert error.output == "dPi1/dt"
+    assert target in error.parts
+    assert error.k > 1e7
+    assert error.threshold == 4
+    for part in (error.parts[target], error.exact, error.point["Pi3"]):
+        assert str(part) in str(error)
+
+
+def test_rung_4_catches_single_precision(tmp_path):
+    """One float inside a C kernel is caught."""
+    bad = "const float Omega1 = (float)(Pi1 / I1)"
+    spoiled = subject(tmp_path, spoil=replaced("kernel.c", "const double Omega1 = Pi1 / I1", bad))
+    with pytest.raises(CrossCheckError) as caught:
+        against_oracle(spoiled, "observables", 100)
+    assert caught.value.k > 1e6
+
+
+def test_rung_4_catches_exchanged_rows(tmp_path):
+    """Two rows exchanged in both languages, so that NumPy and C agree, are caught."""
+    rows = ("Omega1 * Gamma3 - Omega3 * Gamma1", "Omega2 * Gamma1 - Omega1 * Gamma2")
+
+    def exchange(texts):
+        spoiled = dict(texts)
+        for file in ("kernel.py", "kernel.c"):
+            text = texts[file].replace(rows[0], "?").replace(rows[1], rows[0]).replace("?", rows[1])
+            assert text != texts[file]
+            spoiled[file] = text
+        return spoiled
+
+    spoiled = subject(tmp_path, spoil=exchange)
+    equal_bits(spoiled, 1000)
+    with pytest.raises(CrossCheckError, match=r"dGamma[23]/dt"):
+        against_oracle(spoiled, "rhs", 100)
+
+
+def test_rung_4_catches_wrong_equations(tmp_path):
+    """Programs, texts and kernels that agree with each other, but not with the book, are caught."""
+
+    class Other(TopReference):
+        def evaluate(self, function, inputs, number, call):
+            return super().evaluate(function, {**inputs, "g": -inputs["g"]}, number, call)
+
+    spoiled = subject(tmp_path, reference=Other())
+    equal_bits(spoiled, 1000)
+    with pytest.raises(CrossCheckError, match="rung 4"):
+        against_oracle(spoiled, "energy", 100)
+
+
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        (GOOD + " + (_p4 * Gamma2 - _p3 * Gamma3)", GOOD + " + _p4 * Gamma2 - _p3 * Gamma3"),
+        ("Pi1 / I1", "1.0 / I1 * Pi1"),
+        ("= -Gamma3", "= 0.0 - Gamma3"),
+    ],
+    ids=["order of a sum", "reciprocal", "sign of a zero"],
+)
+def test_rung_5_catches_what_rounds_otherwise(good, bad, tmp_path):
+    """Other orders, reciprocals and the sign of a zero pass rung 4, but not rung 5."""
+    spoiled = subject(tmp_path, spoil=replaced("kernel.c", good, bad))
+    for function in spoiled.programs:
+        against_oracle(spoiled, function, 50)
+    with pytest.raises(CrossCheckError, match="rung 5") as caught:
+        equal_bits(spoiled, 20_000)
+    error = caught.value
+    assert repr(error.numpy) in str(error)
+    assert repr(error.c) in str(error)
+    assert error.output in str(error)
+
+
+def test_rung_5_catches_the_last_bit_of_a_constant(tmp_path):
+    """The double next to 2 in place of 2 is caught by the bits."""
+    spoiled = subject(tmp_path, spoil=replaced("kernel.c", " / 2.0", " / 2.0000000000000004"))
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        equal_bits(spoiled, 1000)
+
+
+def test_rung_5_catches_a_fused_build_in_the_exact_slot(tmp_path):
+    """Fused multiply-add keeps k, so that only the bits tell."""
+    spoiled = subject(tmp_path, c_flags=FUSED)
+    against_oracle(spoiled, "rhs", 50)
+    if "fma" not in _processor_features():
+        pytest.skip("this processor has no fused multiply-add")
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        equal_bits(spoiled, 20_000)
+
+
+def _processor_features():
+    """What the processor can do, where the system tells."""
+    try:
+        return set(Path("/proc/cpuinfo").read_text().split())
+    except OSError:
+        return set()
+
+
+def test_rung_5_sees_fast_math(tmp_path):
+    """A kernel that loses NaN or subnormals is caught, though no ordinary point shows it."""
+    bad = "_p1 = m * g * (m * g == m * g)"
+    spoiled = subject(tmp_path, spoil=replaced("kernel.c", "_p1 = m * g", bad))
+    against_oracle(spoiled, "rhs", 50)
+    nan_lost = "const double Omega1 = Pi1 == Pi1 ? Pi1 / I1 : 0.0"
+    spoiled = subject(
+        tmp_path, spoil=replaced("kernel.c", "const double Omega1 = Pi1 / I1", nan_lost)
+    )
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        equal_bits(spoiled, 1000)
+
+
+def test_rung_5_sees_the_last_member_of_an_odd_batch(tmp_path):
+    """A loop that stops one short of an odd count is caught."""
+    spoiled = subject(
+        tmp_path, spoil=replaced("kernel.c", "_n < count;", "_n < (count & ~(size_t)1);")
+    )
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        equal_bits(spoiled, 1000)
+
+
+def test_rung_5_sees_parameters_of_the_wrong_member(tmp_path):
+    """Shared parameters taken for all, where each member has its own, are caught."""
+    spoil = replaced(
+        "kernel.c", "parameters[3 * parameters_stride + _n]", "parameters[3 * parameters_stride]"
+    )
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        equal_bits(subject(tmp_path, spoil=spoil), 1000)
+
+
+def test_rung_5_allows_twice_the_threshold_where_bits_are_not_promised(tmp_path):
+    """With elementary functions, NumPy and C further apart than 2 k are caught."""
+    reference = ProgramReference(PENDULUM.programs)
+    good = subject(tmp_path, PENDULUM, reference=reference)
+    against_oracle(good, "rhs", 50)
+    spoil = replaced("kernel.c", "sin(q)", "sin(q * 1.00000000000002)")
+    with pytest.raises(CrossCheckError, match="rung"):
+        against_oracle(subject(tmp_path, PENDULUM, spoil, reference=reference), "rhs", 50)
+
+
+def test_nan_and_zero_are_compared_as_they_should():
+    """NaN equals NaN whatever its sign, 0 is not -0, and nothing else is forgiven."""
+    one = np.array([np.nan, 0.0, 1.0, np.inf, 1.0])
+    other = np.array([-np.nan, -0.0, 1.0, np.inf, np.nextafter(1.0, 2.0)])
+    assert differing(one, other).tolist() == [False, True, False, False, True]
+
+
+def test_a_system_without_values_is_an_error(tmp_path):
+    """If the equations have hardly a value anywhere, the rung does not pass on nothing."""
+    nothing = [program("rhs", "q p", "k", "", "sqrt(-1 - q*q); p", (2,))]
+    empty = subject(tmp_path, PENDULUM, reference=ProgramReference(nothing))
+    with pytest.raises(CrossCheckError, match="0 of 50"):
+        against_oracle(empty, "rhs", 50)
+
+
+def test_without_a_compiler_the_c_rungs_are_not_called_passed(tmp_path, monkeypatch):
+    """NumPy is checked alone, and the report says what was not run."""
+
+    def none():
+        raise CompilerError("no C compiler is found", found="")
+
+    monkeypatch.setattr(ladder, "find_compiler", none)
+    texts = render_system(HEAVY_TOP)
+    system = TextSystem(HEAVY_TOP, texts, tmp_path)
+    report = crosscheck(programs_of(HEAVY_TOP), texts, TopReference(), system, None, 100, 100)
+    assert not report.passed
+    assert report.targets == ("numpy",)
+    assert report.rungs[3] == "passed"
+    assert "no compiler" in report.rungs[4]
+    assert report.rungs[5] == "not run: no compiler"
+
+
+def test_a_compiler_that_does_not_work_is_not_passed_over(monkeypatch):
+    """If one was asked for by name, its absence is an error and not a missing compiler."""
+
+    def refused():
+        raise CompilerError("CC is 'no-such-cc', which is not found", found="no-such-cc")
+
+    monkeypatch.setattr(ladder, "find_compiler", refused)
+    with pytest.raises(CompilerError, match="no-such-cc"):
+        ladder.available_targets()
+
+
+def test_a_spoiled_text_stops_the_ladder(tmp_path):
+    """`crosscheck` runs rung 3 on the texts it is given, whatever was loaded."""
+    texts = render_system(HEAVY_TOP)
+    system = TextSystem(HEAVY_TOP, texts, tmp_path)
+    spoiled = replaced("kernel.py", GOOD, "Omega3 * Pi2 + Omega2 * Pi3")(texts)
+    with pytest.raises(CrossCheckError, match="rung 3"):
+        crosscheck(programs_of(HEAVY_TOP), spoiled, TopReference(), system, TARGETS, 100, 100)

@@ -1,0 +1,149 @@
+"""The oracle: 50 digits under cancellation, envelopes that bound what rounding does."""
+
+import decimal
+import math
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from coadjoint.crosscheck.oracle import (
+    OutsideDomain,
+    call,
+    error_in_envelopes,
+    error_in_ulp,
+    exact,
+    oracle,
+)
+from coadjoint.lower.program import FUNCTIONS, evaluate
+from tests.kernels import ProgramReference
+from tests.programs import program
+from tests.trees import NAMES, trees
+
+
+def one_output(text, inputs, **values):
+    """The oracle's answer for one expression."""
+    reference = ProgramReference([program("rhs", " ".join(inputs), "", "", text, (1,))])
+    return oracle(reference, "rhs", values)[0]
+
+
+def test_nothing_is_lost_to_cancellation():
+    """(1 + u) - 1 with u = 2^-80 has all its digits, where doubles have none."""
+    bounded = one_output("(x*x + y) - x*x", "xy", x=1.0, y=2.0**-80)
+    assert abs(bounded.value - decimal.Decimal(2.0**-80)) < decimal.Decimal("1e-50")
+    assert float(bounded.envelope) == pytest.approx(2.0, abs=1e-9)  # the magnitudes of all addends
+
+
+def test_fifty_digits_of_every_function():
+    """Each elementary function agrees with mpmath at 80 digits to 50."""
+    with mpmath.workdps(80):
+        for function in FUNCTIONS:
+            value = one_output(f"{function}(x)", "x", x=1.2345).value
+            wanted = getattr(mpmath, function)(mpmath.mpf(1.2345))
+            assert abs(mpmath.mpf(str(value)) / wanted - 1) < mpmath.mpf(10) ** -50
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_envelopes_grow_with_the_slope(function):
+    """The envelope of f(u) is |f(u)| + |f'(u)| envelope(u)."""
+    slopes = {
+        "sqrt": lambda u: 0.5 / math.sqrt(u),
+        "sin": math.cos,
+        "cos": math.sin,
+        "exp": math.exp,
+        "log": lambda u: 1 / u,
+    }
+    u = 1.2345
+    bounded = one_output(f"{function}(x + y - y)", "xy", x=u, y=100.0)
+    wanted = abs(getattr(math, function)(u)) + abs(slopes[function](u)) * (u + 200.0)
+    assert float(bounded.envelope) == pytest.approx(
+        wanted, rel=1e-14
+    )  # a few operations of doubles
+
+
+def test_a_division_amplifies_by_its_condition():
+    """The envelope of a/b is envelope(a)/|b| times envelope(b)/|b|."""
+    bounded = one_output("x/(y - 1)", "xy", x=3.0, y=1.5)
+    assert float(bounded.envelope) == pytest.approx(3 / 0.5 * (2.5 / 0.5), rel=1e-14)  # as above
+
+
+@pytest.mark.parametrize(
+    ("text", "x"),
+    [
+        ("1/x", 0.0),
+        ("1/(x - x)", 2.0),
+        ("1/((x + 1) - x - 1)", 1.0),
+        ("sqrt(x)", -1.0),
+        ("log(x)", 0.0),
+        ("sqrt(x - x)", 1.0),
+        ("exp(x)", 1e300),
+        ("log(x)", -1.0),
+    ],
+)
+def test_points_without_a_value_are_outside(text, x):
+    """A divisor or argument that may be nothing but rounding error says nothing."""
+    with pytest.raises(OutsideDomain):
+        one_output(text, "x", x=x)
+
+
+def test_the_square_root_of_an_exact_zero_is_zero():
+    """Zero by itself, not by cancellation, has a root."""
+    assert one_output("sqrt(x)", "x", x=0.0).value == 0
+
+
+def test_a_sign_error_is_unmistakable():
+    """The k of a wrong sign is about 1e16, of float32 inside about 1e8; of a rounding at most 1."""
+    bounded = one_output("x*y", "xy", x=1.1, y=1.3)
+    assert error_in_envelopes(1.1 * 1.3, bounded) <= 1
+    assert error_in_envelopes(-1.1 * 1.3, bounded) > 1e15
+    assert error_in_envelopes(float(np.float32(1.1) * np.float32(1.3)), bounded) > 1e7
+    assert error_in_envelopes(math.inf, bounded) == math.inf
+
+
+def test_the_floor_is_one_subnormal():
+    """A result that rounds to zero below all doubles has an error below one unit."""
+    assert error_in_envelopes(0.0, one_output("x*x", "x", x=2.0**-600)) <= 1
+
+
+def test_ulp_are_counted_where_nothing_cancels():
+    """Units of the last place are given for a product and not for a difference that cancels."""
+    assert error_in_ulp(1.0 + 2.0**-51, exact(1.0)) == 2.0
+    assert error_in_ulp(5.0, one_output("x - y", "xy", x=1.0, y=1.0 - 2.0**-30)) == 0.0
+
+
+def test_the_precision_of_others_is_left_alone():
+    """Neither mpmath's nor decimal's global precision is changed by an evaluation."""
+    before = (mpmath.mp.dps, decimal.getcontext().prec)
+    one_output("sin(x)", "x", x=1.0)
+    assert (mpmath.mp.dps, decimal.getcontext().prec) == before
+
+
+@settings(deadline=None)
+@given(trees(functions=("sqrt",)), st.integers(0, 1000))
+def test_double_evaluation_stays_within_its_operations(tree, seed):
+    """In doubles, a tree is off by less than its operations, in units of the envelope."""
+    generator = np.random.default_rng(seed)
+    values = dict(zip(NAMES, generator.normal(size=len(NAMES)).tolist(), strict=True))
+    try:
+        with decimal.localcontext(decimal.Context(prec=60)):
+            known = {name: exact(value) for name, value in values.items()}
+            bounded = evaluate(tree, known, exact, call)
+    except (OutsideDomain, ArithmeticError):
+        return
+    if not 1e-200 < bounded.envelope < 1e200:
+        return
+    doubles = {name: np.float64(value) for name, value in values.items()}
+    with np.errstate(all="ignore"):
+        computed = evaluate(tree, doubles, np.float64, lambda function, u: np.sqrt(u))
+    # Each of at most 80 operations and 40 constants adds one rounding; second order is below 1 %.
+    assert error_in_envelopes(float(computed), bounded) <= 122
+
+
+def test_constants_are_exact_rationals():
+    """A third is a third to 50 digits, not the double next to it."""
+    third = exact(Fraction(1, 3)).value
+    assert abs(third * 3 - 1) < decimal.Decimal("1e-50")
+    assert third != exact(1 / 3).value

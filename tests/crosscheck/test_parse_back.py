@@ -1,0 +1,130 @@
+"""Rung 3: emitted text reads back as its Program, and a text that does not is caught."""
+
+import re
+
+import pytest
+
+from coadjoint.crosscheck.parse_back import check_c, check_python
+from coadjoint.crosscheck.read_c import read_c
+from coadjoint.crosscheck.read_c import read_expression as read_c_expression
+from coadjoint.crosscheck.read_python import read_expression as read_python_expression
+from coadjoint.errors import CrossCheckError
+from coadjoint.render.kernels import render_system
+from tests.programs import HEAVY_TOP, PENDULUM, TOP_RHS
+from tests.render.test_kernels import CROWD
+
+TEXTS = render_system(HEAVY_TOP)
+
+
+@pytest.mark.parametrize("context", [HEAVY_TOP, PENDULUM, CROWD], ids=lambda context: context.name)
+def test_rendered_texts_read_back(context):
+    """Every function of both languages, in every branch, is its Program."""
+    texts = render_system(context)
+    assert context.programs
+    for program in context.programs:
+        check_python(program, texts["kernel.py"])
+        check_c(program, texts["kernel.c"], context.name)
+
+
+def test_both_branches_are_read():
+    """Shared and separate parameters are two bodies, a function without parameters is one."""
+    assert len(read_c(TEXTS["kernel.c"], "heavy_top_rhs")) == 2
+    assert len(read_c(TEXTS["kernel.c"], "heavy_top_poisson_tensor")) == 1
+
+
+SPOILED_PYTHON = [
+    ("Omega3 * Pi2 - Omega2 * Pi3", "Omega3 * Pi2 + Omega2 * Pi3", "the line of 0"),
+    ("Omega3 * Pi2 - Omega2 * Pi3", "Pi2 * Omega3 - Omega2 * Pi3", "the line of 0"),
+    ("out[3] =", "out[4] =", "the line of"),
+    ("    Omega1 = Pi1 / I1\n", "", "Omega"),
+    ("Pi1, Pi2, Pi3, G", "Pi2, Pi1, Pi3, G", "inputs"),
+    ("_p1 = m * g", "_p1 = np.float32(m * g)", "np.float32"),
+    ("_p1 = m * g", "_p1 = np.sqrt(m * g)", "the line of _p1"),
+    ("_p1 = m * g", "_p1 = m * g * 1", "'1'"),
+    ("_p1 = m * g", "_p1 += m * g", "_p1 \\+= m"),
+    ("_p1 = m * g", "_p1 = __import__('os')", "__import__"),
+    ("_over_members(_rhs,", "_over_members(_energy,", "does not evaluate _rhs"),
+    (
+        "def energy(",
+        "def rhs(state, parameters, out=None):\n    pass\n\n\ndef energy(",
+        "out of place",
+    ),
+    ("import math\n", "import math\n_rhs = None\n", "_rhs = None"),
+]
+
+
+@pytest.mark.parametrize(("good", "bad", "found"), SPOILED_PYTHON)
+def test_spoiled_python_is_caught(good, bad, found):
+    """A sign, an order, a row, a name, a type, a constant or a call out of place is an error."""
+    assert good in TEXTS["kernel.py"]
+    spoiled = TEXTS["kernel.py"].replace(good, bad, 1)
+    with pytest.raises(CrossCheckError, match=found) as caught:
+        check_python(TOP_RHS, spoiled)
+    assert (caught.value.rung, caught.value.function) == (3, "rhs")
+
+
+SPOILED_C = [
+    ("Omega3 * Pi2 - Omega2 * Pi3", "Omega3 * Pi2 + Omega2 * Pi3", "the line of 0"),
+    ("Omega3 * Pi2 - Omega2 * Pi3", "Pi2 * Omega3 - Omega2 * Pi3", "the line of 0"),
+    ("out[3 * out_stride", "out[4 * out_stride", "the line of"),
+    ("const double Omega1 = Pi1 / I1;", "", "Omega"),
+    ("const double Omega1 = Pi1 / I1;", "const float Omega1 = Pi1 / I1;", "const float"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = (float)Pi1 / I1;", "no form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = 1 * Pi1 / I1;", "no form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = --Pi1 / I1;", "no form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = pow(Pi1, I1);", "no form"),
+    ("state[0 * state_stride", "state[1 * state_stride", "inputs"),
+    ("_p1 = m * g;", "_p1 = m * g; abort();", "abort"),
+]
+
+
+@pytest.mark.parametrize("branch", [0, 1])
+@pytest.mark.parametrize(("good", "bad", "found"), SPOILED_C)
+def test_spoiled_c_is_caught_in_either_branch(good, bad, found, branch):
+    """The same faults in C are errors, whichever of the two branches has them."""
+    text = TEXTS["kernel.c"]
+    places = [match.start() for match in re.finditer(re.escape(good), text)]
+    at = places[branch]
+    spoiled = text[:at] + bad + text[at + len(good) :]
+    with pytest.raises(CrossCheckError, match=found):
+        check_c(TOP_RHS, spoiled, "heavy_top")
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        "parameters[1 * parameters_stride + _n]",
+        "parameters[0]",
+        "parameters[0 * state_stride + _n]",
+    ],
+)
+def test_separate_parameters_are_read_by_member(bad):
+    """In the second branch a parameter of another row, or the first member's for all, is caught."""
+    spoiled = TEXTS["kernel.c"].replace("parameters[0 * parameters_stride + _n]", bad, 1)
+    with pytest.raises(CrossCheckError, match=r"inputs|no form|no line"):
+        check_c(TOP_RHS, spoiled, "heavy_top")
+
+
+def test_a_missing_function_is_caught():
+    """A function that neither file defines is named."""
+    with pytest.raises(CrossCheckError, match="rhs"):
+        check_python(TOP_RHS, "")
+    with pytest.raises(CrossCheckError, match="heavy_top_rhs"):
+        check_c(TOP_RHS, "", "heavy_top")
+
+
+@pytest.mark.parametrize("text", ["a + b", "-(a * b) / 2.5e-07", "np.sqrt(a) - 1.0"])
+def test_one_constant_more_or_less_is_a_difference(text):
+    """Readers of both languages keep numbers to the last bit."""
+    assert read_python_expression(text, "f") == read_c_expression(text.replace("np.", ""), "f")
+    assert read_python_expression("0.1", "f") != read_python_expression("0.10000000000000002", "f")
+    assert read_c_expression("0.1", "f") != read_c_expression("0.10000000000000002", "f")
+
+
+@pytest.mark.parametrize(
+    "text", ["a +", "a b", "(a", "a)", "a ** b", "a, b", "f(a)", "a[0]", "", "1", "a % b", "+a"]
+)
+def test_other_forms_of_c_are_refused(text):
+    """What the printer does not write is no expression."""
+    with pytest.raises(CrossCheckError, match="no form"):
+        read_c_expression(text, "f")
