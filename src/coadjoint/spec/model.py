@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
@@ -30,9 +31,7 @@ def component_names(name: str, shape: Shape) -> tuple[str, ...]:
     """
     if not shape:
         return (name,)
-    indices = [(i,) for i in range(1, shape[0] + 1)]
-    if len(shape) == 2:
-        indices = [(i, j) for (i,) in indices for j in range(1, shape[1] + 1)]
+    indices = product(*(range(1, length + 1) for length in shape))
     joint = "_" if len(shape) == 2 and max(shape) > 9 else ""
     lead = name + "_" if name[-1].isdigit() or joint else name
     return tuple(lead + joint.join(map(str, index)) for index in indices)
@@ -46,7 +45,7 @@ class Variable:
         name: As declared, e.g. ``Omega``.
         role: ``"velocity"``, ``"momentum"`` or ``"advected"``.
         shape: ``()`` for a block of one basis element, else ``(n,)``.
-        block: Positions in the algebra's basis that a velocity or momentum spans; empty if advected.
+        block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
         representation: How the algebra acts on an advected quantity; None otherwise.
         unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
         doc: Free text for documents.

@@ -91,7 +91,21 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """``node`` and every node below it, parents first."""
-    yield node
-    for child in children(node):
-        yield from walk(child)
+    """``node`` and every node below it, parents first; a sum of 500 terms is 500 levels deep."""
+    pending = [node]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending.extend(reversed(children(node)))
+
+
+def walk_up(node: Node) -> Iterator[Node]:
+    """Every node below ``node`` and itself, children first and from left to right."""
+    pending = [(node, False)]
+    while pending:
+        node, seen = pending.pop()
+        if seen:
+            yield node
+        else:
+            pending.append((node, True))
+            pending.extend((child, False) for child in reversed(children(node)))

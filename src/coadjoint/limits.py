@@ -1,0 +1,72 @@
+"""Limits: how much a spec may ask for, each a named constant.
+
+Comes in: nothing. Goes out: numbers that the reader and the bounded children compare with, each
+refusal naming the limit and the place. docs/limits.md is the same table for users, kept equal by a
+test. The values are those at which every hostile input that was tried is refused at once and no
+system of the literature is.
+"""
+
+from __future__ import annotations
+
+# -- the file -------------------------------------------------------------------------------------
+
+#: Bytes of a spec file; some readers of TOML need minutes for a megabyte of nested tables.
+SPEC_BYTES = 64 * 1024
+#: Levels of tables and arrays in a spec; 30 000 dotted keys in one name cost tomllib 20 seconds.
+SPEC_NESTING = 16
+#: Characters of a title.
+TITLE_CHARACTERS = 200
+#: Characters of a unit or a licence expression.
+UNIT_CHARACTERS = 40
+#: Characters of a name; C promises to tell 31 apart.
+NAME_CHARACTERS = 31
+
+# -- numbers --------------------------------------------------------------------------------------
+
+#: Digits of a number before the decimal point.
+INTEGER_DIGITS = 40
+#: Digits of a number after the decimal point.
+DECIMAL_DIGITS = 40
+
+# -- expressions ----------------------------------------------------------------------------------
+
+#: Characters of one expression.
+EXPRESSION_CHARACTERS = 4096
+#: Open parentheses, calls and signs at one place of an expression.
+EXPRESSION_NESTING = 48
+#: Numbers, names, operations and calls of one expression.
+EXPRESSION_NODES = 1000
+#: Size of an exponent, which is a literal integer.
+EXPONENT = 32
+#: Bits of numerator and denominator of any constant that multiplying out would make.
+CONSTANT_BITS = 2048
+#: Terms of an expression after multiplying out, estimated from its shape.
+EXPANDED_TERMS = 20_000
+#: Degree of an expression after multiplying out; a nest of powers has one term and any degree.
+EXPANDED_DEGREE = 256
+#: Size of a constant that a function such as exp is applied to.
+FUNCTION_ARGUMENT = 1000
+
+# -- systems --------------------------------------------------------------------------------------
+
+#: Components of the state.
+STATE_COMPONENTS = 256
+#: Components of all parameters together.
+PARAMETER_COMPONENTS = 256
+#: Generators of an algebra given by name or as a product; constants are sparse.
+GENERATORS = 5000
+#: Operations of all equations after derivation, before common subexpressions are shared.
+OPERATIONS = 20_000
+#: Statements in one C function; compilers need minutes for 20 000.
+C_STATEMENTS = 1000
+
+# -- children -------------------------------------------------------------------------------------
+
+#: Seconds that the derivation of one system may take.
+WORKER_SECONDS = 60
+#: Bytes of memory that the derivation of one system may take.
+WORKER_BYTES = 2 * 1024**3
+#: Seconds that compiling one kernel may take.
+COMPILE_SECONDS = 60
+#: Bytes of memory that compiling one kernel may take.
+COMPILE_BYTES = 2 * 1024**3

@@ -1,0 +1,34 @@
+"""Specs: a TOML file to a checked `Spec`; no SymPy, no NumPy, and nothing of a text is executed.
+
+Read next: `coadjoint.spec.reader`, which has the order of the steps, then
+`coadjoint.spec.expressions`.
+"""
+
+from coadjoint.spec import tree
+from coadjoint.spec.model import (
+    Formula,
+    Observable,
+    Parameter,
+    Shape,
+    Spec,
+    Variable,
+    component_names,
+)
+from coadjoint.spec.reader import read_spec, read_spec_text
+from coadjoint.spec.schema import json_schema
+from coadjoint.spec.shapes import FUNCTIONS
+
+__all__ = [
+    "FUNCTIONS",
+    "Formula",
+    "Observable",
+    "Parameter",
+    "Shape",
+    "Spec",
+    "Variable",
+    "component_names",
+    "json_schema",
+    "read_spec",
+    "read_spec_text",
+    "tree",
+]

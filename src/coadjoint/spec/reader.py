@@ -1,0 +1,265 @@
+"""The reader: a spec file to a `Spec`, the first step of all.
+
+Comes in: a path, or a text. Goes out: a frozen, checked `Spec`; or an error with file, line,
+column, source line and likely fix. Faults are looked for in the order in which they are worth reporting:
+the file, its form (`validate`), the algebra and what is declared over it (`structure`), the names
+and routes (`consistency`), the formulas (`formulas`). Read next: `coadjoint.derive.setting`.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Sequence
+from hashlib import sha256
+from pathlib import Path
+
+from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.limits import SPEC_BYTES
+from coadjoint.spec.consistency import check_blocks, check_names, check_routes, check_sizes
+from coadjoint.spec.faults import did_you_mean
+from coadjoint.spec.formulas import Scope, make_scope, read_formula
+from coadjoint.spec.model import Formula, Observable, Parameter, Spec, Variable
+from coadjoint.spec.names import system_refusal
+from coadjoint.spec.positions import KeyPath, scan
+from coadjoint.spec.schema import SpecFile
+from coadjoint.spec.source import Source
+from coadjoint.spec.structure import (
+    read_algebra,
+    read_parameter,
+    read_representations,
+    read_variable,
+)
+from coadjoint.spec.validate import validate
+
+
+def read_spec(path: str | os.PathLike[str]) -> Spec:
+    """Read a spec from a file.
+
+    Args:
+        path: A regular file in TOML; its stem names the system.
+
+    Raises:
+        SpecError: The file cannot be read, or is not a spec; the message points at the place.
+        LimitError: It asks for more than docs/limits.md allows.
+        AlgebraError: The declared brackets or matrices make no Lie algebra.
+
+    >>> from coadjoint.resources import derivations_folder
+    >>> spec = read_spec(derivations_folder() / "heavy_top.toml")
+    >>> [name for variable in spec.state for name in variable.components]
+    ['Pi1', 'Pi2', 'Pi3', 'Gamma1', 'Gamma2', 'Gamma3']
+    """
+    data = _read_file(os.fspath(path))
+    try:
+        return read_spec_text(data.decode("utf-8"), path)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise _file_fault(
+            f"{os.fspath(path)}:{line}",
+            f"the byte 0x{data[error.start]:02x} is not UTF-8",
+            "a text in UTF-8",
+            found=data[error.start],
+        ) from None
+
+
+def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
+    """Read a spec from its text.
+
+    Args:
+        text: What the file would hold.
+        path: Where it comes from, for messages; the stem names the system.
+
+    Raises:
+        SpecError: The text is not a spec; the message points at the place.
+        LimitError: It asks for more than docs/limits.md allows.
+        AlgebraError: The declared brackets or matrices make no Lie algebra.
+    """
+    data, name = text.encode("utf-8", "surrogatepass"), Path(path).stem
+    refused = system_refusal(name)
+    if refused is not None:
+        raise _file_fault(os.fspath(path), refused[0], *refused[1:], found=name)
+    _check_bytes(os.fspath(path), len(data))
+    plain = text.replace("\r\n", "\n")
+    source = Source(os.fspath(path), plain, scan(plain))
+    file = validate(source)
+    algebra = read_algebra(source, file.algebra, name)
+    representations = read_representations(source, file.representations, algebra)
+    variables = tuple(
+        read_variable(source, variable, part, algebra, representations)
+        for variable, part in file.variables.items()
+    )
+    parameters = tuple(
+        read_parameter(source, parameter, part) for parameter, part in file.parameters.items()
+    )
+    check_sizes(source, variables, parameters)
+    check_names(source, variables, parameters, file.observables)
+    check_blocks(source, variables, algebra)
+    check_routes(source, file, variables, algebra)
+    formulas = _Formulas(source, file, variables, parameters)
+    return Spec(
+        name=name,
+        title=file.title,
+        source=file.source,
+        description=file.description,
+        license=file.license,
+        routes=tuple(file.routes),
+        algebra=algebra,
+        invariance=file.algebra.invariance,
+        variables=variables,
+        parameters=parameters,
+        lagrangian=formulas.lagrangian(),
+        hamiltonian=formulas.hamiltonian(),
+        observables=formulas.observables(),
+        casimirs=formulas.casimirs(),
+        conserved=formulas.conserved(),
+        path=Path(path),
+        sha256=sha256(data).hexdigest(),
+    )
+
+
+class _Formulas:
+    """The formulas of a spec, each in its scope."""
+
+    def __init__(
+        self,
+        source: Source,
+        file: SpecFile,
+        variables: Sequence[Variable],
+        parameters: Sequence[Parameter],
+    ) -> None:
+        self.source, self.file = source, file
+        self.quantities: tuple[Variable | Parameter, ...] = (*variables, *parameters)
+
+    def lagrangian(self) -> Formula | None:
+        if self.file.lagrangian is None:
+            return None
+        scope = make_scope("a Lagrangian", ("velocity", "advected"), self.quantities)
+        return read_formula(self.source, ("lagrangian", "l"), self.file.lagrangian.l, scope)
+
+    def hamiltonian(self) -> Formula | None:
+        if self.file.hamiltonian is None:
+            return None
+        scope = make_scope("a Hamiltonian", ("momentum", "advected"), self.quantities)
+        return read_formula(self.source, ("hamiltonian", "h"), self.file.hamiltonian.h, scope)
+
+    def observables(self) -> tuple[Observable, ...]:
+        roles = ("velocity", "momentum", "advected")
+        scope, found = make_scope("an observable", roles, self.quantities), []
+        for name, part in self.file.observables.items():
+            key: KeyPath = ("observables", name)
+            # An observable may be its expression alone.
+            inner = (*key, "expression")
+            key = inner if inner in self.source.positions.values else key
+            formula = read_formula(self.source, key, part.expression, scope)
+            found.append(Observable(name, formula, part.unit, part.doc))
+        return tuple(found)
+
+    def casimirs(self) -> tuple[Formula, ...]:
+        scope = make_scope("a Casimir", ("momentum", "advected"), self.quantities)
+        return self._claims("casimirs", self.file.claims.casimirs, scope)
+
+    def conserved(self) -> tuple[Formula, ...]:
+        roles = ("velocity", "momentum", "advected")
+        named = ("energy", *self.file.observables)
+        scope = make_scope("an integral", roles, self.quantities, named)
+        return self._claims("conserved", self.file.claims.conserved, scope)
+
+    def _claims(self, kind: str, texts: Sequence[str], scope: Scope) -> tuple[Formula, ...]:
+        return tuple(
+            read_formula(self.source, ("claims", kind, place), text, scope)
+            for place, text in enumerate(texts)
+        )
+
+
+# -- files ----------------------------------------------------------------------------------------
+
+
+def _read_file(path: str) -> bytes:
+    """The bytes of a regular file, never waiting for a pipe and never more than the limit."""
+    try:
+        # Not following a link, so that the file that was checked is the file that is read; not
+        # blocking, because opening a pipe would wait for a writer.
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except (OSError, ValueError) as error:
+        raise _not_opened(path, error) from None
+    with os.fdopen(descriptor, "rb") as file:
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode):
+            kind = _kind(status.st_mode)
+            raise _file_fault(path, f"this is {kind}", "a regular file", found=kind)
+        _check_bytes(path, status.st_size)
+        try:
+            data = file.read(SPEC_BYTES + 1)  # it may have grown since
+        except OSError as error:
+            raise _not_opened(path, error) from None
+    _check_bytes(path, len(data))
+    if not data.strip():
+        raise _file_fault(
+            path,
+            "the file is empty",
+            "a spec",
+            "Write one with: coadjoint new NAME.",
+            found="",
+        )
+    return data
+
+
+def _not_opened(path: str, error: OSError | ValueError) -> CoadjointError:
+    """Why a file could not be opened, and which one may have been meant."""
+    number = error.errno if isinstance(error, OSError) else None
+    if number == errno.ELOOP and Path(path).is_symlink():
+        target = str(Path(path).readlink())
+        hint = f"Give the file that it points to: {target}."
+        return _file_fault(path, "this is a symbolic link", "a regular file", hint, found=target)
+    if number == errno.ENOENT:
+        beside = [str(p) for p in Path(path).parent.glob("*.toml")]
+        hint = did_you_mean(path, beside)
+        return _file_fault(path, "there is no such file", "a spec in TOML", hint, found=path)
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return _file_fault(
+        path, f"cannot be read: {reason}", "a readable regular file", found=str(reason)
+    )
+
+
+def _kind(mode: int) -> str:
+    """What a path is if not a regular file."""
+    kinds = (
+        (stat.S_ISDIR, "a directory"),
+        (stat.S_ISFIFO, "a named pipe (FIFO)"),
+        (stat.S_ISSOCK, "a socket"),
+    )
+    return next((name for is_kind, name in kinds if is_kind(mode)), "a device")
+
+
+def _check_bytes(path: str, size: int) -> None:
+    if size > SPEC_BYTES:
+        raise _file_fault(
+            path,
+            f"the file has {size} bytes",
+            f"at most {SPEC_BYTES} (SPEC_BYTES)",
+            found=size,
+            kind=LimitError,
+        )
+
+
+def _file_fault(
+    path: str,
+    problem: str,
+    expected: str,
+    hint: str = "",
+    *,
+    found: object,
+    kind: type[CoadjointError] = SpecError,
+) -> CoadjointError:
+    """An error about a file as a whole."""
+    return kind(
+        f"{path}: {problem}; expected {expected}. {hint}".rstrip(),
+        path=path,
+        line=0,
+        column=0,
+        key="",
+        found=found,
+        expected=expected,
+        hint=hint,
+    )

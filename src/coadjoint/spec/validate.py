@@ -1,0 +1,227 @@
+"""Validate: a TOML text to a `SpecFile`, with every fault of its form at its line.
+
+Comes in: a `Source`. Goes out: the checked tables, or one error that lists all faults.
+Read next: `coadjoint.spec.structure`.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from coadjoint import limits
+from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.spec.decimals import read_float
+from coadjoint.spec.faults import did_you_mean, listed
+from coadjoint.spec.positions import KeyPath, Span
+from coadjoint.spec.schema import (
+    AlgebraPart,
+    ClaimsPart,
+    HamiltonianPart,
+    LagrangianPart,
+    ObservablePart,
+    ParameterPart,
+    Part,
+    RepresentationPart,
+    SpecFile,
+    VariablePart,
+)
+from coadjoint.spec.source import Source, joined, shown
+
+_TABLES: Mapping[str | int, type[Part]] = MappingProxyType(
+    {
+        "algebra": AlgebraPart,
+        "representations": RepresentationPart,
+        "variables": VariablePart,
+        "parameters": ParameterPart,
+        "lagrangian": LagrangianPart,
+        "hamiltonian": HamiltonianPart,
+        "observables": ObservablePart,
+        "claims": ClaimsPart,
+    }
+)
+_KINDS = MappingProxyType(
+    {
+        "model_type": "a table",
+        "dict_type": "a table",
+        "string_type": "text in quotes",
+        "list_type": "a list in square brackets",
+        "bool_type": "true or false",
+        "int_type": "an integer",
+    }
+)
+_HOW_TO_WRITE: Mapping[str | int, str] = MappingProxyType(
+    {
+        "title": 'Write title = "..." at the top.',
+        "routes": 'Write routes = ["euler-poincare", "lie-poisson"] at the top.',
+        "algebra": 'Write [algebra] and below it name = "so(3)".',
+        "variables": 'Write [variables] and below it Pi = { role = "momentum" }.',
+        "role": 'Write { role = "momentum" }.',
+        "l": 'Write l = "dot(Omega, diag(I)*Omega)/2".',
+        "h": 'Write h = "dot(Pi, inverse(diag(I))*Pi)/2".',
+        "expression": 'Write { expression = "..." }.',
+        "matrices": "Write matrices = { e1 = [[0, 1], [0, 0]] }.",
+    }
+)
+_TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+def validate(source: Source) -> SpecFile:
+    """The tables of a spec, each key known and each value of its kind.
+
+    Raises:
+        SpecError: The text is no TOML, or a key or value is not what a spec may have.
+        LimitError: Tables nest too deep, or a number is too long.
+    """
+    document = _parse(source)
+    try:
+        return SpecFile.model_validate(document)
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+        raise joined([_fault(source, document, detail) for detail in details]) from None
+
+
+# -- TOML -----------------------------------------------------------------------------------------
+
+
+def _parse(source: Source) -> dict[str, Any]:
+    """The tables of a TOML text."""
+    if source.positions.too_deep is not None:
+        raise _too_deep(source, source.positions.too_deep)
+    try:
+        return tomllib.loads(source.text, parse_float=read_float)
+    except tomllib.TOMLDecodeError as error:
+        raise _toml_fault(source, error) from None
+    except RecursionError:
+        raise _too_deep(source, 0) from None
+    except ValueError:  # Python refuses to read integers beyond 4300 digits
+        long = re.search(r"\d[\d_]{4000,}", source.text)
+        span = long.span() if long else (0, 0)
+        raise source.fault(
+            (),
+            "an integer is too long",
+            found=source.text[span[0] : span[0] + 40],
+            expected=f"at most {limits.INTEGER_DIGITS} digits (INTEGER_DIGITS)",
+            at=span,
+            kind=LimitError,
+            limit="INTEGER_DIGITS",
+        ) from None
+
+
+def _too_deep(source: Source, at: int) -> CoadjointError:
+    return source.fault(
+        (),
+        "tables or arrays nest too deep",
+        found=source.text[at : at + 20],
+        expected=f"at most {limits.SPEC_NESTING} levels (SPEC_NESTING)",
+        at=(at, at + 1),
+        kind=LimitError,
+        limit="SPEC_NESTING",
+    )
+
+
+def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointError:
+    """What tomllib refuses, at its place; a doubled key where it stands the second time."""
+    if source.positions.doubled is not None:
+        key, span = source.positions.doubled
+        first = source.line(source.positions.key(key))
+        return source.fault(
+            key,
+            f"{key[-1]!r} is declared twice",
+            found=str(key[-1]),
+            expected="one declaration",
+            hint=f"The first is in line {first}.",
+            at=span,
+        )
+    place = _TOML_PLACE.search(str(error))
+    span = _span(source, place)
+    problem = _TOML_PLACE.sub("", str(error))
+    return source.fault(
+        (),
+        f"not TOML: {problem[:1].lower()}{problem[1:]}",
+        found=source.text[span[0] : span[1]],
+        hint="Text stands in quotes, a table in one line in { }.",
+        at=span,
+    )
+
+
+def _span(source: Source, place: re.Match[str] | None) -> Span:
+    """The offset that a message of tomllib means."""
+    if place is None or place[1] is None:
+        return max(0, len(source.text.rstrip()) - 1), len(source.text)
+    lines = source.text.split("\n")
+    start = sum(len(line) + 1 for line in lines[: int(place[1]) - 1]) + int(place[2]) - 1
+    return start, start + 1
+
+
+# -- keys and values ------------------------------------------------------------------------------
+
+
+def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> CoadjointError:
+    """One fault that pydantic found, in our words."""
+    path, kind = tuple(detail["loc"]), detail["type"]
+    present = _present(path, document)
+    if kind == "missing":
+        table = _TABLES[path[0]] if len(path) > 1 else SpecFile
+        return source.fault(
+            present,
+            f"the key {path[-1]!r} is missing",
+            found=str(path[-1]),
+            expected=table.model_fields[str(path[-1])].description or "",
+            hint=_HOW_TO_WRITE.get(path[-1], ""),
+            at=source.positions.key(present),
+        )
+    if kind == "extra_forbidden":
+        return _unknown_key(source, path)
+    expected, found = _expected(detail), detail["input"]
+    return source.fault(
+        present,
+        f"found {shown(found)}",
+        found=found,
+        expected=expected,
+        hint=did_you_mean(found, re.findall("'([^']+)'", expected))
+        if kind == "literal_error" and isinstance(found, str)
+        else "",
+        kind=LimitError if kind.endswith("too_long") else _kind_of(expected),
+    )
+
+
+def _kind_of(expected: str) -> type[CoadjointError]:
+    """The class of the error; digits are counted where values are read."""
+    return LimitError if "_DIGITS)" in expected else SpecError
+
+
+def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
+    known = (_TABLES[path[0]] if len(path) > 1 else SpecFile).model_fields
+    return source.fault(
+        path,
+        f"unknown key {path[-1]!r}",
+        found=str(path[-1]),
+        expected=f"one of {listed(known)}",
+        hint=did_you_mean(str(path[-1]), known),
+        at=source.positions.key(path),
+    )
+
+
+def _present(path: KeyPath, document: Any) -> KeyPath:
+    """The part of a path that the document has."""
+    for length, part in enumerate(path):
+        try:
+            document = document[part]
+        except (KeyError, IndexError, TypeError):
+            return path[:length]
+    return path
+
+
+def _expected(detail: ErrorDetails) -> str:
+    """What would have been accepted, from the words of pydantic or our own."""
+    if detail["type"] in _KINDS:
+        return _KINDS[detail["type"]]
+    message = detail["msg"].removeprefix("Value error, ")
+    return re.sub(r"^\w+ should (?:be|have) (?:a valid )?", "", message)
