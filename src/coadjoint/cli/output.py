@@ -41,13 +41,16 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
     console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal:
         console.width = 10_000
-    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD)
+    table = Table(box=SIMPLE_HEAD)
     for column in columns:
         justify = "right" if column.startswith(">") else "left"
         table.add_column(column.removeprefix(">"), justify=justify)  # type: ignore[arg-type]
     for row in rows:
         table.add_row(*(Text(printable(cell)) for cell in row))
-    console.print(table)
+    with console.capture() as text:
+        console.print(table)
+    lines = [title, *text.get().splitlines()] if title else text.get().splitlines()
+    click.echo("\n".join(line.rstrip() for line in lines if line.strip()))
 
 
 def print_json(value: Any) -> None:

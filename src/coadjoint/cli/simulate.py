@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 Assignment = tuple[str, list[float]]
 
 
-def _assignments(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> list[Assignment]:
+def _assignments(
+    _context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]
+) -> list[Assignment]:
     """Each ``NAME=1,2,3``, or ``1,2,3`` with no name, as name and numbers."""
     read = []
     for text in given:
@@ -184,13 +186,8 @@ def _record(system: System, solution: Solution) -> dict[str, Any]:
         for quantities in (system.STATE, system.OBSERVABLES)
         for name in quantities.components
     }
-    return {
-        "system": system.name,
-        "status": solution.status,
-        "message": solution.message,
-        "time": solution.time_reached,
+    return solution.summary() | {
         "initial": {name: first for name, first, _ in ends},
         "final": {name: last for name, _, last in ends},
         "units": units,
-        "drift": {name: float(drift) for name, drift in solution.drift.items()},
     }
