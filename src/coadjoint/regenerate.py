@@ -18,8 +18,20 @@ from time import perf_counter
 from typing import Any
 
 from coadjoint import limits
-from coadjoint.errors import CoadjointError, DriftError, SpecError
+from coadjoint.build.cache import cache_folder, replace_file
+from coadjoint.build.compiler import find_compiler
+from coadjoint.errors import CoadjointError, CompilerError, DriftError, SpecError
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
+from coadjoint.render.compare import compare_tree, is_intact
+from coadjoint.render.write import (
+    GeneratedSystem,
+    manifest_text,
+    read_manifest,
+    tree_texts,
+    write_systems,
+)
+from coadjoint.sandbox import report_progress, run_bounded
+from coadjoint.spec.reader import read_file
 
 #: Called with system, stage, number of stages done, number of stages.
 Progress = Callable[[str, str, int, int], None]
@@ -80,7 +92,13 @@ class _Source:
 
     @property
     def fingerprint(self) -> str:
-        return digest({"engine": engine_fingerprint(), "spec": self.sha256, "name": self.name})
+        """Hash of all that the verified output depends on, the compiler included."""
+        try:
+            compiler = find_compiler().version
+        except CompilerError:
+            compiler = "none"
+        engine = engine_fingerprint()
+        return digest({"engine": engine, "compiler": compiler, "spec": [self.name, self.sha256]})
 
 
 def regenerate(
@@ -113,10 +131,9 @@ def regenerate(
     rows = {source.name: row for source in sources if (row := _unchanged(source, output))}
     pending = [source for source in sources if source.name not in rows]
     records, failures = _build_all(pending, jobs, progress)
-    if records or complete:
-        names = {source.name for source in sources}
+    keep = {source.name for source in sources} if complete else None
+    if records or not _is_current(output, keep):
         systems = {name: _generated_system(record) for name, record in records.items()}
-        keep = names if complete else None
         write_systems(output, systems, template_hashes(), keep, on_wait)
     for source in pending:
         if source.name in records:
@@ -180,7 +197,7 @@ def _sources(paths: Sequence[Path]) -> list[_Source]:
     Raises:
         SpecError: A file cannot be read, or two have one name.
     """
-    sources = [_Source(path, sha256(read_bytes(path)).hexdigest()) for path in paths]
+    sources = [_Source(path, sha256(read_file(str(path))).hexdigest()) for path in paths]
     names = [source.name for source in sources]
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
@@ -189,6 +206,49 @@ def _sources(paths: Sequence[Path]) -> list[_Source]:
             found=doubled[0],
         )
     return sources
+
+
+# -- what need not be done again ---------------------------------------------------------------------
+
+
+def _is_current(output: Path, names: set[str] | None) -> bool:
+    """Whether the manifest speaks of these systems and of the templates as they are."""
+    manifest = read_manifest(output)
+    same = names is None or manifest["systems"].keys() == names
+    return bool(same and manifest["templates"] == template_hashes())
+
+
+def _unchanged(source: _Source, output: Path) -> Row | None:
+    """The row of a system whose files are those of an earlier, verified run; else None.
+
+    What was verified is remembered in the private cache of this machine, by fingerprint.
+    """
+    try:
+        found = json.loads(_stamp(source).read_text(encoding="ascii"))
+        entry = read_manifest(output)["systems"].get(source.name)
+        if found["entry"] == entry and is_intact(output, source.name):
+            return Row(**{**found["row"], "seconds": 0.0, "fresh": False})
+    except (OSError, ValueError, KeyError, TypeError):
+        pass  # a damaged stamp is no stamp
+    return None
+
+
+def _remember(source: _Source, record: Mapping[str, Any]) -> None:
+    """Keep what a run has verified; if that fails, the next run verifies again."""
+    content = {"entry": _generated_system(record).record(), "row": record["row"]}
+    try:
+        replace_file(_stamp(source), json.dumps(content).encode("ascii"))
+    except OSError:
+        pass
+
+
+def _stamp(source: _Source) -> Path:
+    return cache_folder() / "verified" / f"{source.fingerprint}.json"
+
+
+def _generated_system(record: Mapping[str, Any]) -> GeneratedSystem:
+    """A record from a child as what the writer takes."""
+    return GeneratedSystem(record["texts"], record["spec_sha256"], record["route"])
 
 
 # -- building, in bounded children ------------------------------------------------------------------
@@ -224,7 +284,9 @@ def _build_all(
 
 def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
     """One system through the pipeline, as plain JSON values; runs in a bounded child."""
+    # SymPy loads here, in the child, and never in the parent.
     from coadjoint import pipeline
+    from coadjoint.prove import Verdict
     from coadjoint.spec import read_spec
 
     start = perf_counter()
@@ -249,11 +311,9 @@ def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
         seconds=perf_counter() - start,
         fresh=True,
     )
-    passed = [rung for rung, status in report.rungs.items() if status == "passed"]
     return {
         "row": asdict(row),
         "texts": rendered.texts,
         "spec_sha256": spec.sha256,
         "route": spec.routes[0],
-        "rungs": [1, 2, *passed],
     }

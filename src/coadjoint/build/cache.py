@@ -109,9 +109,8 @@ def store(key: str, content: bytes) -> Path:
     folder = cache_folder() / "kernels"
     digest = hashlib.sha256(content).hexdigest()
     try:
-        folder.mkdir(mode=0o700, exist_ok=True)
-        _replace(folder / f"{digest}.so", content)
-        _replace(folder / key, digest.encode("ascii"))
+        replace_file(folder / f"{digest}.so", content)
+        replace_file(folder / key, digest.encode("ascii"))
     except OSError as error:
         raise OutputError(
             f"{folder} could not be written: {error.strerror}. Free some space, or set "
@@ -131,8 +130,9 @@ def _read(path: Path) -> bytes:
         return file.read()
 
 
-def _replace(path: Path, content: bytes) -> None:
-    """Write a file so that it is old or new and never torn."""
+def replace_file(path: Path, content: bytes) -> None:
+    """Write a file of the cache so that it is old or new and never torn; its folder is made."""
+    path.parent.mkdir(mode=0o700, exist_ok=True)
     temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
     handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
     try:

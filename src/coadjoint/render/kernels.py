@@ -38,7 +38,7 @@ SUMMARIES: Final = {
 NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."
 
 #: Members that the NumPy kernel evaluates at a time (measured: docs/decisions/numpy-kernels.md).
-CHUNK: Final = 8192
+CHUNK: Final = 11_000
 
 
 @dataclass(frozen=True)

@@ -43,13 +43,11 @@ class GeneratedSystem:
         texts: Text by file name.
         spec_sha256: Hash of the spec's bytes.
         route: The route whose equations were emitted.
-        rungs: The rungs of the ladder that were passed.
     """
 
     texts: Mapping[str, str]
     spec_sha256: str
     route: str
-    rungs: tuple[int, ...]
 
     def record(self) -> dict[str, Any]:
         """Its entry in the manifest."""
@@ -57,7 +55,6 @@ class GeneratedSystem:
             "id": identity_of(self.texts),
             "spec_sha256": self.spec_sha256,
             "route": self.route,
-            "rungs": list(self.rungs),
             "files": {name: text_hash(text) for name, text in self.texts.items()},
         }
 

@@ -50,7 +50,7 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
     >>> [name for variable in spec.state for name in variable.components]
     ['Pi1', 'Pi2', 'Pi3', 'Gamma1', 'Gamma2', 'Gamma3']
     """
-    data = _read_file(os.fspath(path))
+    data = read_file(os.fspath(path))
     try:
         return read_spec_text(data.decode("utf-8"), path)
     except UnicodeDecodeError as error:
@@ -175,7 +175,7 @@ class _Formulas:
 # -- files ----------------------------------------------------------------------------------------
 
 
-def _read_file(path: str) -> bytes:
+def read_file(path: str) -> bytes:
     """The bytes of a regular file, never waiting for a pipe and never more than the limit."""
     try:
         # Not following a link, so that the file that was checked is the file that is read; not

@@ -1,0 +1,1 @@
+"""The shipped specs, one TOML file for each system."""

@@ -1,0 +1,142 @@
+"""The cache: private, verified, and any damage is a miss."""
+
+import os
+import shutil
+import warnings
+
+import numpy as np
+import pytest
+
+from coadjoint.build import cache
+from coadjoint.build.cache import CacheWarning, cache_folder, check_private, fetch, store
+from coadjoint.errors import OutputError
+from coadjoint.solve.system import load_folder
+from coadjoint.systems import rigid_body
+
+
+@pytest.fixture
+def folder(monkeypatch, tmp_path):
+    """An empty cache."""
+    path = tmp_path / "cache"
+    monkeypatch.setenv("COADJOINT_CACHE", str(path))
+    return path
+
+
+def body(tmp_path):
+    """The rigid body, loaded as if for the first time in this process."""
+    target = tmp_path / "rigid_body"
+    if not target.exists():
+        shutil.copytree(rigid_body.system.folder, target)
+    return load_folder(target)
+
+
+def test_an_object_comes_back_as_it_was_stored(folder):
+    """Same bytes under the key, none under another."""
+    path = store("key", b"content")
+    assert fetch("key") == path
+    assert path.read_bytes() == b"content"
+    assert fetch("other") is None
+
+
+@pytest.mark.parametrize("damage", ["empty", "half", "flip", "gone", "link", "key"])
+def test_every_damage_is_a_miss(folder, damage):
+    """Emptied, halved, one bit flipped, removed, replaced by a link, or with a garbled key."""
+    path = store("key", b"content of an object")
+    whole = path.read_bytes()
+    match damage:
+        case "empty":
+            path.write_bytes(b"")
+        case "half":
+            path.write_bytes(whole[: len(whole) // 2])
+        case "flip":
+            path.write_bytes(bytes([whole[0] ^ 1]) + whole[1:])
+        case "gone":
+            path.unlink()
+        case "link":
+            path.rename(path.with_name("moved"))
+            path.symlink_to(path.with_name("moved"))
+        case "key":
+            (path.parent / "key").write_bytes(b"\xff../../etc/passwd")
+    assert fetch("key") is None
+    assert fetch("key") is None
+    assert store("key", whole).read_bytes() == whole
+    assert fetch("key") == path
+
+
+def test_a_damaged_kernel_is_rebuilt(folder, tmp_path):
+    """After damage the same results, from a new object."""
+    state = np.array([1.0, 2.0, 3.0])
+    expected = body(tmp_path).rhs(state)
+    objects = list(folder.rglob("*.so"))
+    assert objects
+    for path in objects:
+        path.write_bytes(b"damaged")
+    assert np.array_equal(body(tmp_path).rhs(state), expected)
+    assert all(path.read_bytes() != b"damaged" for path in folder.rglob("*.so"))
+
+
+def test_a_second_load_does_not_compile(folder, tmp_path, monkeypatch):
+    """The cached object serves; the compiler is not called."""
+    body(tmp_path).rhs(np.ones(3))
+    monkeypatch.setattr(
+        "coadjoint.build.library.compile_kernel", lambda *_: pytest.fail("compiled again")
+    )
+    body(tmp_path).rhs(np.ones(3))
+
+
+def test_the_folder_is_private(folder):
+    """0700, whatever the umask."""
+    assert cache_folder() == folder
+    assert folder.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_folder_that_others_may_write_is_refused(tmp_path):
+    """The mode and the remedy are in the message."""
+    tmp_path.chmod(0o777)
+    with pytest.raises(OutputError, match=r"others may write to it \(mode 777\)\. Run `chmod 700"):
+        check_private(tmp_path)
+
+
+def test_a_link_in_place_of_the_folder_is_refused(tmp_path):
+    """A symlink could lead anywhere."""
+    (tmp_path / "real").mkdir(mode=0o700)
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    with pytest.raises(OutputError, match="not a real folder"):
+        check_private(tmp_path / "link")
+
+
+def test_a_folder_of_another_user_is_refused(tmp_path, monkeypatch):
+    """The owner is named."""
+    owner = os.getuid()
+    monkeypatch.setattr(cache.os, "getuid", lambda: owner + 1)
+    with pytest.raises(OutputError, match=f"belongs to user {owner}"):
+        check_private(tmp_path)
+
+
+def test_an_unusable_cache_is_replaced_for_this_process_and_said_once(monkeypatch, tmp_path):
+    """Kernels still work, in a temporary folder."""
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "file"))
+    with pytest.warns(CacheWarning, match="COADJOINT_CACHE"):
+        first = cache_folder()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert cache_folder() == first
+    assert first.is_dir()
+    shutil.rmtree(first)
+
+
+def test_a_full_disk_leaves_the_old_object(folder, monkeypatch):
+    """A failing write is an error that names the folder; what was there still is."""
+    store("key", b"old")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cache.os, "fsync", full)
+    with pytest.raises(OutputError, match="No space left on device"):
+        store("key", b"new")
+    monkeypatch.undo()
+    monkeypatch.setenv("COADJOINT_CACHE", str(folder))
+    assert fetch("key").read_bytes() == b"old"
+    assert not [path for path in folder.rglob("*.tmp")]

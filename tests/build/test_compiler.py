@@ -1,0 +1,171 @@
+"""Compilers: found, missing, failing, hanging, lying; CC is a program and nothing else."""
+
+import shutil
+import stat
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coadjoint.build import compiler
+from coadjoint.build.compiler import Compiler, compile_kernel, find_compiler
+from coadjoint.errors import CompilerError
+from coadjoint.solve.kernels import CompilerWarning
+from coadjoint.solve.system import load_folder
+from coadjoint.systems import heavy_top
+
+SIMPLE = {
+    "kernel.h": "double twice(double x);\n",
+    "kernel.c": '#include "kernel.h"\ndouble twice(double x)\n{\n    return 2.0 * x;\n}\n',
+}
+
+
+@pytest.fixture(autouse=True)
+def forget():
+    """Each test searches for a compiler anew."""
+    compiler._find.cache_clear()
+    yield
+    compiler._find.cache_clear()
+
+
+@pytest.fixture
+def fresh_top(monkeypatch, tmp_path):
+    """The heavy top in a folder of its own, with an empty cache."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    folder = tmp_path / "heavy_top"
+    shutil.copytree(heavy_top.system.folder, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    return load_folder(folder)
+
+
+def script(folder, name, body):
+    """An executable shell script."""
+    path = folder / name
+    path.write_text(f"#!/bin/sh\n{body}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return path
+
+
+def sources(folder, **changes):
+    """A folder with a kernel."""
+    for name, text in {**SIMPLE, **changes}.items():
+        (folder / name).write_text(text)
+    return folder
+
+
+def test_the_compiler_of_this_machine_is_found_and_works(tmp_path):
+    """A version is known, and both builds make a shared object."""
+    found = find_compiler()
+    assert found.version
+    for build in ("exact", "fast"):
+        made = compile_kernel(found, sources(tmp_path), build)
+        assert made.read_bytes()[:4] == b"\x7fELF"
+
+
+def test_contraction_is_off_in_the_exact_build_alone():
+    """Bits are promised without fused operations; fast maths is never on."""
+    flags = find_compiler().flags("exact")
+    assert "-ffp-contract=off" in flags
+    assert "-ffp-contract=fast" in find_compiler().flags("fast")
+    assert "-ffast-math" not in (*flags, *find_compiler().flags("fast"))
+    assert {"-std=c11", "-O3", "-march=native", "-Wall", "-Wextra", "-Werror"} <= set(flags)
+
+
+@pytest.mark.parametrize(
+    "value",
+    ["gcc --version; touch x #", "gcc -O0", "-wrapper", "@options", "$(id)", "gcc\n", "a|b"],
+)
+def test_cc_with_anything_but_a_program_is_refused(monkeypatch, value, tmp_path):
+    """No shell, no options: the message shows what CC was."""
+    monkeypatch.setenv("CC", value)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(CompilerError, match="expected the name or path of one program") as caught:
+        find_compiler()
+    assert caught.value.found == value
+    assert not list(tmp_path.iterdir())
+
+
+def test_cc_that_is_not_there_is_refused(monkeypatch):
+    """The message names it."""
+    monkeypatch.setenv("CC", "no-such-compiler")
+    with pytest.raises(CompilerError, match="'no-such-compiler', which is not found"):
+        find_compiler()
+
+
+def test_no_compiler_at_all_says_how_to_get_one(monkeypatch, tmp_path):
+    """An empty PATH: the pip command is in the message."""
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(compiler, "find_spec", lambda name: None)
+    with pytest.raises(CompilerError, match=r"pip install 'coadjoint\[c\]'"):
+        find_compiler()
+
+
+def test_an_error_of_the_compiler_is_shown(tmp_path):
+    """The first lines of what it said stand in the message."""
+    folder = sources(tmp_path, **{"kernel.c": "this is not C;\n"})
+    with pytest.raises(CompilerError, match="error"):
+        compile_kernel(find_compiler(), folder, "exact")
+
+
+def test_a_warning_is_an_error(tmp_path):
+    """An unused variable stops the build."""
+    folder = sources(
+        tmp_path, **{"kernel.c": '#include "kernel.h"\ndouble twice(double x)\n{\n    int y;\n    return x;\n}\n'}
+    )
+    with pytest.raises(CompilerError, match="unused variable"):
+        compile_kernel(find_compiler(), folder, "exact")
+
+
+def test_a_hanging_compiler_is_stopped(monkeypatch, tmp_path):
+    """The limit is named, and nothing of it is left running."""
+    fake = script(tmp_path, "slow", 'case "$1" in --version) echo slow 1.0;; *) sleep 60;; esac')
+    monkeypatch.setattr(compiler._run, "__defaults__", (0.5,))
+    with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
+        compile_kernel(Compiler((str(fake),), "slow 1.0"), sources(tmp_path), "exact")
+
+
+@pytest.mark.parametrize("body", ["exit 0", "echo garbage > kernel.so"])
+def test_a_compiler_that_makes_nothing_is_noticed(tmp_path, body):
+    """Exit status 0 without a shared object is not believed."""
+    fake = script(tmp_path, "liar", body)
+    with pytest.raises(CompilerError, match="made no shared object"):
+        compile_kernel(Compiler((str(fake),), "liar"), sources(tmp_path), "exact")
+
+
+def test_a_compiler_that_cannot_tell_its_version_is_refused(monkeypatch, tmp_path):
+    """Its answer is in the message."""
+    monkeypatch.setenv("CC", str(script(tmp_path, "mute", "exit 3")))
+    with pytest.raises(CompilerError, match="--version ended with status 3"):
+        find_compiler()
+
+
+def test_machines_without_march_native_still_compile(monkeypatch, tmp_path):
+    """The option is dropped where the compiler refuses it."""
+    real = find_compiler().command[0]
+    fake = script(
+        tmp_path,
+        "picky",
+        f'for a in "$@"; do [ "$a" = -march=native ] && exit 1; done; exec {real} "$@"',
+    )
+    made = compile_kernel(Compiler((str(fake),), "picky"), sources(tmp_path), "exact")
+    assert made.is_file()
+
+
+def test_without_a_compiler_numpy_stands_in_and_says_so_once(monkeypatch, fresh_top, tmp_path):
+    """Results are right, the warning has the pip command and comes once."""
+    monkeypatch.setenv("CC", "no-such-compiler")
+    state = np.ones(6)
+    with pytest.warns(CompilerWarning, match=r"NumPy kernels are used.*coadjoint\[c\]"):
+        found = fresh_top.rhs(state)
+    assert np.array_equal(found, fresh_top.rhs(state, target="numpy"))
+    fresh_top.energy(state)  # a second warning would be an error
+
+
+def test_a_wrong_kernel_is_noticed_before_it_is_cached(monkeypatch, fresh_top, tmp_path):
+    """A compiler that changes a sign is caught by comparison with NumPy, and nothing is cached."""
+    real = find_compiler().command[0]
+    changed = "sed -i 's/ - / + /' kernel.c"
+    monkeypatch.setenv("CC", str(script(tmp_path, "traitor", f'{changed}; exec {real} "$@"')))
+    with pytest.warns(CompilerWarning, match="made a wrong kernel"):
+        fresh_top.rhs(np.ones(6))
+    assert not list(Path(tmp_path / "cache").rglob("*.so"))

@@ -1,0 +1,80 @@
+"""Pictures: drawn, on the sphere where there is one, and errors that say what to do."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from coadjoint.errors import KernelArgumentError, OutputError
+from coadjoint.solve.plot import plot
+from coadjoint.systems import heavy_top, rigid_body
+
+pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+
+
+@pytest.fixture(scope="module")
+def body():
+    """A free body on its momentum sphere."""
+    return rigid_body.simulate([1.0, 0.3, -0.8], (0, 20), samples=200)
+
+
+def test_a_picture_is_written(body, tmp_path):
+    """A PNG of some size, and no temporary file beside it."""
+    body.plot(tmp_path / "body.png")
+    assert (tmp_path / "body.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_the_body_is_drawn_on_its_sphere_and_the_top_by_its_vertical(body):
+    """Pi of the free body and Gamma of the top have constant length; Pi of the top has not."""
+    from matplotlib.figure import Figure
+
+    assert isinstance(plot_figure(body), Figure)
+    titles = [axes.get_title() for axes in plot_figure(body).axes]
+    assert any(r"\Pi" in title and "sphere" in title for title in titles)
+    top = heavy_top.simulate([0.3, 0, 2.0, 0.6, 0, 0.8], (0, 5), samples=100)
+    assert any(r"\Gamma" in axes.get_title() for axes in plot_figure(top).axes)
+
+
+def plot_figure(solution):
+    """The figure, without a display."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot
+
+    figure = plot(solution)
+    pyplot.close(figure)
+    return figure
+
+
+def test_components_are_drawn_where_there_is_no_sphere(body, tmp_path):
+    """A body whose momentum is not conserved in length, by hand."""
+    spoiled = rigid_body.simulate([1.0, 0.3, -0.8], (0, 20), samples=50)
+    spoiled.state[0] *= np.linspace(1, 2, 50)
+    labels = [text.get_text() for axes in plot_figure(spoiled).axes for text in legend(axes)]
+    assert {"Pi1", "Pi2", "Pi3"} <= set(labels)
+
+
+def legend(axes):
+    """Texts of a legend, if there is one."""
+    return axes.get_legend().get_texts() if axes.get_legend() else []
+
+
+def test_an_unknown_ending_is_refused(body, tmp_path):
+    """The message names file and endings."""
+    with pytest.raises(KernelArgumentError, match=r"body\.docx.*\.png"):
+        body.plot(tmp_path / "body.docx")
+
+
+def test_a_folder_that_is_not_there_is_named(body, tmp_path):
+    """Nothing is written elsewhere."""
+    with pytest.raises(OutputError, match="missing"):
+        body.plot(tmp_path / "missing" / "body.png")
+
+
+def test_without_matplotlib_the_pip_command_is_shown(body, monkeypatch, tmp_path):
+    """The extra is named."""
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    with pytest.raises(KernelArgumentError, match=r"coadjoint\[plot\]"):
+        body.plot(tmp_path / "body.png")

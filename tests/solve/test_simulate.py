@@ -1,0 +1,149 @@
+"""Simulation: known motions, conserved quantities, labels, and how it stops."""
+
+import json
+
+import numpy as np
+import pytest
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.systems import heavy_top, kirchhoff, rigid_body
+
+#: Local errors of 1e-10 per step add up to less than this over the times below.
+TOLERANCE = 1e-7
+
+
+def test_a_symmetric_body_precesses_at_the_known_rate():
+    """I1 = I2: (Omega1, Omega2) turns at (I3 - I1)/I1 Omega3 (Landau and Lifshitz, sec. 33)."""
+    inertia, start = [2.0, 2.0, 3.0], np.array([0.4, 0.0, 1.5])
+    found = rigid_body.simulate(start, (0, 50), {"I": inertia})
+    rate = (3.0 - 2.0) / 2.0 * start[2] / 3.0
+    assert np.abs(found["Pi1"] - 0.4 * np.cos(rate * found.time)).max() < TOLERANCE
+    assert np.abs(found["Pi2"] - 0.4 * np.sin(rate * found.time)).max() < TOLERANCE
+    assert np.abs(found["Pi3"] - 1.5).max() < TOLERANCE
+
+
+def test_a_top_without_spin_is_a_pendulum():
+    """Swinging about a fixed axis: the small oscillation has the rate sqrt(m g l / I1)."""
+    angle, (m, g, length, inertia) = 1e-4, (2.0, 9.81, 0.5, 3.0)
+    # Hanging down: Gamma points against chi; turned by a small angle about the first axis.
+    start = [0, 0, 0, 0, np.sin(angle), -np.cos(angle)]
+    parameters = {"I": [inertia, inertia, 1.0], "m": m, "g": g, "chi": [0, 0, length]}
+    found = heavy_top.simulate(start, (0, 20), parameters, atol=1e-16)
+    rate = np.sqrt(m * g * length / inertia)
+    assert np.abs(found["Gamma2"] - angle * np.cos(rate * found.time)).max() < angle * 1e-5
+
+
+def test_a_symmetric_top_precesses_steadily():
+    """Slow and fast roots of I1 cos(theta) w^2 - Pi3 w + m g l = 0 (Goldstein, sec. 5.7)."""
+    inertia, (m, g, length), theta, momentum = 2.0, (1.0, 9.81, 0.3), 0.6, 12.0
+    weight = m * g * length
+    for rate in np.roots([inertia * np.cos(theta), -momentum, weight]):
+        pi = [0, inertia * rate * np.sin(theta), momentum]
+        state = [*pi, 0, np.sin(theta), np.cos(theta)]
+        parameters = {"I": [inertia, inertia, 1.0], "m": m, "g": g, "chi": [0, 0, length]}
+        found = heavy_top.simulate(state, (0, 5), parameters)
+        assert np.abs(found["Gamma3"] - np.cos(theta)).max() < TOLERANCE
+        assert np.ptp(found["Gamma1"]) > 1.0
+
+
+def test_a_body_along_an_axis_of_added_mass_moves_straight():
+    """Kirchhoff: translation along a principal axis is steady; across one it is not."""
+    steady = kirchhoff.simulate([0, 0, 0, 1, 0, 0], (0, 10))
+    assert np.abs(steady.state - steady.state[:, :1]).max() < TOLERANCE
+    oblique = kirchhoff.simulate([0, 0, 0, 1, 0.5, 0], (0, 10))
+    assert np.ptp(oblique["Pi3"]) > 0.01
+
+
+@pytest.mark.parametrize(
+    ("module", "state"),
+    [
+        (rigid_body, [1.0, 0.3, -0.8]),
+        (heavy_top, [0.3, -0.2, 2.0, 0.6, 0.0, 0.8]),
+        (kirchhoff, [0.5, 0.1, -0.4, 1.0, 0.7, 0.2]),
+    ],
+    ids=lambda value: getattr(getattr(value, "system", None), "name", ""),
+)
+def test_invariants_drift_no_more_than_the_integrator(module, state):
+    """Energy and Casimirs, by an independent formula of the package, stay."""
+    found = module.simulate(state, (0, 100))
+    assert found.status == "OK"
+    assert set(found.drift) >= {"energy", "casimir1"}
+    assert max(found.drift.values()) < TOLERANCE
+    # The motion is one, and the check can fail: a component of the state is not conserved.
+    assert np.ptp(found.state, axis=1).max() > 0.1
+
+
+def test_targets_follow_the_same_trajectory_bit_by_bit():
+    """Exact C and NumPy kernels give the same steps."""
+    a, b = (heavy_top.simulate([0, 0.1, 2, 0.6, 0, 0.8], (0, 3), target=t) for t in ("c", "numpy"))
+    assert np.array_equal(a.state, b.state)
+
+
+def test_motion_backwards_returns():
+    """Reversing Pi reverses the motion of the free body."""
+    there = rigid_body.simulate([1.0, 0.3, -0.8], (0, 10))
+    back = rigid_body.simulate(-there.state[:, -1], (0, 10))
+    assert np.abs(back.state[:, -1] + there.state[:, 0]).max() < TOLERANCE
+
+
+@pytest.mark.parametrize("method", ["DOP853", "RK45", "Radau", "BDF", "LSODA"])
+def test_methods_of_scipy_agree(method):
+    """Implicit ones use the emitted Jacobian."""
+    reference = rigid_body.simulate([1.0, 0.3, -0.8], (0, 2)).state[:, -1]
+    found = rigid_body.simulate([1.0, 0.3, -0.8], (0, 2), method=method, rtol=1e-8, atol=1e-10)
+    assert np.abs(found.state[:, -1] - reference).max() < 1e-5
+
+
+def test_a_solution_is_read_by_name():
+    """Quantities, components, observables, times."""
+    times = [0.0, 0.5, 2.0]
+    found = heavy_top.simulate({"Pi": [0.1, 0.2, 3.0], "Gamma": [0, 0, 1]}, times, {"m": 2.0})
+    assert found["Pi"].shape == (3, 3)
+    assert found["Omega"].shape == (3, 3)
+    assert found["energy"].shape == found["Gamma3"].shape == (3,)
+    assert found.time.tolist() == times
+    assert np.array_equal(found["Omega2"], found["Pi2"] * (1 / 2.0))
+    with pytest.raises(KernelArgumentError, match="'Gama' is not in this solution"):
+        found["Gama"]
+    assert "drift of energy" in repr(found)
+    assert json.loads(json.dumps(found.summary()))["parameters"]["m"] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"state": np.ones((6, 2))}, r"shape \(6, 2\), expected \(6,\).*batch"),
+        ({"state": [0, 0, np.nan, 0, 0, 1]}, "initial Pi3 is nan"),
+        ({"t": (1, 1)}, "expected .start, end. or increasing"),
+        ({"t": [0, 2, 1]}, "increasing"),
+        ({"t": (0, np.inf)}, "finite"),
+        ({"method": "Euler"}, "method is 'Euler'; expected 'auto' or one of DOP853"),
+        ({"samples": 1}, "samples is 1"),
+        ({"parameters": {"m": np.ones(2)}}, "follows one trajectory"),
+    ],
+)
+def test_what_cannot_be_simulated_is_refused(change, message):
+    """Each with what is expected."""
+    usual = {"state": np.ones(6), "t": (0, 1)}
+    with pytest.raises(KernelArgumentError, match=message):
+        heavy_top.simulate(**{**usual, **change})
+
+
+def test_a_motion_that_leaves_the_numbers_stops_and_says_so():
+    """Momenta of 1e160 overflow: no exception, a status, and finite samples only."""
+    found = rigid_body.simulate([1e160, 1e160, 1e160], (0, 1))
+    assert found.status in ("NONFINITE", "STEP_UNDERFLOW")
+    assert found.message
+    assert np.isfinite(found.state).all()
+
+
+def test_xarray_export_has_names_and_units():
+    """Where xarray is installed; otherwise the message has the pip command."""
+    found = heavy_top.simulate([0.1, 0.2, 3, 0, 0, 1], (0, 1), samples=5)
+    try:
+        data = found.to_xarray()
+    except KernelArgumentError as error:
+        assert "coadjoint[data]" in str(error)  # noqa: PT017
+        return
+    assert data["Pi"].attrs["units"] == heavy_top.STATE["Pi"].unit
+    assert data["energy"].dims == ("time",)

@@ -1,0 +1,169 @@
+"""Bounded children: results, errors, limits, and what happens when they are lost."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+
+from coadjoint import sandbox
+from coadjoint.errors import AlgebraError, ResourceError
+from coadjoint.sandbox import run_bounded
+
+GENEROUS = {"seconds": 60, "memory": 2**31}
+
+
+@pytest.fixture
+def helper(monkeypatch, tmp_path):
+    """A module of test functions that children can import as part of the package."""
+    package = tmp_path / "coadjoint_helpers"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "tasks.py").write_text(
+        textwrap.dedent(
+            """
+            import os, time
+            from coadjoint.sandbox import report_progress
+
+            def spin(_):
+                while True:
+                    pass
+
+            def sleep(seconds):
+                time.sleep(seconds)
+
+            def hoard(size):
+                return len(bytearray(size))
+
+            def crash(_):
+                os.abort()
+
+            def chatter(_):
+                print("this must not reach the protocol", flush=True)
+                os.system("echo nor this")
+                for n in range(3):
+                    report_progress("step", n, 3)
+                return os.getpid()
+
+            def bug(_):
+                raise RuntimeError("a bug of ours")
+            """
+        )
+    )
+    # The child accepts functions of this package alone; for the test, these are such.
+    boot = (
+        "import sys; sys.path.insert(0, sys.argv[1]); import coadjoint; "
+        f"coadjoint.__path__.append({str(package)!r}); "
+        "from coadjoint import sandbox; sandbox.child()"
+    )
+    monkeypatch.setattr(sandbox, "_BOOT", boot)
+    return "coadjoint.tasks:"
+
+
+def test_a_result_comes_back_as_json():
+    """A function of the package, its argument and its result."""
+    found = run_bounded("coadjoint.fingerprint:digest", {"a": 1}, **GENEROUS)
+    from coadjoint.fingerprint import digest
+
+    assert found == digest({"a": 1})
+
+
+def test_an_error_arrives_as_its_own_class_with_its_parts():
+    """What the child raises, the parent raises."""
+    with pytest.raises(AlgebraError, match="'so3'") as caught:
+        run_bounded("coadjoint.algebra:algebra_by_name", "so3", **GENEROUS)
+    assert caught.value.found == "so3"
+
+
+def test_functions_of_other_packages_are_refused():
+    """A request can name nothing but this package's functions."""
+    with pytest.raises(ResourceError, match="AssertionError"):
+        run_bounded("os:getcwd", None, **GENEROUS)
+
+
+@pytest.mark.parametrize("task", ["spin", "sleep"])
+def test_a_child_that_takes_too_long_is_stopped(helper, task):
+    """Computing or sleeping, the limit holds and is named."""
+    start = time.perf_counter()
+    with pytest.raises(ResourceError, match=rf"{task} took more than 1 s") as caught:
+        run_bounded(helper + task, 60, seconds=1, memory=2**31)
+    assert caught.value.limit == 1
+    assert time.perf_counter() - start < 20
+
+
+def test_a_child_that_wants_too_much_memory_is_refused(helper):
+    """The limit of memory is named."""
+    with pytest.raises(ResourceError, match="more than 512 MiB"):
+        run_bounded(helper + "hoard", 2**30, seconds=60, memory=2**29)
+    assert run_bounded(helper + "hoard", 2**20, seconds=60, memory=2**29) == 2**20
+
+
+def test_a_crash_names_the_signal(helper):
+    """An aborted child is an error, never a hang."""
+    with pytest.raises(ResourceError, match="crash was lost .SIGABRT") as caught:
+        run_bounded(helper + "crash", None, **GENEROUS)
+    assert caught.value.status == -signal.SIGABRT
+
+
+def test_a_bug_shows_its_message(helper):
+    """An unexpected exception ends the child; the end of its traceback is shown."""
+    with pytest.raises(ResourceError, match="RuntimeError: a bug of ours"):
+        run_bounded(helper + "bug", None, **GENEROUS)
+
+
+def test_prints_do_not_disturb_the_protocol(helper):
+    """Progress is passed on in order, and the child is another process."""
+    seen = []
+    found = run_bounded(
+        helper + "chatter", None, **GENEROUS, on_progress=lambda *step: seen.append(step)
+    )
+    assert seen == [("step", 0, 3), ("step", 1, 3), ("step", 2, 3)]
+    assert found != os.getpid()
+
+
+def test_a_child_dies_with_its_parent(helper, tmp_path):
+    """Kill -9 of the parent ends the child, too."""
+    script = tmp_path / "parent.py"
+    script.write_text(
+        "import sys, os\n"
+        f"sys.path.insert(0, {sandbox._ROOT!r})\n"
+        "from coadjoint import sandbox\n"
+        f"sandbox._BOOT = {sandbox._BOOT!r}\n"
+        "real = sandbox.subprocess.Popen\n"
+        "def popen(*a, **k):\n"
+        "    process = real(*a, **k)\n"
+        "    print(process.pid, flush=True)\n"
+        "    return process\n"
+        "sandbox.subprocess.Popen = popen\n"
+        f"sandbox.run_bounded({helper + 'sleep'!r}, 120, seconds=120, memory=2**31)\n"
+    )
+    with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE) as parent:
+        child = int(parent.stdout.readline())
+        time.sleep(0.5)
+        parent.kill()
+        parent.wait()
+    for _ in range(100):
+        if not _alive(child):
+            return
+        time.sleep(0.1)
+    pytest.fail(f"child {child} outlived its parent")
+
+
+def _alive(process):
+    """Whether a process runs; a zombie does not."""
+    try:
+        with open(f"/proc/{process}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_messages_are_plain_json():
+    """An error's record survives the way through JSON."""
+    error = ResourceError("too long", limit=3)
+    record = json.loads(json.dumps(error.as_record()))
+    assert record == {"kind": "ResourceError", "message": "too long", "parts": {"limit": 3}}
