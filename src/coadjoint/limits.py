@@ -53,6 +53,8 @@ FUNCTION_ARGUMENT = 1000
 STATE_COMPONENTS = 256
 #: Components of all parameters together.
 PARAMETER_COMPONENTS = 256
+#: Numbers in all matrices of an algebra or representation together: 64 matrices of 8 by 8.
+MATRIX_ENTRIES = 4096
 #: Generators of an algebra given by name or as a product; constants are sparse.
 GENERATORS = 5000
 #: Operations of all equations after derivation, before common subexpressions are shared.

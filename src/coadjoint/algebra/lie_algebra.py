@@ -112,24 +112,30 @@ class LieAlgebra:
         return tuple(map(tuple, matrix))
 
     def jacobi_violation(self) -> tuple[tuple[int, int, int], dict[int, Fraction]] | None:
-        """The first i < j < k with ``[e_i, [e_j, e_k]] + cyclic != 0`` and that sum, or None."""
-        for triple in combinations(range(self.dimension), 3):
-            defect: dict[int, Fraction] = {}
-            i, j, k = triple
-            for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
-                for m, inner in self._pair(b, c):
-                    for n, outer in self._pair(a, m):
-                        defect[n] = defect.get(n, Fraction(0)) + inner * outer
-            defect = {n: value for n, value in defect.items() if value != 0}
-            if defect:
-                return triple, defect
-        return None
+        """The first i < j < k with ``[e_i, [e_j, e_k]] + cyclic != 0`` and that sum, or None.
 
-    def _pair(self, i: int, j: int) -> list[tuple[int, Fraction]]:
-        """``[e_i, e_j]`` as a list of (k, c_ij^k)."""
-        if i < j:
-            return list(self.constants.get((i, j), {}).items())
-        return [(k, -c) for k, c in self.constants.get((j, i), {}).items()]
+        Only brackets that are there are visited: the time goes with the nonzero constants, not with
+        the cube of the dimension.
+        """
+        acting: dict[int, list[tuple[int, int, Fraction]]] = {}
+        for a, m, n, constant in self.structure():
+            acting.setdefault(m, []).append((a, n, constant))  # [e_a, e_m] = constant e_n + ...
+        defects: dict[tuple[int, int, int], dict[int, Fraction]] = {}
+        for (b, c), row in self.constants.items():
+            for m, inner in row.items():
+                for a, n, outer in acting.get(m, []):
+                    if a in (b, c):
+                        continue  # a triple with two equal members satisfies the identity
+                    triple = (min(a, b), a + b + c - min(a, b) - max(a, c), max(a, c))
+                    defect = defects.setdefault(triple, {})
+                    # [e_j, [e_k, e_i]] has the pair the other way round
+                    sign = -1 if b < a < c else 1
+                    defect[n] = defect.get(n, Fraction(0)) + sign * inner * outer
+        for triple, sums in sorted(defects.items()):
+            left = {n: value for n, value in sums.items() if value != 0}
+            if left:
+                return triple, left
+        return None
 
     def _jacobi_message(self, triple: tuple[int, int, int], defect: dict[int, Fraction]) -> str:
         a, b, c = (self.basis[i] for i in triple)
@@ -191,16 +197,17 @@ def from_matrices(
     Raises:
         AlgebraError: The matrices are linearly dependent, or a commutator leaves their span.
     """
-    if solve_exactly(matrices, {}) is None:
+    pairs = list(combinations(range(len(basis)), 2))
+    products = [commutator(matrices[i], matrices[j]) for i, j in pairs]
+    solved = solve_exactly(matrices, products)
+    if solved is None:
         raise AlgebraError(
             f"{name}: the matrices of the basis are linearly dependent; expected a basis. "
             "Remove the redundant ones.",
             basis=list(basis),
         )
     brackets = {}
-    for i, j in combinations(range(len(basis)), 2):
-        product = commutator(matrices[i], matrices[j])
-        coordinates = solve_exactly(matrices, product)
+    for (i, j), product, coordinates in zip(pairs, products, solved, strict=True):
         if coordinates is None:
             raise AlgebraError(
                 f"{name}: the commutator of {basis[i]} and {basis[j]} is not in the span of the "

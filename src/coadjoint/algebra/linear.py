@@ -12,15 +12,16 @@ from fractions import Fraction
 
 def solve_exactly(
     vectors: Sequence[Mapping[tuple[int, int], Fraction]],
-    target: Mapping[tuple[int, int], Fraction],
-) -> list[Fraction] | None:
-    """Coordinates of ``target`` in independent ``vectors``.
+    targets: Sequence[Mapping[tuple[int, int], Fraction]],
+) -> list[list[Fraction] | None] | None:
+    """Coordinates of each target in independent ``vectors``, by one elimination for all.
 
     Returns:
-        One coefficient per vector, or None if the vectors are dependent or do not span the target.
+        For each target one coefficient per vector, or None if they do not span it; None for all if
+        the vectors are dependent.
     """
     rows: dict[Hashable, dict[int, Fraction]] = {}
-    for column, vector in enumerate([*vectors, target]):
+    for column, vector in enumerate([*vectors, *targets]):
         for place, value in vector.items():
             rows.setdefault(place, {})[column] = Fraction(value)
     pending, n = [row for _, row in sorted(rows.items())], len(vectors)
@@ -33,9 +34,11 @@ def solve_exactly(
         pivot = {j: value / pivot[column] for j, value in pivot.items()}
         pending = [_eliminate(row, pivot, column) for row in pending]
         pivots = [_eliminate(row, pivot, column) for row in pivots] + [pivot]
-    if any(row.get(n) for row in pending):
-        return None
-    return [row.get(n, Fraction(0)) for row in pivots]
+    outside = {column for row in pending for column in row}
+    return [
+        None if column in outside else [row.get(column, Fraction(0)) for row in pivots]
+        for column in range(n, n + len(targets))
+    ]
 
 
 def _eliminate(

@@ -1,9 +1,10 @@
 """The reader: a spec file to a `Spec`, the first step of all.
 
 Comes in: a path, or a text. Goes out: a frozen, checked `Spec`; or an error with file, line,
-column, source line and likely fix. Faults are looked for in the order in which they are worth reporting:
-the file, its form (`validate`), the algebra and what is declared over it (`structure`), the names
-and routes (`consistency`), the formulas (`formulas`). Read next: `coadjoint.derive.setting`.
+column, source line and likely fix. Faults are looked for in the order in which they are worth
+reporting: the file, its form (`validate`), the algebra and what is declared over it (`structure`),
+the names and routes (`consistency`), the formulas (`formulas`).
+Read next: `coadjoint.derive.setting`.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from coadjoint.algebra.catalogue import algebra_by_name, representation_by_name
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, from_brackets, from_matrices
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import AlgebraError, LimitError
-from coadjoint.limits import STATE_COMPONENTS
+from coadjoint.limits import MATRIX_ENTRIES, STATE_COMPONENTS
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.formulas import read_combination
 from coadjoint.spec.model import Parameter, Shape, Variable
@@ -137,6 +137,17 @@ def _matrices(
 ) -> tuple[dict[str, SparseMatrix], int]:
     """Sparse matrices by name of the basis, and their common size."""
     size = len(next(iter(tables.values()), []))
+    entries = sum(len(row) for rows in tables.values() for row in rows)
+    if entries > MATRIX_ENTRIES:
+        raise source.fault(
+            key,
+            f"the matrices have {entries} numbers",
+            found=entries,
+            expected=f"at most {MATRIX_ENTRIES} (MATRIX_ENTRIES)",
+            hint="Declare the algebra by its brackets.",
+            kind=LimitError,
+            limit="MATRIX_ENTRIES",
+        )
     for name, rows in tables.items():
         if name not in basis:
             raise source.fault(
