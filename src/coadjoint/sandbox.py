@@ -62,16 +62,7 @@ def run_bounded(
     """
     request = {"target": target, "argument": argument, "seconds": seconds, "memory": memory}
     expired: list[bool] = []
-    with tempfile.TemporaryFile() as errors:
-        process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _BOOT, _ROOT, str(os.getpid())],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=errors,
-            text=True,
-            start_new_session=True,
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-        )
+    with tempfile.TemporaryFile() as errors, _started(errors) as process:
         timer = Timer(seconds, lambda: (expired.append(True), _kill(process)))
         timer.daemon = True
         timer.start()
@@ -81,13 +72,26 @@ def run_bounded(
         finally:
             timer.cancel()
             _kill(process)
-            process.wait()
         if last is None:
             errors.seek(0)
             raise _lost(target, process.returncode, bool(expired), seconds, memory, errors.read())
     if "error" in last:
         raise from_record(last["error"])
     return last["result"]
+
+
+def _started(errors: IO[bytes]) -> subprocess.Popen[str]:
+    """The child, waiting for its request."""
+    return subprocess.Popen(
+        [sys.executable, "-I", "-c", _BOOT, _ROOT, str(os.getpid())],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=errors,
+        text=True,
+        start_new_session=True,
+        # One thread: each pool of a numerical library reserves memory of the child's limit.
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+    )
 
 
 def _converse(

@@ -80,7 +80,8 @@ def _line(equations: Equations, left: Left, right: Element) -> Line:
 
 def _mathml(left: Left, expression: sympy.Expr) -> str:
     """The line as a MathML row, which browsers show without any script."""
-    right = mathml(expression, printer="presentation")
+    # The one named entity that SymPy prints is none of XML's own, so readers of XML refuse it.
+    right = mathml(expression, printer="presentation").replace("&InvisibleTimes;", "&#x2062;")
     return f"<math><mrow><mtext>{left.text}</mtext><mo>=</mo>{right}</mrow></math>"
 
 
