@@ -25,7 +25,7 @@ from coadjoint.cli.output import json_option, print_json, print_table
     type=click.IntRange(1, 10_000_000),
     default=200_000,
     show_default=True,
-    help="Points at which NumPy and C are compared bit for bit, for each function.",
+    help="Points, at the least, at which each function of NumPy and C is compared bit by bit.",
 )
 @json_option
 def command(system: str, points: int, as_json: bool) -> None:
@@ -42,7 +42,7 @@ def command(system: str, points: int, as_json: bool) -> None:
     if as_json:
         print_json(report)
     else:
-        _print(report, points)
+        _print(report)
 
 
 def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
@@ -67,7 +67,7 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     return report.as_record()
 
 
-def _print(report: Mapping[str, Any], points: int) -> None:
+def _print(report: Mapping[str, Any]) -> None:
     """The figures as a table, and the rungs below it."""
     rows = []
     for function, targets in report["figures"].items():
@@ -80,10 +80,10 @@ def _print(report: Mapping[str, Any], points: int) -> None:
                     f"{figures['k']:.2f}",
                     f"{figures['ulp']:.3g}",
                     str(figures["points"]),
-                    "" if equal is None else f"{equal}/{points}",
+                    "" if equal is None else str(equal),
                 )
             )
-    columns = ("function", "target", ">k", ">ulp", ">points", ">same bits as NumPy")
+    columns = ("function", "target", ">k", ">ulp", ">points", ">same bits as NumPy at")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
     for rung, status in report["rungs"].items():
         click.echo(f"rung {rung}: {status}")

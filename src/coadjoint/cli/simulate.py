@@ -91,7 +91,7 @@ def command(
     solution = loaded.simulate(
         initial_state(loaded.STATE, state),
         (0.0, time),
-        dict(parameters),
+        chosen_parameters(loaded.PARAMETERS, parameters),
         method=method,
         rtol=rtol,
         samples=samples,
@@ -123,6 +123,17 @@ def initial_state(quantities: Quantities, given: Iterable[Assignment]) -> list[f
             )
         state[rows if isinstance(rows, slice) else slice(rows, rows + 1)] = values
     return state
+
+
+def chosen_parameters(
+    quantities: Quantities, given: Iterable[Assignment]
+) -> dict[str, list[float] | float]:
+    """Parameters by name, scalars as numbers: a list would be one value for each member."""
+    vectors = {quantity.name for quantity in quantities.values() if quantity.shape}
+    return {
+        name: values[0] if len(values) == 1 and name not in vectors else values
+        for name, values in given
+    }
 
 
 def default_state(quantities: Quantities) -> list[float]:
@@ -170,7 +181,7 @@ def _print(system: System, solution: Solution) -> None:
             for name, first, last in _ends(solution, system.OBSERVABLES.components)
         ],
     )
-    click.echo(f"status: {solution.status}. {solution.message}".rstrip())
+    click.echo(": ".join(filter(None, ("status", solution.status, solution.message))))
 
 
 def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, float]]:

@@ -100,7 +100,8 @@ class Solution:
     def change(self, name: str) -> Array:
         """``q(t) - q(0)`` of an observable or state component, ``(T,)``."""
         values = self[name]
-        return values - values[..., :1]
+        with np.errstate(invalid="ignore"):  # infinite values give NaN, as they should
+            return values - values[..., :1]
 
     @property
     def time_reached(self) -> float:
@@ -175,4 +176,5 @@ class Solution:
 def _relative(change: Array, values: Array) -> float:
     """Largest change over largest size."""
     size = float(np.abs(values).max())
-    return float(np.abs(change).max()) / size if size else 0.0
+    with np.errstate(invalid="ignore"):
+        return float(np.abs(change).max() / size) if size else 0.0

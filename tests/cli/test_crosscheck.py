@@ -1,0 +1,46 @@
+"""`coadjoint crosscheck` holds the generated files themselves against 50 digits and each other."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+from coadjoint.build.compiler import find_compiler
+from coadjoint.resources import systems_folder
+
+
+def test_figures_of_a_shipped_system(run):
+    """All rungs pass, k stays below 4, and NumPy and C have the same bits at every point."""
+    find_compiler()
+    record = json.loads(run("crosscheck", "rigid_body", "--points", "1001", "--json").stdout)
+    assert record["rungs"] == {"3": "passed", "4": "passed", "5": "passed"}
+    assert set(record["figures"]) == {
+        *("rhs", "jacobian", "energy", "observables", "poisson_tensor"),
+    }
+    assert set(record["figures"]["rhs"]) == {"numpy", "c", "c-fast"}
+    assert 0 < max(figures["k"] for figures in record["figures"]["rhs"].values()) <= 4
+    assert min(record["equal"].values()) >= 1001
+
+
+def test_the_table_names_functions_targets_and_rungs(run):
+    """The table has a line for each function and target."""
+    result = run("crosscheck", "rigid_body", "--points", "17")
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.count("c-fast") == 5
+    assert "rung 5: passed" in result.stdout
+
+
+def test_a_spoiled_kernel_is_caught(run, folder, monkeypatch):
+    """A sign turned in a copy of the generated kernel ends with status 1 and names the function."""
+    shutil.copytree(systems_folder(), folder / "generated")
+    kernel = folder / "generated" / "rigid_body" / "kernel.py"
+    lines = kernel.read_text().splitlines()
+    (place,) = [n for n, line in enumerate(lines) if line.endswith("# dPi1/dt")]
+    assert " - " in lines[place]
+    lines[place] = lines[place].replace(" - ", " + ", 1)
+    kernel.write_text("\n".join(lines) + "\n")
+    monkeypatch.setattr("coadjoint.cli.arguments.systems_folder", lambda: folder / "generated")
+    result = run("crosscheck", "rigid_body", "--points", "17")
+    assert result.exit_code == 1
+    assert "rhs" in result.stderr
+    assert result.stdout == ""

@@ -1,0 +1,62 @@
+"""Tables are whole in a pipe, obey no markup, and files that cannot be written are named."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from coadjoint.cli.output import print_json, print_table, progress_bars, write_text
+from coadjoint.errors import OutputError
+
+
+def test_cells_are_never_cut_in_a_pipe(capsys):
+    """A cell wider than any terminal is printed whole, on one line."""
+    cell = "x" * 500
+    print_table(("a", ">b"), [(cell, "1"), ("y", "22")], title="Title")
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "Title"
+    assert any(cell in line for line in lines)
+    assert [line for line in lines if line != line.rstrip()] == []
+
+
+def test_cells_are_text_and_not_markup(capsys):
+    """Square brackets and control characters of a spec's title do nothing."""
+    print_table(("title",), [("[bold]a[/bold] \x1b[31m :smile:",)])
+    printed = capsys.readouterr().out
+    assert "[bold]a[/bold]" in printed
+    assert ":smile:" in printed
+    assert "\x1b" not in printed
+
+
+def test_json_has_no_infinity(capsys):
+    """What is not finite is null, since JSON has no word for it."""
+    print_json({"a": [1.5, float("inf")], "b": (float("nan"), "x")})
+    assert json.loads(capsys.readouterr().out) == {"a": [1.5, None], "b": [None, "x"]}
+
+
+def test_progress_is_silent_in_a_pipe(capsys):
+    """Without a terminal no bar is drawn."""
+    with progress_bars() as progress:
+        progress("heavy_top", "derive", 0, 6)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_progress_is_drawn_in_a_terminal(capsys, monkeypatch):
+    """With a terminal the bar of a system names its stage, on standard error."""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with progress_bars() as progress:
+        progress("heavy_top", "derive", 0, 6)
+        progress("heavy_top", "prove", 1, 6)
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "heavy_top" in printed.err
+    assert "prove" in printed.err
+
+
+def test_file_that_cannot_be_written_is_named(tmp_path):
+    """The error of a file in a folder that is not there carries its path."""
+    with pytest.raises(OutputError, match="cannot be written") as caught:
+        write_text(tmp_path / "missing" / "a.csv", "")
+    assert caught.value.path == str(tmp_path / "missing" / "a.csv")

@@ -1,0 +1,45 @@
+"""`coadjoint show` prints or writes a derivation by any route in any format."""
+
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("form", "mark"), [("text", "====="), ("latex", r"\documentclass"), ("html", "<math")]
+)
+def test_each_format_is_shown(run, form, mark):
+    """The derivation of the rigid body is there in each format."""
+    result = run("show", "rigid_body", "--format", form)
+    assert result.exit_code == 0, result.stderr
+    assert mark in result.stdout
+    assert "Free rigid body" in result.stdout
+
+
+def test_the_other_route_is_shown_on_request(run):
+    """--route chooses among the declared ones; an undeclared one is refused by name."""
+    assert "Poisson bracket" not in run("show", "rigid_body").stdout
+    assert "{Pi1, Pi2} = -Pi3" in run("show", "rigid_body", "--route", "lie-poisson").stdout
+    refused = run("show", "rigid_body", "--route", "clebsch")
+    assert refused.exit_code == 2
+    assert "'clebsch'" in refused.stderr
+
+
+def test_output_goes_to_a_file(run, folder):
+    """--output writes the file and prints nothing; a place that is not there is named."""
+    result = run("show", "rigid_body", "--format", "html", "--output", "body.html")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert (folder / "body.html").read_text().startswith("<!DOCTYPE html>")
+    refused = run("show", "rigid_body", "--output", "missing/body.txt")
+    assert refused.exit_code == 2
+    assert "missing/body.txt" in refused.stderr
+
+
+def test_title_of_a_spec_is_escaped(run, rigid_body):
+    """Markup in the title of a spec is text in the page."""
+    rigid_body.write_text(
+        rigid_body.read_text().replace("Free rigid body", "<script>alert(1)</script> top")
+    )
+    page = run("show", rigid_body, "--format", "html").stdout
+    assert "&lt;script&gt;" in page
+    assert "<script" not in page

@@ -1,0 +1,129 @@
+"""`coadjoint simulate` integrates from the command line and shows what it kept."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+
+from coadjoint.cli.arguments import load_system
+
+
+def test_invariants_of_a_shipped_system_are_kept(run):
+    """Energy and Casimirs of the heavy top drift by less than 1e-8 in ten seconds."""
+    result = run("simulate", "heavy_top", "--json")
+    assert result.exit_code == 0, result.stderr
+    record = json.loads(result.stdout)
+    assert record["status"] == "OK"
+    assert record["time"] == 10.0
+    assert set(record["drift"]) == {"energy", "casimir1", "casimir2"}
+    assert all(drift < 1e-8 for drift in record["drift"].values())
+    assert record["final"]["Pi1"] != record["initial"]["Pi1"]
+    assert record["units"]["Pi1"] == "kg m^2/s"
+
+
+def test_the_default_state_has_vectors_of_unit_length(run):
+    """Without --state each vector points along (1, 2, 3) with length 1."""
+    initial = json.loads(run("simulate", "heavy_top", "--time", "0.1", "--json").stdout)["initial"]
+    for name in ("Pi", "Gamma"):
+        values = [initial[f"{name}{n}"] for n in (1, 2, 3)]
+        assert values == [n / math.sqrt(14) for n in (1, 2, 3)]
+
+
+def test_state_and_parameters_come_from_the_command_line(run):
+    """A quantity, a component and a parameter that are given are those of the run."""
+    words = [
+        "--state",
+        "Pi=1,0,0",
+        "--state",
+        "Gamma3=0.5",
+        "--set",
+        "chi=0,0,2",
+        "--set",
+        "m=3",
+        "--set",
+        "I2=5",
+    ]
+    record = json.loads(run("simulate", "heavy_top", *words, "--json").stdout)
+    assert [record["initial"][f"Pi{n}"] for n in (1, 2, 3)] == [1, 0, 0]
+    assert record["initial"]["Gamma3"] == 0.5
+    assert [record["parameters"][name] for name in ("chi3", "m", "I2")] == [2, 3, 5]
+    whole = json.loads(run("simulate", "rigid_body", "--state", "1,-2,3", "--json").stdout)
+    assert whole["initial"]["Pi2"] == -2
+
+
+@pytest.mark.parametrize(
+    ("words", "offending"),
+    [
+        (["--set", "J=1"], "'J'"),
+        (["--set", "I=1,2"], "I"),
+        (["--set", "I=1,-2,3"], "-2"),
+        (["--state", "Pj=1,2,3"], "'Pj'"),
+        (["--state", "Pi=1,2"], "[1.0, 2.0]"),
+        (["--state", "Pi=1,2,nan"], "nan"),
+        (["--method", "euler"], "'euler'"),
+        (["--time", "-1"], "-1"),
+    ],
+)
+def test_wrong_values_are_named(run, words, offending):
+    """A wrong name, length, sign or method ends with status 2 and names itself."""
+    result = run("simulate", "rigid_body", *words)
+    assert result.exit_code == 2
+    assert offending in result.stderr
+
+
+def test_tables_show_state_units_and_drift(run):
+    """The tables have a line for each component, with its unit, and the drift of invariants."""
+    result = run("simulate", "rigid_body")
+    assert "Free rigid body" in result.stdout
+    (line,) = [line for line in result.stdout.splitlines() if line.strip().startswith("Pi1")]
+    assert "kg m^2/s" in line
+    (line,) = [line for line in result.stdout.splitlines() if "energy" in line]
+    assert float(line.split()[-1]) < 1e-8
+    assert "status: OK" in result.stdout
+
+
+def test_csv_reads_back_to_the_trajectory(run, folder):
+    """The rows of the table are the samples, and the rates belong to the states."""
+    run("simulate", "rigid_body", "--csv", "body.csv", "--samples", "11", "--time", "1")
+    with (folder / "body.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["time"]) for row in rows] == np.linspace(0, 1, 11).tolist()
+    state = [float(rows[-1][name]) for name in ("Pi1", "Pi2", "Pi3")]
+    assert float(rows[-1]["energy"]) == load_system("rigid_body").energy(state)
+
+
+def test_plot_writes_a_picture(run, folder):
+    """--plot writes a PNG of reasonable size."""
+    pytest.importorskip("matplotlib")
+    assert run("simulate", "heavy_top", "--plot", "top.png").exit_code == 0
+    picture = (folder / "top.png").read_bytes()
+    assert picture.startswith(b"\x89PNG")
+    assert len(picture) > 20_000
+
+
+def test_a_spec_of_ones_own_runs(run, rigid_body):
+    """A spec given by path is derived, proved and compiled, and then simulated."""
+    record = json.loads(run("simulate", rigid_body, "--json").stdout)
+    assert (record["system"], record["status"]) == ("body", "OK")
+    assert record["drift"]["energy"] < 1e-8
+
+
+def test_a_false_claim_is_not_simulated(run, false_claim):
+    """A spec whose claim is false ends with status 1 and the claim."""
+    result = run("simulate", false_claim)
+    assert result.exit_code == 1
+    assert "Pi[1] + Pi[2]" in result.stderr
+
+
+def test_motion_that_leaves_the_finite_numbers_has_status_1(run, rigid_body):
+    """A state too large for its rates is reported as such."""
+    result = run("simulate", rigid_body, "--state", "Pi=1e200,2e200,3e200")
+    assert result.exit_code == 1
+    assert "NONFINITE" in result.stdout
+    record = json.loads(run("simulate", rigid_body, "--state", "1e200,1, 1", "--json").stdout)
+    assert record["status"] == "NONFINITE"
+    assert record["drift"]["energy"] is None
