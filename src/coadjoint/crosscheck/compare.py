@@ -191,12 +191,12 @@ def _check_threshold(
     batch: Batch,
     member: int,
 ) -> None:
-    """Rung 4 for one member: no k is above the threshold."""
-    for row, (k, _) in enumerate(errors):
-        if not k <= subject.threshold:
-            pair = {target: float(values[row, member]), "exact": float(exact[row].value)}
-            limits = {"k": k, "threshold": subject.threshold}
-            raise subject.failure(function, row, batch, member, rung=4, **pair, **limits)
+    """Rung 4 for one member: no k is above the threshold; the failure shows the largest."""
+    k, row = max((k, row) for row, (k, _) in enumerate(errors))
+    if not k <= subject.threshold:
+        pair = {target: float(values[row, member]), "exact": float(exact[row].value)}
+        limits = {"k": k, "threshold": subject.threshold}
+        raise subject.failure(function, row, batch, member, rung=4, **pair, **limits)
 
 
 def _worse(figures: Figures, errors: list[tuple[float, float]]) -> Figures:
