@@ -98,6 +98,8 @@ def _integrate(
             return [again[0], again[1], "NONFINITE", message]
         return [times[:1], initial[:, None], "NONFINITE", message]
     status = "OK" if found.status == 0 else "STEP_UNDERFLOW"
+    if not len(found.t):  # not even one step was made
+        return [times[:1], initial[:, None], status, found.message]
     return [found.t, found.y, status, "" if found.status == 0 else found.message]
 
 
