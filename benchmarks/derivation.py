@@ -1,4 +1,4 @@
-"""From a spec to proved equations, imports not counted: the heavy top by both routes."""
+"""From a spec to proved equations by both routes, imports not counted."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ def measure() -> list[Figure]:
     for system in SYSTEMS:
         taken = fresh_process(CODE.format(system=system), runs=3)
         what = f"{system}: spec to proved equations"
-        figures.append(Figure(what, "<= 0.30 s", f"{taken:.3f} s", taken <= 0.3))
+        if system == "heavy_top":  # the target is the heavy top's; the others are for comparison
+            figures.append(Figure(what, "<= 0.30 s", f"{taken:.3f} s", taken <= 0.3))
+        else:
+            figures.append(Figure(what, "none", f"{taken:.3f} s"))
     return figures
 
 
