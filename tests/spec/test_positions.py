@@ -158,7 +158,9 @@ VALUES = st.recursive(
 )
 
 
-@given(TABLES, st.lists(st.tuples(KEYS, TABLES), max_size=3, unique_by=lambda t: t[0]), st.booleans())
+@given(
+    TABLES, st.lists(st.tuples(KEYS, TABLES), max_size=3, unique_by=lambda t: t[0]), st.booleans()
+)
 def test_random_documents_are_found_whole(top, tables, several):
     """Paths and strings of random documents are those of tomllib."""
     lines = [f"{basic(key)} = {value}" for key, value in top.items()]

@@ -184,16 +184,18 @@ def read_file(path: str) -> bytes:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
     except (OSError, ValueError) as error:
         raise _not_opened(path, error) from None
-    with os.fdopen(descriptor, "rb") as file:
+    try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             kind = _kind(status.st_mode)
             raise _file_fault(path, f"this is {kind}", "a regular file", found=kind)
         _check_bytes(path, status.st_size)
-        try:
+        with os.fdopen(os.dup(descriptor), "rb") as file:
             data = file.read(SPEC_BYTES + 1)  # it may have grown since
-        except OSError as error:
-            raise _not_opened(path, error) from None
+    except OSError as error:
+        raise _not_opened(path, error) from None
+    finally:
+        os.close(descriptor)
     _check_bytes(path, len(data))
     if not data.strip():
         raise _file_fault(

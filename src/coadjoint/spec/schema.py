@@ -37,6 +37,12 @@ def _is_printable(text: str) -> str:
     return text
 
 
+def _is_prose(text: str) -> str:
+    if not all(line.isprintable() for line in text.replace("\t", " ").split("\n")):
+        raise ValueError("printable text, in one line or several")
+    return text
+
+
 def _is_unit(text: str) -> str:
     if not _UNIT.fullmatch(text):
         raise ValueError("letters, digits, space and ^ / * . ( ) -, as in 'kg m^2/s'")
@@ -108,6 +114,7 @@ Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_NUMBER_OR_LIS
 Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]
 Matrix = list[list[Number]]
 Line = Annotated[str, AfterValidator(_is_printable)]
+Prose = Annotated[str, AfterValidator(_is_prose)]
 Unit = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_unit)]
 Names = Annotated[list[str], Field(min_length=1), AfterValidator(_is_unique)]
 Length = Annotated[int, Field(ge=1, le=STATE_COMPONENTS)]
@@ -183,7 +190,7 @@ class VariablePart(Part):
         "'coadjoint' or a declared one",
     )
     unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
-    doc: str = Field("", description="what it is, for documents")
+    doc: Prose = Field("", description="what it is, for documents")
 
 
 class ParameterPart(Part):
@@ -197,7 +204,7 @@ class ParameterPart(Part):
         None, description="exact default: a number for all components, or nested lists of them"
     )
     unit: Unit = Field("1", description="unit, such as 'kg m^2'; '1' if dimensionless")
-    doc: str = Field("", description="what it is, for documents")
+    doc: Prose = Field("", description="what it is, for documents")
 
 
 class LagrangianPart(Part):
@@ -227,7 +234,7 @@ class ObservablePart(Part):
 
     expression: str = Field(description="a scalar of variables and parameters")
     unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
-    doc: str = Field("", description="what it is, for documents")
+    doc: Prose = Field("", description="what it is, for documents")
 
     @model_validator(mode="before")
     @classmethod
@@ -256,8 +263,8 @@ class SpecFile(Part):
     title: Annotated[Line, Field(max_length=TITLE_CHARACTERS)] = Field(
         description="the system's name as a book has it"
     )
-    source: str = Field("", description="where the equations can be looked up")
-    description: str = Field("", description="free text for documents")
+    source: Prose = Field("", description="where the equations can be looked up")
+    description: Prose = Field("", description="free text for documents")
     license: Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_license)] = Field(
         "", description="SPDX expression of the licence of this file and of what is generated"
     )

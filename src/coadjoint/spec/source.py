@@ -29,8 +29,13 @@ def dotted(path: KeyPath) -> str:
     >>> dotted(("claims", "casimirs", 0))
     'claims.casimirs[1]'
     """
-    text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in path)
+    text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{_key(part)}" for part in path)
     return text.removeprefix(".") or "the file"
+
+
+def _key(part: str) -> str:
+    """A key for a message; one with control characters could draw on the reader's terminal."""
+    return part if part.isascii() and part.isprintable() and len(part) <= 60 else shown(part)
 
 
 def shown(value: object, most: int = 60) -> str:
@@ -46,6 +51,12 @@ def shown(value: object, most: int = 60) -> str:
     text = str(value).lower() if isinstance(value, bool) else ascii(value)
     text = str(value) if type(value).__name__ in ("Decimal", "Fraction") else text
     return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def _plain(found: object) -> object:
+    """A found value as JSON can carry it."""
+    short = isinstance(found, int) and found.bit_length() <= 64
+    return found if short or isinstance(found, str) else shown(found)
 
 
 @dataclass(frozen=True)
@@ -102,7 +113,7 @@ class Source:
             line=line,
             column=column,
             key=dotted(key),
-            found=found if isinstance(found, (str, int, list)) else shown(found),
+            found=_plain(found),
             expected=expected,
             hint=hint,
             **parts,

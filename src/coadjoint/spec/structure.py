@@ -163,7 +163,7 @@ def _matrices(
             raise source.fault(
                 (*key, name),
                 f"the matrix of {name!r} has rows of {listed(map(str, lengths))} numbers",
-                found=lengths,
+                found=listed(map(str, lengths)),
                 expected=f"{size or 1} rows of {size or 1} numbers, like the first matrix",
             )
     return {name: _sparse(rows) for name, rows in tables.items()}, size
@@ -293,7 +293,7 @@ def _block(
             raise source.fault(
                 key,
                 "a name of the basis stands twice",
-                found=part.block,
+                found=listed(part.block),
                 expected="each name once",
             )
         return places

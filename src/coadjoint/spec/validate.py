@@ -9,10 +9,12 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
+from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from coadjoint import limits
@@ -83,7 +85,7 @@ def validate(source: Source) -> SpecFile:
     try:
         return SpecFile.model_validate(document)
     except ValidationError as error:
-        details = error.errors(include_url=False)
+        details = _without_echoes(error.errors(include_url=False))
         raise joined([_fault(source, document, detail) for detail in details]) from None
 
 
@@ -133,7 +135,7 @@ def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointErro
         first = source.line(source.positions.key(key))
         return source.fault(
             key,
-            f"{key[-1]!r} is declared twice",
+            f"{shown(key[-1])} is declared twice",
             found=str(key[-1]),
             expected="one declaration",
             hint=f"The first is in line {first}.",
@@ -168,12 +170,11 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     path, kind = tuple(detail["loc"]), detail["type"]
     present = _present(path, document)
     if kind == "missing":
-        table = _TABLES[path[0]] if len(path) > 1 else SpecFile
         return source.fault(
             present,
             f"the key {path[-1]!r} is missing",
             found=str(path[-1]),
-            expected=table.model_fields[str(path[-1])].description or "",
+            expected=_keys(path)[str(path[-1])].description or "",
             hint=_HOW_TO_WRITE.get(path[-1], ""),
             at=source.positions.key(present),
         )
@@ -192,16 +193,31 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     )
 
 
+def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
+    """Faults without the missing keys that a misspelt key beside them was meant to be."""
+    meant = set()
+    for detail in details:
+        *table, key = detail["loc"]
+        if detail["type"] == "extra_forbidden":
+            meant |= {(*table, near) for near in get_close_matches(str(key), _keys(detail["loc"]))}
+    return [d for d in details if d["type"] != "missing" or tuple(d["loc"]) not in meant]
+
+
+def _keys(path: KeyPath) -> Mapping[str, FieldInfo]:
+    """The keys of the table that a path leads into."""
+    return (_TABLES[path[0]] if len(path) > 1 else SpecFile).model_fields
+
+
 def _kind_of(expected: str) -> type[CoadjointError]:
     """The class of the error; digits are counted where values are read."""
     return LimitError if "_DIGITS)" in expected else SpecError
 
 
 def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
-    known = (_TABLES[path[0]] if len(path) > 1 else SpecFile).model_fields
+    known = _keys(path)
     return source.fault(
         path,
-        f"unknown key {path[-1]!r}",
+        f"unknown key {shown(path[-1])}",
         found=str(path[-1]),
         expected=f"one of {listed(known)}",
         hint=did_you_mean(str(path[-1]), known),

@@ -1,0 +1,227 @@
+"""The reader: shipped specs are what the books say, and no file whatever does harm."""
+
+import contextlib
+import hashlib
+import json
+import os
+import socket
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter, process_time
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.resources import derivations_folder
+from coadjoint.spec import read_spec, read_spec_text
+from tests.sources.textbook import PARAMETERS, STATES
+from tests.specs import RIGID_BODY, shipped
+
+# -- the shipped specs --------------------------------------------------------------------------
+
+
+def test_shipped_specs_have_the_state_and_parameters_of_the_books(system):
+    """Order and names of components are a contract with every user."""
+    spec = shipped(system)
+    assert spec.name == system
+    assert tuple(c for variable in spec.state for c in variable.components) == STATES[system]
+    assert tuple(c for p in spec.parameters for c in p.components) == PARAMETERS[system]
+    assert spec.routes == ("euler-poincare", "lie-poisson")
+    assert all(p.default is not None and p.doc and p.unit for p in spec.parameters)
+    assert all(v.doc and v.unit for v in spec.variables)
+    assert spec.casimirs
+    assert [c.text for c in spec.conserved] == ["energy"]
+    assert "Holm" in spec.source
+
+
+def test_defaults_are_exact():
+    """9.81 is 981/100, and every coupling is off."""
+    defaults = {p.name: p.default for p in shipped("heavy_top").parameters}
+    assert defaults == {"I": (1, 2, 3), "m": (1,), "g": (Fraction("9.81"),), "chi": (0, 0, 1)}
+    defaults = {p.name: p.default for p in shipped("kirchhoff").parameters}
+    assert defaults == {"I": (1, 2, 3), "M": (2, 3, 4), "D": (0, 0, 0)}
+
+
+def test_hash_is_that_of_the_file():
+    """The fingerprint of a spec is the one that sha256sum prints."""
+    path = derivations_folder() / "kirchhoff.toml"
+    assert read_spec(path).sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert read_spec_text(path.read_text(encoding="utf-8"), path) == read_spec(path)
+
+
+def test_reading_is_quick(system):
+    """A shipped spec is read in less than 0.05 s."""
+    shipped(system)
+    start = process_time()
+    shipped(system)
+    assert process_time() - start < 0.05
+
+
+def test_reader_imports_neither_sympy_nor_numpy():
+    """The half of the engine that reads specs is light."""
+    code = "import coadjoint.spec, sys; print({'sympy', 'numpy'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+# -- files --------------------------------------------------------------------------------------
+
+
+def write(folder, text=RIGID_BODY, name="sample.toml"):
+    """A spec file."""
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def refused(path, kind=SpecError):
+    """The error that reading a path gives, at once."""
+    start = perf_counter()
+    with pytest.raises(kind) as caught:
+        read_spec(path)
+    assert perf_counter() - start < 2
+    assert str(caught.value).startswith(str(path))
+    return caught.value
+
+
+def test_file_is_read_from_text_paths_and_with_dos_newlines(tmp_path):
+    """Paths may be strings, and lines may end as on DOS; the hash is of the bytes."""
+    path = write(tmp_path, RIGID_BODY.replace("\n", "\r\n"))
+    spec = read_spec(str(path))
+    assert spec.title == "Free rigid body"
+    assert spec.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_pipe_is_refused_without_waiting(tmp_path):
+    """Opening a FIFO would wait for a writer for ever."""
+    path = tmp_path / "sample.toml"
+    os.mkfifo(path)
+    assert "FIFO" in refused(path).found
+
+
+def test_device_directory_and_socket_are_refused(tmp_path):
+    """Only a regular file is a spec."""
+    assert refused("/dev/zero").found == "a device"
+    folder = tmp_path / "sample.toml"
+    folder.mkdir()
+    assert refused(folder).found == "a directory"
+    path = tmp_path / "sock.toml"
+    with contextlib.closing(socket.socket(socket.AF_UNIX)) as listener:
+        listener.bind(str(path))
+        refused(path)
+
+
+def test_symbolic_link_is_refused_with_its_target(tmp_path):
+    """The file that is checked is the file that is read; the message says which one to give."""
+    path = tmp_path / "link.toml"
+    path.symlink_to(write(tmp_path))
+    error = refused(path)
+    assert str(tmp_path / "sample.toml") in str(error)
+    path.unlink()
+    path.symlink_to(path)
+    assert "symbolic link" in str(refused(path))
+
+
+def test_missing_file_is_refused_with_the_nearest_name(tmp_path):
+    """A misspelt file is guessed from those beside it."""
+    write(tmp_path, name="heavy_top.toml")
+    error = refused(tmp_path / "hevy_top.toml")
+    assert "there is no such file" in str(error)
+    assert "heavy_top.toml'?" in str(error)
+    refused(tmp_path / "nowhere" / "sample.toml")
+
+
+def test_unreadable_paths_are_refused(tmp_path):
+    """What the system says is passed on."""
+    assert "null byte" in str(refused("a\0b.toml"))
+    refused(tmp_path / ("x" * 300))
+
+
+@pytest.mark.parametrize("size", [64 * 1024 + 1, 10 * 1024 * 1024])
+def test_large_file_is_refused_with_its_size(tmp_path, size):
+    """A file of 10 MB is not even read."""
+    error = refused(write(tmp_path, b"#" * size), LimitError)
+    assert error.found == size
+    assert "SPEC_BYTES" in str(error)
+
+
+def test_file_at_the_limit_is_read(tmp_path):
+    """64 KiB pass."""
+    text = RIGID_BODY + "#" * (64 * 1024 - len(RIGID_BODY))
+    assert read_spec(write(tmp_path, text)).name == "sample"
+
+
+def test_empty_file_is_refused(tmp_path):
+    """Nothing but blanks is no spec; the message says how to begin."""
+    for text in ("", "\n \n"):
+        assert "coadjoint new" in str(refused(write(tmp_path, text)))
+
+
+def test_bytes_that_are_no_text_are_refused_with_their_line(tmp_path):
+    """The offending byte and its line are in the message."""
+    error = refused(write(tmp_path, RIGID_BODY.encode() + b"\xff"))
+    assert "0xff" in str(error)
+    assert f":{RIGID_BODY.count(chr(10)) + 1}:" in str(error)
+
+
+@pytest.mark.parametrize("name", ["Heavy", "random", "2x", "a-b", "numpy", "class"])
+def test_file_name_names_the_system(tmp_path, name):
+    """The stem becomes a module, so it must be a name that is free."""
+    assert refused(write(tmp_path, name=f"{name}.toml")).found == name
+
+
+def test_free_text_may_be_in_any_language(tmp_path):
+    """Titles and docs are for people; they reach documents alone."""
+    text = RIGID_BODY.replace("Free rigid body", "Kr\u00e4ftefreier Kreisel")
+    assert read_spec(write(tmp_path, text)).title == "Kr\u00e4ftefreier Kreisel"
+
+
+# -- any text -----------------------------------------------------------------------------------
+
+
+def read_or_refuse(text):
+    """Read a text; only our own errors may come out, and soon."""
+    start, error = process_time(), None
+    try:
+        read_spec_text(text, Path("sample.toml"))
+    except CoadjointError as caught:
+        error = caught
+    assert process_time() - start < 2
+    if error is not None:
+        assert str(error).startswith("sample.toml")
+        assert json.loads(json.dumps(error.as_record()))["message"] == str(error)
+
+
+@given(st.text(max_size=300))
+def test_random_text_is_refused_by_our_own_errors(text):
+    """Whatever the text, no other exception comes out."""
+    read_or_refuse(text)
+
+
+@settings(suppress_health_check=[HealthCheck.too_slow])
+@given(st.data())
+def test_damaged_specs_are_read_or_refused(data):
+    """A shipped spec with pieces cut, moved and doubled gives our errors alone."""
+    text = (derivations_folder() / "heavy_top.toml").read_text(encoding="utf-8")
+    for _ in range(data.draw(st.integers(1, 3))):
+        start = data.draw(st.integers(0, len(text)))
+        end = data.draw(st.integers(start, min(len(text), start + 30)))
+        piece = data.draw(
+            st.sampled_from(
+                ["", "[", "]", "{", "}", '"', "=", "\n", "nan", "1e999", "Omega", "^99"]
+            )
+            | st.text(max_size=5)
+        )
+        text = text[:start] + piece + text[end:]
+    read_or_refuse(text)
+
+
+@given(st.text(alphabet="OmegaPiI123 ()[],.+-*/^dotcrssinverhagt'\"", max_size=60))
+def test_random_lagrangians_are_read_or_refused(formula):
+    """Formulas made of the language's own letters give our errors alone."""
+    quoted = formula.replace('"', '\\"')
+    read_or_refuse(RIGID_BODY.replace("dot(Omega, diag(I)*Omega)/2", quoted))
