@@ -140,6 +140,14 @@ def test_a_bracket_given_twice_or_with_itself_is_refused():
         from_brackets("a", ("e1", "e2"), {(1, 1): {0: 1}})
 
 
+def test_a_bracket_may_be_given_in_either_order():
+    """[e2, e1] = -e3 declares the same algebra as [e1, e2] = e3."""
+    basis = ("e1", "e2", "e3")
+    forward = from_brackets("a", basis, {(0, 1): {2: 1}})
+    assert from_brackets("a", basis, {(1, 0): {2: -1}}).constants == forward.constants
+    assert from_brackets("a", basis, {(1, 0): {2: 1}}).constants != forward.constants
+
+
 def test_rational_constants_work_in_every_arithmetic():
     """A constant of 1/2 multiplies integers, fractions and floats."""
     half = from_brackets("half", ("e1", "e2"), {(0, 1): {1: Fraction(1, 2)}})

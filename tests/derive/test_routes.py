@@ -46,6 +46,31 @@ def test_a_lagrangian_not_quadratic_in_velocities_is_refused():
         derive(spec(RIGID_BODY, ("/2", "/2 + Omega1^4")))
 
 
+def test_a_lagrangian_linear_in_velocities_shifts_the_momenta():
+    """A rotor of momentum s: Pi = I Omega + s, dPi/dt = Pi x Omega (Holm 2011, section 2.4)."""
+    changes = [
+        ("default = [1, 2, 3] }", "default = [1, 2, 3] }\ns = { shape = [3] }"),
+        ('/2"', '/2 + dot(Omega, s)"'),
+    ]
+    sample = spec(RIGID_BODY, *changes)
+    equations = derive(sample)
+    pi, inertia, s = (sympy.symbols(f"{name}1:4") for name in ("Pi", "I", "s"))
+    omega = [(pi[n] - s[n]) / inertia[n] for n in range(3)]
+    expected = sympy.Matrix(pi).cross(sympy.Matrix(omega))
+    assert [sympy.expand(a - b) for a, b in zip(equations.rates, expected, strict=True)] == [0] * 3
+    assert prove(sample).holds
+
+
+def test_a_leading_minus_is_a_minus():
+    """-T and 0 - T are one formula, and T another."""
+    minus, difference, plus = (
+        derive(spec(RIGID_BODY, ("dot(Omega", text + "dot(Omega"))).rates
+        for text in ("-", "0 - ", "")
+    )
+    assert minus == difference
+    assert minus != plus
+
+
 def test_a_full_inertia_tensor_is_inverted_symbolically():
     """Three coupled velocities: J Omega = Pi holds exactly for the derived velocities."""
     changes = [

@@ -34,6 +34,7 @@ class Mutant:
 ALGEBRA = "src/coadjoint/algebra/"
 DERIVE = "src/coadjoint/derive/"
 LOWER = "src/coadjoint/lower/"
+RENDER = "src/coadjoint/render/"
 
 MUTANTS = (
     # structure constants
@@ -43,23 +44,44 @@ MUTANTS = (
         "{(k, j): Fraction(-1), (j, k): Fraction(1)}",
     ),
     Mutant(ALGEBRA + "catalogue.py", "(j, k): Fraction(-1)}", "(j, k): Fraction(1)}"),
-    Mutant(ALGEBRA + "catalogue.py", "{(axis, 3): Fraction(1)}", "{(axis, 3): Fraction(-1)}",
-           equivalent="P -> -P is an automorphism of se(3): the same constants"),
-    Mutant(ALGEBRA + "catalogue.py", "(axis + 1) % 3, (axis + 2) % 3", "(axis + 2) % 3, (axis + 1) % 3"),
+    Mutant(
+        ALGEBRA + "catalogue.py",
+        "{(axis, 3): Fraction(1)}",
+        "{(axis, 3): Fraction(-1)}",
+        equivalent="P -> -P is an automorphism of se(3): the same constants",
+    ),
+    Mutant(
+        ALGEBRA + "catalogue.py", "(axis + 1) % 3, (axis + 2) % 3", "(axis + 2) % 3, (axis + 1) % 3"
+    ),
     Mutant(ALGEBRA + "lie_algebra.py", "yield j, i, k, -c", "yield j, i, k, c"),
-    Mutant(ALGEBRA + "lie_algebra.py", "for left, right, sign in ((a, b, 1), (b, a, -1)):",
-           "for left, right, sign in ((a, b, -1), (b, a, 1)):"),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "for left, right, sign in ((a, b, 1), (b, a, -1)):",
+        "for left, right, sign in ((a, b, -1), (b, a, 1)):",
+    ),
     Mutant(ALGEBRA + "lie_algebra.py", "if i < j else ((j, i), -1)", "if i < j else ((j, i), 1)"),
     # ad*, brackets, tensors
-    Mutant(ALGEBRA + "lie_algebra.py", "result[j] + scaled(xi[i] * mu[k], c)",
-           "result[j] - scaled(xi[i] * mu[k], c)"),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "result[j] + scaled(xi[i] * mu[k], c)",
+        "result[j] - scaled(xi[i] * mu[k], c)",
+    ),
     Mutant(ALGEBRA + "lie_algebra.py", "scaled(xi[i] * mu[k], c)", "scaled(xi[j] * mu[k], c)"),
-    Mutant(ALGEBRA + "lie_algebra.py", "result[k] + scaled(xi[i] * eta[j], c)",
-           "result[k] - scaled(xi[i] * eta[j], c)"),
-    Mutant(ALGEBRA + "lie_algebra.py", "matrix[i][j] - scaled(mu[k], c)",
-           "matrix[i][j] + scaled(mu[k], c)"),
-    Mutant(ALGEBRA + "lie_algebra.py", "matrix[k][j] + scaled(xi[i], c)",
-           "matrix[k][j] - scaled(xi[i], c)"),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "result[k] + scaled(xi[i] * eta[j], c)",
+        "result[k] - scaled(xi[i] * eta[j], c)",
+    ),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "matrix[i][j] - scaled(mu[k], c)",
+        "matrix[i][j] + scaled(mu[k], c)",
+    ),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "matrix[k][j] + scaled(xi[i], c)",
+        "matrix[k][j] - scaled(xi[i], c)",
+    ),
     # representations
     Mutant(ALGEBRA + "representation.py", "result[row] + scaled(", "result[row] - scaled("),
     Mutant(ALGEBRA + "representation.py", "result[i] - scaled(", "result[i] + scaled("),
@@ -67,43 +89,123 @@ MUTANTS = (
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(r, c): -v for"),
     Mutant(ALGEBRA + "products.py", "[start + row] = value", "[start + row] = -value"),
     # derivation
-    Mutant(DERIVE + "euler_poincare.py", "[sign * m for m in momentum]",
-           "[-sign * m for m in momentum]"),
+    Mutant(
+        DERIVE + "euler_poincare.py",
+        "[sign * m for m in momentum]",
+        "[-sign * m for m in momentum]",
+    ),
     Mutant(DERIVE + "euler_poincare.py", "[-sign * x for x in", "[sign * x for x in"),
     Mutant(DERIVE + "euler_poincare.py", "[m + t for", "[m - t for"),
     Mutant(DERIVE + "lie_poisson.py", "sum(entry * named[x]", "sum(-entry * named[x]"),
-    Mutant(DERIVE + "lie_poisson.py", "tensor = poisson_tensor(setting)",
-           "tensor = tuple(zip(*poisson_tensor(setting), strict=True))"),
+    Mutant(
+        DERIVE + "lie_poisson.py",
+        "tensor = poisson_tensor(setting)",
+        "tensor = tuple(zip(*poisson_tensor(setting), strict=True))",
+    ),
     Mutant(DERIVE + "structure.py", "setting.sign * tensor[i][j]", "-setting.sign * tensor[i][j]"),
-    Mutant(DERIVE + "structure.py", "variable.representation.dual())", "variable.representation)",
-           equivalent="rotations act on vectors and covectors alike; the tests of the coadjoint "
-           "representation see it"),
-    Mutant(DERIVE + "setting.py", 'return 1 if self.spec.invariance == "left" else -1',
-           'return -1 if self.spec.invariance == "left" else 1'),
+    Mutant(
+        DERIVE + "structure.py",
+        "variable.representation.dual())",
+        "variable.representation)",
+        equivalent="rotations act on vectors and covectors alike; the tests of the coadjoint "
+        "representation see it",
+    ),
+    Mutant(
+        DERIVE + "setting.py",
+        'return 1 if self.spec.invariance == "left" else -1',
+        'return -1 if self.spec.invariance == "left" else 1',
+    ),
     Mutant(DERIVE + "setting.py", 'return 1 if self.spec.invariance == "left" else -1', "return 1"),
     Mutant(DERIVE + "legendre.py", "field[mu] - field.substitute", "field[mu] + field.substitute"),
-    Mutant(DERIVE + "legendre.py", "for mu, xi in pairs), -lagrangian)",
-           "for mu, xi in pairs), lagrangian)"),
+    Mutant(
+        DERIVE + "legendre.py",
+        "for mu, xi in pairs), -lagrangian)",
+        "for mu, xi in pairs), lagrangian)",
+    ),
     Mutant(DERIVE + "interpret.py", "(-1) ** (i + j) * determinant", "determinant"),
     Mutant(DERIVE + "interpret.py", "(-1) ** j * x * determinant", "x * determinant"),
     Mutant(DERIVE + "interpret.py", "_scale(-field.one,", "_scale(field.one,"),
     Mutant(DERIVE + "interpret.py", "    return a - b\n", "    return a + b\n"),
     # exact calculus
-    Mutant("src/coadjoint/exact/element.py", "self.numer * slope * -exponent",
-           "self.numer * slope * exponent"),
-    Mutant("src/coadjoint/exact/field.py", "return -inner * self[known.partner]",
-           "return inner * self[known.partner]"),
+    Mutant(
+        "src/coadjoint/exact/element.py",
+        "self.numer * slope * -exponent",
+        "self.numer * slope * exponent",
+    ),
+    Mutant(
+        "src/coadjoint/exact/field.py",
+        "return -inner * self[known.partner]",
+        "return inner * self[known.partner]",
+    ),
     # lowering
-    Mutant(LOWER + "lowering.py", "sign = -1 if coefficient.numer.LC < 0 else 1",
-           "sign = 1 if coefficient.numer.LC < 0 else -1"),
-    Mutant(LOWER + "lowering.py", "return node if sign > 0 else self.graph.negate(node)",
-           "return node if sign < 0 else self.graph.negate(node)"),
-    Mutant(LOWER + "graph.py", "return self.negate(self.multiply(a, self.operands[b][0]))",
-           "return self.multiply(a, self.operands[b][0])"),
-    Mutant(LOWER + "graph.py", "return self.add(self.multiply(da, b), self.multiply(a, db))",
-           "return self.add(self.multiply(da, b), self.negate(self.multiply(a, db)))"),
+    Mutant(
+        LOWER + "lowering.py",
+        "sign = -1 if coefficient.numer.LC < 0 else 1",
+        "sign = 1 if coefficient.numer.LC < 0 else -1",
+    ),
+    Mutant(
+        LOWER + "lowering.py",
+        "return node if sign > 0 else self.graph.negate(node)",
+        "return node if sign < 0 else self.graph.negate(node)",
+    ),
+    Mutant(
+        LOWER + "graph.py",
+        "return self.negate(self.multiply(a, self.operands[b][0]))",
+        "return self.multiply(a, self.operands[b][0])",
+    ),
+    Mutant(
+        LOWER + "graph.py",
+        "return self.add(self.multiply(da, b), self.multiply(a, db))",
+        "return self.add(self.multiply(da, b), self.negate(self.multiply(a, db)))",
+    ),
     Mutant(LOWER + "graph.py", "self.negate(self.multiply(node, db))", "self.multiply(node, db)"),
-    Mutant(LOWER + "graph.py", 'return self.negate(self.call("sin", argument))',
-           'return self.call("sin", argument)'),
+    Mutant(
+        LOWER + "graph.py",
+        'return self.negate(self.call("sin", argument))',
+        'return self.call("sin", argument)',
+    ),
     Mutant(LOWER + "program.py", "return -evaluate(operand", "return evaluate(operand"),
+    # printers and templates
+    Mutant(RENDER + "printers.py", 'return "-", operand', 'return "+", operand'),
+    Mutant(
+        RENDER + "printers.py",
+        'return "-" + self._operand(operand, ATOM)',
+        "return self._operand(operand, ATOM)",
+    ),
+    Mutant(RENDER + "printers.py", 'return "/", node.right', 'return "*", node.right'),
+    Mutant(
+        "templates/c/kernel.c.j2",
+        "state[{{ row.index }} * state_stride + _n]",
+        "state[{{ row.index }} * state_stride - _n]",
+    ),
+    Mutant(
+        "templates/c/kernel.c.j2",
+        '"out[%d * out_stride + _n]" | format(loop.index0)',
+        '"out[%d * out_stride + _n]" | format(loop.revindex0)',
+    ),
+    Mutant(
+        "templates/c/kernel.c.j2",
+        '" * parameters_stride + _n") }}',
+        '" * parameters_stride - _n") }}',
+    ),
+    Mutant(
+        "templates/c/kernel.c.j2",
+        '{{ statement.value | c_assignment(to="const double " ~ '
+        "statement.name, column=indent | length) }}\n{% endfor %}\n{% endif %}\n"
+        "{{ indent }}/* results */",
+        '{{ statement.value | c_assignment(to="const double " ~ statement.name ~ " = -", '
+        "column=indent | length) }}\n{% endfor %}\n{% endif %}\n{{ indent }}/* results */",
+    ),
+    Mutant(
+        "templates/numpy/kernel.py.j2",
+        '"out[%d]" | format(loop.index0)',
+        '"out[%d]" | format(loop.revindex0)',
+    ),
+    Mutant(
+        "templates/numpy/kernel.py.j2",
+        "python_assignment(to=statement.name, column=4) }}\n"
+        "{% endfor %}\n{% endif %}\n    # results",
+        "python_assignment(to=statement.name ~ ' = -', column=4) }}\n"
+        "{% endfor %}\n{% endif %}\n    # results",
+    ),
 )

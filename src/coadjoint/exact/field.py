@@ -82,6 +82,7 @@ class Field:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self.adjoined: dict[str, Adjoined] = {}
+        self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
 
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]
@@ -189,11 +190,10 @@ class Field:
     def names_in(self, element: Element) -> frozenset[str]:
         """Names of the generators that occur in an element."""
         return frozenset(
-            self._names[place]
+            name
             for part in (element.numer, *self._denominators(element))
-            for monomial in part
-            for place, power in enumerate(monomial)
-            if power
+            for monomial in self._written(part)
+            for name, _ in monomial.powers
         )
 
     def _denominators(self, element: Element) -> list[PolyElement]:
@@ -264,7 +264,7 @@ class Field:
 
     def _needed(self, element: Element) -> list[str]:
         """Adjoined generators that occur, in the order in which they were adjoined."""
-        present = self.names_in(element)
+        present = self.names_in(element) if self.adjoined else frozenset()
         return [generator for generator in self.adjoined if generator in present]
 
     def _polynomial(
@@ -272,19 +272,25 @@ class Field:
     ) -> Value:
         """Sum of coefficient times powers, in the order of the ring."""
         total: Any = None
-        for monomial, coefficient in p.terms():
-            factors = [
-                values[self._names[place]]
-                for place, power in enumerate(monomial)
-                for _ in range(power)
-            ]
-            if coefficient != 1 or not factors:
-                factors.insert(
-                    0, number(Fraction(int(coefficient.numerator), int(coefficient.denominator)))
-                )
+        for monomial in self._written(p):
+            factors = [values[name] for name, power in monomial.powers for _ in range(power)]
+            if monomial.number != 1 or not factors:
+                factors.insert(0, number(monomial.number))
             term = reduce(mul, factors)
             total = term if total is None else total + term
         return number(Fraction(0)) if total is None else total
+
+    def _written(self, p: PolyElement) -> tuple[Monomial, ...]:
+        """The addends of a polynomial by name, remembered: oracles evaluate at many points."""
+        if p not in self._remembered:
+            self._remembered[p] = tuple(
+                Monomial(
+                    Fraction(int(coefficient.numerator), int(coefficient.denominator)),
+                    tuple((self._names[place], e) for place, e in enumerate(exponents) if e),
+                )
+                for exponents, coefficient in p.terms()
+            )
+        return self._remembered[p]
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
         """The element with symbols replaced by elements; symbols not named stay."""
@@ -309,15 +315,9 @@ class Field:
         value = element.numer.LC
         return Fraction(int(value.numerator), int(value.denominator))
 
-    def monomials(self, element: Element) -> list[Monomial]:
+    def monomials(self, element: Element) -> tuple[Monomial, ...]:
         """The addends of the numerator in the order of the field."""
-        return [
-            Monomial(
-                Fraction(int(coefficient.numerator), int(coefficient.denominator)),
-                tuple((self._names[place], e) for place, e in enumerate(exponents) if e),
-            )
-            for exponents, coefficient in element.numer.terms()
-        ]
+        return self._written(element.numer)
 
     def divisors(self, element: Element) -> list[tuple[Element, int]]:
         """The factors of the denominator with their exponents."""

@@ -26,7 +26,7 @@ def element_text(field: Field, element: Element) -> str:
     return f"{lead}/{bottom[0]}" if len(bottom) == 1 else f"{lead}/({'*'.join(bottom)})"
 
 
-def _sum(field: Field, monomials: list[Monomial]) -> str:
+def _sum(field: Field, monomials: tuple[Monomial, ...]) -> str:
     """Addends with their signs."""
     text = ""
     for monomial in monomials:
