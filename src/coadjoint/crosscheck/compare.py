@@ -27,12 +27,14 @@ from coadjoint.crosscheck.oracle import (
 )
 from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points, cancelling, safe_exponent
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import Program
+from coadjoint.lower.program import Program, run
 from coadjoint.render.kernels import elementary_functions
 
 #: Largest k of + - * / sqrt, and of kernels that call other functions (measured: 2.8 and 7.1).
 K_ARITHMETIC: Final = 4.0
 K_ELEMENTARY: Final = 16.0
+#: Roundings up to which K_ARITHMETIC holds; longer formulas may have a k of as many.
+SHORT: Final = 6
 #: Members compared at a time: few enough for the cache.
 BLOCK: Final = 10_000
 
@@ -50,6 +52,33 @@ class Figures:
     k: float
     ulp: float
     points: int
+
+
+@dataclass(frozen=True)
+class _Roundings:
+    """How many roundings an error bound counts: the larger of two in a sum, both in a product."""
+
+    count: int
+
+    def __add__(self, other: _Roundings) -> _Roundings:
+        return _Roundings(max(self.count, other.count) + 1)
+
+    def __mul__(self, other: _Roundings) -> _Roundings:
+        return _Roundings(self.count + other.count + 1)
+
+    __truediv__ = __mul__
+
+    def __neg__(self) -> _Roundings:
+        return self
+
+
+def most_roundings(program: Program) -> int:
+    """The most roundings that the error bound of any output of a Program counts."""
+    inputs = dict.fromkeys((*program.state, *program.parameters), _Roundings(0))
+    outputs = run(
+        program, inputs, lambda _: _Roundings(0), lambda _, argument: _Roundings(argument.count + 1)
+    )
+    return max(output.count for output in outputs)
 
 
 @dataclass(frozen=True)
@@ -75,8 +104,14 @@ class Subject:
 
     @property
     def threshold(self) -> float:
-        """The largest k allowed."""
-        return K_ELEMENTARY if self.elementary else K_ARITHMETIC
+        """The largest k allowed.
+
+        A k above the number of roundings is impossible to first order; errors that large are rare,
+        so short formulas are held to less.
+        """
+        roundings = max(map(most_roundings, self.programs.values()))
+        allowed = K_ELEMENTARY if self.elementary else K_ARITHMETIC
+        return allowed if roundings <= SHORT else max(allowed, float(roundings))
 
     @cached_property
     def points(self) -> Points:
