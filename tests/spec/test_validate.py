@@ -139,4 +139,18 @@ def test_too_long_title_names_the_limit():
     assert spec(RIGID_BODY, ("Free rigid body", "x" * 200)).title == "x" * 200
     error = refused(("Free rigid body", "x" * 201))
     assert isinstance(error, LimitError)
+    assert error.limit == "TITLE_CHARACTERS"
     assert "200" in str(error)
+
+
+def test_too_long_unit_names_the_limit():
+    """Units are printed in generated files, one to a line."""
+    error = refused(('"momentum" }', '"momentum", unit = "' + "m" * 41 + '" }'))
+    assert error.limit == "UNIT_CHARACTERS"
+
+
+def test_thousands_of_faults_make_a_short_message():
+    """Twenty faults are shown and the others counted."""
+    error = refused(('["dot(Pi, Pi)"]', "[" + "1, " * 5000 + "]"))
+    assert len(error.faults) == 20
+    assert str(error).endswith("... and 4980 more faults.")

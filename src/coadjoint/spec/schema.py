@@ -113,7 +113,6 @@ Number = Annotated[Fraction, PlainValidator(_number), WithJsonSchema(NUMBER_SCHE
 Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_NUMBER_OR_LISTS)]
 Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]
 Matrix = list[list[Number]]
-Line = Annotated[str, AfterValidator(_is_printable)]
 Prose = Annotated[str, AfterValidator(_is_prose)]
 Unit = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_unit)]
 Names = Annotated[list[str], Field(min_length=1), AfterValidator(_is_unique)]
@@ -260,8 +259,8 @@ def _no_claims() -> ClaimsPart:
 class SpecFile(Part):
     """A declared system: its algebra, its variables and parameters, its energy."""
 
-    title: Annotated[Line, Field(max_length=TITLE_CHARACTERS)] = Field(
-        description="the system's name as a book has it"
+    title: Annotated[str, Field(max_length=TITLE_CHARACTERS), AfterValidator(_is_printable)] = (
+        Field(description="the system's name as a book has it")
     )
     source: Prose = Field("", description="where the equations can be looked up")
     description: Prose = Field("", description="free text for documents")

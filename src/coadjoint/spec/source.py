@@ -154,10 +154,16 @@ class Source:
         return f"    {window.strip()}\n    {' ' * (column - cut - indent)}{'^' * carets}"
 
 
-def joined(faults: Sequence[CoadjointError]) -> CoadjointError:
-    """Several errors as one: every message, the parts of the first, and all parts as ``faults``."""
+def joined(faults: Sequence[CoadjointError], more: int = 0) -> CoadjointError:
+    """Several errors as one: every message, the parts of the first, and all parts as ``faults``.
+
+    Args:
+        faults: At least one error.
+        more: How many further faults there are that are not shown.
+    """
     first = faults[0]
     if len(faults) == 1:
         return first
-    message = "\n".join(str(fault) for fault in faults)
-    return type(first)(message, **first.parts, faults=[fault.parts for fault in faults])
+    messages = [str(fault) for fault in faults] + [f"... and {more} more faults."] * (more > 0)
+    kept = [fault.parts for fault in faults]
+    return type(first)("\n".join(messages), **first.parts, faults=kept)

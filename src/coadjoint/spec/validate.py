@@ -48,6 +48,8 @@ _TABLES: Mapping[str | int, type[Part]] = MappingProxyType(
         "claims": ClaimsPart,
     }
 )
+#: Faults that one message shows at the most.
+MOST_FAULTS = 20
 _KINDS = MappingProxyType(
     {
         "model_type": "a table",
@@ -71,6 +73,7 @@ _HOW_TO_WRITE: Mapping[str | int, str] = MappingProxyType(
         "matrices": "Write matrices = { e1 = [[0, 1], [0, 0]] }.",
     }
 )
+_LIMIT = re.compile(r"\(([A-Z]+_[A-Z]+)\)")
 _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -86,7 +89,8 @@ def validate(source: Source) -> SpecFile:
         return SpecFile.model_validate(document)
     except ValidationError as error:
         details = _without_echoes(error.errors(include_url=False))
-        raise joined([_fault(source, document, detail) for detail in details]) from None
+        faults = [_fault(source, document, detail) for detail in details[:MOST_FAULTS]]
+        raise joined(faults, len(details) - len(faults)) from None
 
 
 # -- TOML -----------------------------------------------------------------------------------------
@@ -181,15 +185,16 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     if kind == "extra_forbidden":
         return _unknown_key(source, path)
     expected, found = _expected(detail), detail["input"]
+    literal = kind == "literal_error" and isinstance(found, str)
+    limit = next(iter(_LIMIT.findall(expected)), "")
     return source.fault(
         present,
         f"found {shown(found)}",
         found=found,
         expected=expected,
-        hint=did_you_mean(found, re.findall("'([^']+)'", expected))
-        if kind == "literal_error" and isinstance(found, str)
-        else "",
-        kind=LimitError if kind.endswith("too_long") else _kind_of(expected),
+        hint=did_you_mean(found, re.findall("'([^']+)'", expected)) if literal else "",
+        kind=LimitError if limit else SpecError,
+        limit=limit,
     )
 
 
@@ -206,11 +211,6 @@ def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
 def _keys(path: KeyPath) -> Mapping[str, FieldInfo]:
     """The keys of the table that a path leads into."""
     return (_TABLES[path[0]] if len(path) > 1 else SpecFile).model_fields
-
-
-def _kind_of(expected: str) -> type[CoadjointError]:
-    """The class of the error; digits are counted where values are read."""
-    return LimitError if "_DIGITS)" in expected else SpecError
 
 
 def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
@@ -240,4 +240,7 @@ def _expected(detail: ErrorDetails) -> str:
     if detail["type"] in _KINDS:
         return _KINDS[detail["type"]]
     message = detail["msg"].removeprefix("Value error, ")
+    if detail["type"] == "string_too_long":
+        limit = "TITLE_CHARACTERS" if detail["loc"][-1] == "title" else "UNIT_CHARACTERS"
+        return f"at most {getattr(limits, limit)} characters ({limit})"
     return re.sub(r"^\w+ should (?:be|have) (?:a valid )?", "", message)
