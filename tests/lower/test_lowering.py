@@ -119,7 +119,7 @@ def test_functions_are_lowered_and_differentiated():
         'Pi = { role = "momentum" }\na = { role = "advected", representation = "vector" }',
     ).replace(
         'diag(I)*Omega)/2"',
-        "diag(I)*Omega)/2 - sin(a1*I1)*exp(a2)/(2 + a3^2) - sqrt(I2)*log(2 + a1^2) - cos(a1*I1)"',
+        'diag(I)*Omega)/2 - sin(a1*I1)*exp(a2)/(2 + a3^2) - sqrt(I2)*log(2 + a1^2) - cos(a1*I1)"',
     )
     text = text.replace('["dot(Pi, Pi)"]', '["dot(a, a)"]')
     equations = derive(spec(text))
