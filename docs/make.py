@@ -1,0 +1,62 @@
+"""Draw docs/pictures anew, and write the schema and all derivations to build/docs.
+
+    python docs/make.py        (or `make docs`)
+
+Only commands of coadjoint are used, so what stands here is what a reader can type.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import click
+
+from coadjoint.cli import main
+from coadjoint.cli.arguments import shipped_names, spec_path
+from coadjoint.cli.output import write_text
+from coadjoint.spec import read_spec
+from coadjoint.spec.schema import json_schema
+
+ROOT = Path(__file__).resolve().parents[1]
+PICTURES = {
+    "heavy_top.png": "simulate heavy_top --set I=1,1,0.6 --set m=0.3 "
+    "--state Pi=0,0,3 --state Gamma=0.6,0,0.8 --time 20",
+    "gyrostat.png": "simulate examples/gyrostat.toml --state Pi=0.01,1,0.01 --state L=0.2 "
+    "--time 60",
+}
+
+
+def run(words: list[str]) -> None:
+    """One command of coadjoint, shown and run."""
+    click.echo("coadjoint " + " ".join(words))
+    try:
+        main(words)
+    except SystemExit as end:
+        if end.code:
+            raise
+
+
+def draw() -> None:
+    """The pictures of the README."""
+    for name, words in PICTURES.items():
+        run([*words.split(), "--plot", f"docs/pictures/{name}"])
+
+
+def write_derivations(folder: Path) -> None:
+    """Each derivation of each shipped system as a page and as a LaTeX file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for system in shipped_names():
+        for route in read_spec(spec_path(system)).routes:
+            for form, suffix in (("html", "html"), ("latex", "tex")):
+                output = folder / f"{system}-{route}.{suffix}"
+                words = ["show", system, "--route", route, "--format", form]
+                run([*words, "--output", str(output)])
+
+
+if __name__ == "__main__":
+    os.chdir(ROOT)
+    draw()
+    write_derivations(Path("build/docs"))
+    write_text(Path("build/docs/spec.schema.json"), json.dumps(json_schema(), indent=2) + "\n")
