@@ -1,0 +1,123 @@
+"""The README is true: its Python runs, its commands work, its spec is the one of the examples."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from coadjoint.cli import main
+from coadjoint.cli.program import COMMANDS
+from coadjoint.spec.schema import SpecFile
+from coadjoint.spec.shapes import FUNCTIONS
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    """The fenced blocks of one language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.DOTALL | re.MULTILINE)
+
+
+def commands():
+    """The command lines of the README, their comments dropped."""
+    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    return [words for line in lines if (words := shlex.split(line, comments=True))]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A working folder with the README's spec and a cache of its own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    (spec,) = blocks("toml")
+    (tmp_path / "gyrostat.toml").write_text(spec, encoding="utf-8")
+    return tmp_path
+
+
+def test_python_of_the_readme_runs(folder):
+    """The Python blocks run one after the other, as a reader would type them."""
+    pytest.importorskip("coadjoint.systems", reason="needs an installed coadjoint")
+    names = {}
+    assert len(blocks("python")) >= 4
+    for block in blocks("python"):
+        exec(compile(block, "README.md", "exec"), names)
+    assert max(names["top"].drift.values()) < 1e-8
+    assert names["motion"]["Pi2"].min() > 0.9
+
+
+def test_commands_of_the_readme_work(folder):
+    """Every line of coadjoint ends with status 0; every target of make is there."""
+    ran = 0
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for program, *words in commands():
+        if program == "coadjoint":
+            result = CliRunner().invoke(main, words)
+            assert result.exit_code == 0, (words, result.stderr)
+            ran += 1
+        elif program == "make":
+            assert all(f"\n{target}:" in makefile for target in words)
+        else:
+            assert [program, words[0]] == ["pip", "install"]
+    assert ran >= 6
+    assert (folder / "gyrostat.png").stat().st_size > 20_000
+
+
+def test_the_example_of_a_spec_is_the_one_that_ships():
+    """The walk-through and `examples/gyrostat.toml` are one text."""
+    (spec,) = blocks("toml")
+    assert spec == (ROOT / "examples" / "gyrostat.toml").read_text(encoding="utf-8")
+
+
+def test_the_claim_that_is_said_to_fail_fails(folder):
+    """`L*Pi[1]` is refuted, as the walk-through says."""
+    assert '`"L*Pi[1]"`' in README
+    spec = folder / "gyrostat.toml"
+    spec.write_text(spec.read_text().replace('"L"]', '"L", "L*Pi[1]"]'))
+    result = CliRunner().invoke(main, ["prove", str(spec)])
+    assert result.exit_code == 1
+    assert "L*Pi[1] is a Casimir" in result.stderr
+
+
+def test_the_message_that_is_shown_is_the_one_that_comes(folder):
+    """The mistake of the README gives its message."""
+    (message,) = blocks("text")
+    spec = folder / "gyrostat.toml"
+    spec.write_text(
+        spec.read_text().replace("dot(Omega, diag(I)*Omega)/2 +", "dot(Omega, diag(I)*Omga)/2 +")
+    )
+    result = CliRunner().invoke(main, ["prove", "gyrostat.toml"])
+    assert result.exit_code == 2
+    assert message.strip() in result.stderr
+
+
+def test_tables_are_complete():
+    """Every command, every function of expressions and every key of a spec is in a table."""
+    for command in COMMANDS:
+        assert f"| `coadjoint {command}" in README
+    for function in FUNCTIONS:
+        assert re.search(rf"`{function}\W", README), function
+    schema = SpecFile.model_json_schema()
+    parts = [schema, *schema["$defs"].values()]
+    keys = {key for part in parts for key in part.get("properties", {})}
+    assert len(keys) > 25
+    for key in keys:
+        assert re.search(rf"[`\[. {{,]{key}\b", README), key
+
+
+def test_links_lead_somewhere():
+    """Each relative link of README and docs names a file that is there."""
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    links = [
+        (page, link)
+        for page in pages
+        for link in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8"))
+        if "://" not in link
+    ]
+    assert len(links) > 10
+    for page, link in links:
+        assert (page.parent / link).exists(), (page.name, link)
