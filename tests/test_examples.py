@@ -13,7 +13,6 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 @pytest.fixture
 def example(tmp_path, monkeypatch):
     """The names of an example, run as a module and not as a script."""
-    pytest.importorskip("coadjoint.systems", reason="needs an installed coadjoint")
     monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path))
     return lambda name: runpy.run_path(str(EXAMPLES / f"{name}.py"))
 

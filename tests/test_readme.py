@@ -41,7 +41,6 @@ def folder(tmp_path, monkeypatch):
 
 def test_python_of_the_readme_runs(folder):
     """The Python blocks run one after the other, as a reader would type them."""
-    pytest.importorskip("coadjoint.systems", reason="needs an installed coadjoint")
     names = {}
     assert len(blocks("python")) >= 4
     for block in blocks("python"):
