@@ -110,7 +110,10 @@ def test_an_error_of_the_compiler_is_shown(tmp_path):
 def test_a_warning_is_an_error(tmp_path):
     """An unused variable stops the build."""
     folder = sources(
-        tmp_path, **{"kernel.c": '#include "kernel.h"\ndouble twice(double x)\n{\n    int y;\n    return x;\n}\n'}
+        tmp_path,
+        **{
+            "kernel.c": '#include "kernel.h"\ndouble twice(double x)\n{\n    int y;\n    return x;\n}\n'
+        },
     )
     with pytest.raises(CompilerError, match="unused variable"):
         compile_kernel(find_compiler(), folder, "exact")
