@@ -5,7 +5,6 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 JOBS   ?= 2
-TREES  := src tests benchmarks examples
 
 .PHONY: help setup regenerate check test test-all bench docs clean
 
