@@ -29,3 +29,16 @@ def rational_points(names, count, seed=0):
         }
         for _ in range(count)
     ]
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Report how many mutants of the engine the tests have killed."""
+    outcomes = [
+        report.outcome
+        for reports in terminalreporter.stats.values()
+        for report in reports
+        if "test_a_mutant_is_killed" in getattr(report, "nodeid", "") and report.when == "call"
+    ]
+    if outcomes:
+        killed = outcomes.count("passed")
+        terminalreporter.write_line(f"mutants: {killed} killed / {len(outcomes)}")

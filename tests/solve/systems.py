@@ -1,0 +1,57 @@
+"""Small systems written by hand, rendered into folders: what the shipped ones do not show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from coadjoint.lower.program import Program
+from coadjoint.render.kernels import KernelContext, Quantity, render_system
+from coadjoint.solve.system import System, load_folder
+from tests.programs import PENDULUM, program
+
+
+def one_variable(name: str, rate: str, slope: str) -> KernelContext:
+    """The equation ``dy/dt = rate``."""
+
+    def function(name: str, text: str, shape: tuple[int, ...]) -> Program:
+        return program(name, "y", "", "", text, shape)
+
+    return KernelContext(
+        name=name,
+        spec=f"derivations/{name}.toml",
+        spec_sha256="3" * 64,
+        license="",
+        routes=("Typed by hand.",),
+        equations=(f"dy/dt = {rate}",),
+        state=(Quantity("y", (), "1", ("y",)),),
+        parameters=(),
+        observables=(Quantity("size", (), "1", ("size",)),),
+        programs=(
+            function("rhs", rate, (1,)),
+            function("jacobian", slope, (1, 1)),
+            function("energy", "y", ()),
+            function("observables", "sqrt(y*y)", (1,)),
+        ),
+    )
+
+
+#: Reaches infinity at t = 1/y(0).
+POLE = one_variable("pole", "y*y", "2*y")
+#: Reaches y = 0 at t = 2 sqrt(y(0)), where the rates stop being real.
+EMPTYING = one_variable("emptying", "-sqrt(y)", "-(1/2)/sqrt(y)")
+#: Relaxes in 1e-6 s: explicit methods need many steps.
+STIFF = one_variable("stiff", "1 - 1000000*y", "-1000000")
+
+
+def build(context: KernelContext, folder: Path) -> System:
+    """A System in a folder of its own."""
+    place = folder / context.name
+    place.mkdir()
+    for file, text in render_system(context).items():
+        (place / file).write_text(text)
+    return load_folder(place)
+
+
+def pendulum(folder: Path) -> System:
+    """A pendulum with friction, in sin, cos and exp."""
+    return build(PENDULUM, folder)

@@ -1,0 +1,259 @@
+"""The main job: writes what passed, nothing of what did not, the same bytes everywhere."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from coadjoint.errors import ClaimError, DriftError, SpecError
+from coadjoint.regenerate import check, regenerate
+from tests.specs import RIGID_BODY
+from tests.trees_of_files import ROOT, coadjoint, copy_source, environment, tree
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A source tree with one system, generated."""
+    copy_source(tmp_path, "rigid_body")
+    done = coadjoint(tmp_path, "regenerate")
+    assert done.returncode == 0, done.stderr
+    return tmp_path
+
+
+@pytest.fixture
+def cache(monkeypatch, tmp_path):
+    """A cache of the test's own."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+
+
+def write_spec(folder, name, *changes):
+    """A small spec in a folder."""
+    text = RIGID_BODY
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / f"{name}.toml"
+    path.write_text(text)
+    return path
+
+
+def test_the_checked_in_tree_is_current():
+    """A fresh run gives the bytes of generated/; if not: `coadjoint regenerate`, then commit."""
+    specs = sorted((ROOT / "derivations").glob("*.toml"))
+    outcome = check(specs, ROOT / "generated", jobs=2, complete=True)
+    assert len(outcome.rows) == len(specs) >= 3
+    assert not outcome.failures
+    for row in outcome.rows:
+        assert row.proved == row.claims >= 13
+        # Against 50 digits, over every function, target and family of points.
+        assert 0 < row.k <= 4
+        assert row.targets == ("numpy", "c", "c-fast")
+
+
+def test_an_unchanged_system_is_not_derived_again(tmp_path, cache):
+    """The second run reads a stamp; a touched output, a changed spec and damage undo it."""
+    path = write_spec(tmp_path, "body")
+    output = tmp_path / "generated"
+    (first,) = regenerate([path], output).rows
+    before = tree(output)
+    (second,) = regenerate([path], output).rows
+    assert (first.fresh, second.fresh) == (True, False)
+    kernel = output / "body" / "kernel.c"
+    kernel.write_text(kernel.read_text() + "\n")
+    (third,) = regenerate([path], output).rows
+    assert third.fresh
+    assert tree(output) == before
+    path.write_text(path.read_text() + "# a remark\n")
+    (fourth,) = regenerate([path], output).rows
+    assert fourth.fresh
+
+
+def test_a_false_claim_writes_nothing_and_shows_the_point(tmp_path, cache):
+    """Beside it, a true system is written; the false one leaves what stood there."""
+    true = write_spec(tmp_path, "true_body")
+    false = write_spec(tmp_path, "false_body", ('"dot(Pi, Pi)"', '"dot(Pi, Pi) + Pi2"'))
+    output = tmp_path / "generated"
+    outcome = regenerate([true, false], output, jobs=2)
+    assert [row.system for row in outcome.rows] == ["true_body"]
+    error = outcome.failures["false_body"]
+    assert isinstance(error, ClaimError)
+    assert error.exit_status == 1
+    assert "dot(Pi, Pi) + Pi2 is a Casimir. At " in str(error)
+    assert "Pi1 = " in str(error) or "Pi3 = " in str(error)
+    assert not (output / "false_body").exists()
+    assert (output / "true_body" / "kernel.c").is_file()
+
+
+def test_the_command_for_a_false_claim_exits_with_one(checkout):
+    """The counter-example stands on standard error, the generated tree as it was."""
+    before = tree(checkout / "generated")
+    spec = checkout / "derivations" / "rigid_body.toml"
+    spec.write_text(spec.read_text().replace('"dot(Pi, Pi)"', '"dot(Pi, Pi)", "Pi1"'))
+    done = coadjoint(checkout, "regenerate")
+    assert done.returncode == 1
+    assert "Pi1 is a Casimir" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert tree(checkout / "generated") == before
+
+
+@pytest.mark.parametrize(
+    "victim",
+    [
+        "generated/rigid_body/kernel.py",
+        "generated/rigid_body/kernel.c",
+        "generated/rigid_body/certificate.json",
+        "generated/manifest.json",
+        "templates/c/kernel.c.j2",
+        "templates/numpy/__init__.py.j2",
+        "derivations/rigid_body.toml",
+    ],
+)
+def test_check_notices_one_changed_byte(checkout, victim):
+    """Generated files, templates and specs: even a change that alters no kernel."""
+    assert coadjoint(checkout, "regenerate", "--check").returncode == 0
+    path = checkout / victim
+    comment = {".j2": "{# remark #}", ".toml": "# remark"}.get(path.suffix, " ")
+    path.write_text(path.read_text() + comment)
+    done = coadjoint(checkout, "regenerate", "--check")
+    assert done.returncode == 1
+    assert "differ from a fresh run" in done.stderr
+
+
+def test_check_notices_missing_and_extra_files(checkout):
+    """Both are named; nothing is written by a check."""
+    (checkout / "generated/rigid_body/kernel.h").unlink()
+    (checkout / "generated/rigid_body/stray.c").write_text("int x;\n")
+    before = tree(checkout / "generated")
+    done = coadjoint(checkout, "regenerate", "--check")
+    assert done.returncode == 1
+    assert "rigid_body/kernel.h (missing)" in done.stderr
+    assert "rigid_body/stray.c (extra)" in done.stderr
+    assert tree(checkout / "generated") == before
+
+
+def test_a_system_without_spec_is_removed(checkout):
+    """A full run leaves the systems of the folder of specs; others go, the manifest with them."""
+    (checkout / "derivations" / "rigid_body.toml").rename(checkout / "derivations" / "body.toml")
+    assert coadjoint(checkout, "regenerate", "--check").returncode == 1
+    assert coadjoint(checkout, "regenerate").returncode == 0
+    assert not (checkout / "generated" / "rigid_body").exists()
+    assert "rigid_body" not in (checkout / "generated" / "manifest.json").read_text()
+
+
+def test_an_output_that_cannot_be_written_is_named_and_exits_with_two(checkout, tmp_path):
+    """A file in place of the folder: a clear error, and the file is untouched."""
+    (tmp_path / "plain").write_text("mine")
+    done = coadjoint(checkout, "regenerate", "--output", str(tmp_path / "plain"))
+    assert done.returncode == 2
+    assert "plain" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert (tmp_path / "plain").read_text() == "mine"
+
+
+def test_killed_runs_leave_whole_files_and_the_next_run_heals(checkout):
+    """Kill -9 at several moments of a run that changes every file."""
+    output = checkout / "generated"
+    good = tree(output)
+    command = [sys.executable, "-m", "coadjoint.cli", "regenerate"]
+    spec = checkout / "derivations" / "rigid_body.toml"
+    old = spec.read_text()
+    spec.write_text(old.replace("default  = [1, 2, 3]", "default  = [2, 3, 4]"))
+    for delay in (0.3, 1.0, 1.8, 2.4):
+        with subprocess.Popen(
+            command, cwd=checkout, env=environment(checkout), stdout=subprocess.DEVNULL
+        ) as run:
+            time.sleep(delay)
+            run.send_signal(signal.SIGKILL)
+        for name, content in tree(output).items():
+            if not name.endswith(".tmp"):
+                assert content.endswith(b"\n"), name
+                assert len(content) >= len(good[name]) - 200, name
+    spec.write_text(old)
+    assert coadjoint(checkout, "regenerate").returncode == 0
+    assert tree(output) == good
+
+
+def test_two_runs_at_once_end_well(checkout):
+    """The lock lets one write at a time; the tree is that of either."""
+    expected = tree(checkout / "generated")
+    for path in (checkout / "generated" / "rigid_body").iterdir():
+        path.unlink()
+    command = [sys.executable, "-m", "coadjoint.cli", "regenerate"]
+    runs = [
+        subprocess.Popen(
+            command, cwd=checkout, env=environment(checkout), stdout=subprocess.DEVNULL
+        )
+        for _ in range(2)
+    ]
+    assert [run.wait(timeout=120) for run in runs] == [0, 0]
+    assert tree(checkout / "generated") == expected
+
+
+@pytest.mark.parametrize("seed", ["0", "1", "2", "random"])
+def test_the_same_bytes_for_every_hash_seed(seed, tmp_path):
+    """Sets and dictionaries of strings iterate differently; the texts do not."""
+    script = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from coadjoint import pipeline\n"
+        "from coadjoint.spec import read_spec\n"
+        "for path in map(Path, sys.argv[1:]):\n"
+        "    for name, text in pipeline.render(read_spec(path)).texts.items():\n"
+        "        sys.stdout.write(f'{path.stem}/{name}\\n{text}')\n"
+    )
+    specs = sorted((ROOT / "derivations").glob("*.toml"))
+    done = subprocess.run(
+        [sys.executable, "-c", script, *map(str, specs)],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONHASHSEED": seed},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    expected = "".join(
+        f"{spec.stem}/{name}\n" + (ROOT / "generated" / spec.stem / name).read_text()
+        for spec in specs
+        for name in ("kernel.py", "__init__.py", "kernel.c", "kernel.h", "certificate.json")
+    )
+    assert done.stdout == expected
+
+
+def test_the_same_bytes_from_two_working_directories(checkout, tmp_path):
+    """Neither the folder of the run nor that of the output leaves a trace."""
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    done = subprocess.run(
+        [
+            sys.executable, "-m", "coadjoint.cli", "regenerate",
+            "--derivations", str(checkout / "derivations"), "--output", str(elsewhere / "out"),
+        ],
+        cwd=elsewhere,
+        env=environment(checkout),
+        capture_output=True,
+        text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert tree(elsewhere / "out") == tree(checkout / "generated")
+    assert str(tmp_path).encode() not in b"".join(tree(elsewhere / "out").values())
+
+
+def test_two_specs_of_one_name_are_refused(tmp_path, cache):
+    """The name is shown."""
+    (tmp_path / "other").mkdir()
+    paths = [write_spec(tmp_path, "body"), write_spec(tmp_path / "other", "body")]
+    with pytest.raises(SpecError, match="two specs are called 'body'"):
+        regenerate(paths, tmp_path / "generated")
+
+
+def test_check_says_what_to_do(tmp_path, cache):
+    """The error has the command and the differences as records."""
+    path = write_spec(tmp_path, "body")
+    regenerate([path], tmp_path / "generated")
+    Path(tmp_path / "generated" / "body" / "kernel.h").write_text("")
+    with pytest.raises(DriftError, match="coadjoint regenerate") as caught:
+        check([path], tmp_path / "generated")
+    assert [each["path"] for each in caught.value.differences] == ["body/kernel.h"]
