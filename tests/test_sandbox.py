@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from pathlib import Path
 
 import pytest
 
@@ -48,6 +49,17 @@ def helper(monkeypatch, tmp_path):
                 for n in range(3):
                     report_progress("step", n, 3)
                 return os.getpid()
+
+            def half(_):
+                from coadjoint import sandbox
+                sandbox._channel.write('{"result": [1, 2')
+                sandbox._channel.flush()
+                os.kill(os.getpid(), 9)
+
+            def endless(_):
+                os.spawnlp(os.P_NOWAIT, "sleep", "sleep", "62")
+                report_progress("started", os.getpid(), 0)
+                time.sleep(62)
 
             def bug(_):
                 raise RuntimeError("a bug of ours")
@@ -104,9 +116,47 @@ def test_a_child_that_wants_too_much_memory_is_refused(helper):
 
 def test_a_crash_names_the_signal(helper):
     """An aborted child is an error, never a hang."""
-    with pytest.raises(ResourceError, match="crash was lost .SIGABRT") as caught:
+    with pytest.raises(ResourceError, match=r"crash was lost \(SIGABRT") as caught:
         run_bounded(helper + "crash", None, **GENEROUS)
     assert caught.value.status == -signal.SIGABRT
+
+
+def test_a_child_killed_in_the_middle_of_its_answer_is_lost(helper):
+    """Half a message is no result."""
+    with pytest.raises(ResourceError, match=r"half was lost \(SIGKILL"):
+        run_bounded(helper + "half", None, **GENEROUS)
+
+
+def test_ctrl_c_ends_the_child_and_what_it_started(helper):
+    """KeyboardInterrupt passes through, and nothing is left running."""
+    seen = []
+
+    def interrupt(stage, process, _):
+        seen.append((stage, process))
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_bounded(helper + "endless", None, **GENEROUS, on_progress=interrupt)
+    ((stage, child),) = seen
+    assert stage == "started"
+    for _ in range(50):
+        if not _alive(child) and not _group(child):
+            return
+        time.sleep(0.1)
+    pytest.fail(f"child {child} or its group {_group(child)} is still running")
+
+
+def _group(leader):
+    """Processes that run in the group of a leader."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            fields = (path / "stat").read_text().rsplit(")", 1)[1].split()
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if int(fields[2]) == leader and fields[0] != "Z":
+            found.append(int(path.name))
+    return found
 
 
 def test_a_bug_shows_its_message(helper):
@@ -156,8 +206,8 @@ def test_a_child_dies_with_its_parent(helper, tmp_path):
 def _alive(process):
     """Whether a process runs; a zombie does not."""
     try:
-        with open(f"/proc/{process}/stat") as file:
-            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+        status = Path(f"/proc/{process}/stat").read_text()
+        return status.rsplit(")", 1)[1].split()[0] != "Z"
     except FileNotFoundError:
         return False
 

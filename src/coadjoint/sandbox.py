@@ -1,7 +1,7 @@
 """Bounded children: a function of this package run in a process that can be killed.
 
-Comes in: the name of a function and a JSON value. Goes out: its JSON result, or the error it raised,
-as in this process. Time and memory are limited, since no static limit on a spec keeps every
+Comes in: the name of a function and a JSON value. Goes out: its JSON result, or the error that it
+raised, as in this process. Time and memory are limited, since no static limit on a spec keeps every
 computation short; a child dies with its parent.
 """
 
@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from threading import Timer
@@ -63,7 +64,12 @@ def run_bounded(
     request = {"target": target, "argument": argument, "seconds": seconds, "memory": memory}
     expired: list[bool] = []
     with tempfile.TemporaryFile() as errors, _started(errors) as process:
-        timer = Timer(seconds, lambda: (expired.append(True), _kill(process)))
+
+        def expire() -> None:
+            expired.append(True)
+            _kill(process)
+
+        timer = Timer(seconds, expire)
         timer.daemon = True
         timer.start()
         try:
@@ -106,6 +112,8 @@ def _converse(
     except BrokenPipeError:
         return None
     for line in process.stdout:
+        if not line.endswith("\n"):  # killed in the middle of a message
+            return None
         message: dict[str, Any] = json.loads(line)
         if "progress" not in message:
             return message
@@ -115,10 +123,8 @@ def _converse(
 
 def _kill(process: subprocess.Popen[str]) -> None:
     """Kill a child and whatever it started; its session is its own."""
-    try:
+    with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
 
 
 def _lost(
@@ -143,7 +149,7 @@ def _lost(
     )
 
 
-# -- in the child -------------------------------------------------------------------------------------
+# -- in the child ---------------------------------------------------------------------------------
 
 
 def report_progress(stage: str, done: int, total: int) -> None:
@@ -153,7 +159,7 @@ def report_progress(stage: str, done: int, total: int) -> None:
 
 def child() -> None:
     """Serve one request and end; the entry point of the child process."""
-    global _channel  # noqa: PLW0603 (one channel for the one request of this process)
+    global _channel  # one channel for the one request of this process
     _die_with(int(sys.argv[2]))
     _channel = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not meet the messages

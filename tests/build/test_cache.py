@@ -2,6 +2,8 @@
 
 import os
 import shutil
+import subprocess
+import sys
 import warnings
 
 import numpy as np
@@ -126,6 +128,34 @@ def test_an_unusable_cache_is_replaced_for_this_process_and_said_once(monkeypatc
     shutil.rmtree(first)
 
 
+def test_the_temporary_folder_ends_with_its_process(tmp_path):
+    """Where the home cannot be used, kernels work and nothing is left behind."""
+    (tmp_path / "file").write_text("")
+    (tmp_path / "temporary").mkdir()
+    script = (
+        "import warnings\n"
+        "from coadjoint.build.cache import cache_folder\n"
+        "warnings.simplefilter('ignore')\n"
+        "from coadjoint.systems import rigid_body\n"
+        "print(rigid_body.rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0]).tolist())\n"
+        "print(len(list(cache_folder().rglob('*.so'))), cache_folder())"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", script],
+        env={
+            **os.environ,
+            "COADJOINT_CACHE": str(tmp_path / "file"),
+            "TMPDIR": str(tmp_path / "temporary"),
+        },
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.splitlines()
+    assert found[0] == "[-1.5, 2.25, -1.0]"
+    assert found[1].startswith(f"1 {tmp_path / 'temporary'}")
+    assert not list((tmp_path / "temporary").iterdir())
+
+
 def test_a_full_disk_leaves_the_old_object(folder, monkeypatch):
     """A failing write is an error that names the folder; what was there still is."""
     store("key", b"old")
@@ -139,4 +169,4 @@ def test_a_full_disk_leaves_the_old_object(folder, monkeypatch):
     monkeypatch.undo()
     monkeypatch.setenv("COADJOINT_CACHE", str(folder))
     assert fetch("key").read_bytes() == b"old"
-    assert not [path for path in folder.rglob("*.tmp")]
+    assert not list(folder.rglob("*.tmp"))

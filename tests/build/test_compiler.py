@@ -2,15 +2,16 @@
 
 import shutil
 import stat
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from coadjoint.build import compiler
-from coadjoint.build.compiler import Compiler, compile_kernel, find_compiler
+from coadjoint.build.compiler import Compiler, CompilerWarning, compile_kernel, find_compiler
 from coadjoint.errors import CompilerError
-from coadjoint.solve.kernels import CompilerWarning
+from coadjoint.solve import kernels
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top
 
@@ -32,6 +33,7 @@ def forget():
 def fresh_top(monkeypatch, tmp_path):
     """The heavy top in a folder of its own, with an empty cache."""
     monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(kernels, "_said", set())
     folder = tmp_path / "heavy_top"
     shutil.copytree(heavy_top.system.folder, folder, ignore=shutil.ignore_patterns("__pycache__"))
     return load_folder(folder)
@@ -109,22 +111,45 @@ def test_an_error_of_the_compiler_is_shown(tmp_path):
 
 def test_a_warning_is_an_error(tmp_path):
     """An unused variable stops the build."""
-    folder = sources(
-        tmp_path,
-        **{
-            "kernel.c": '#include "kernel.h"\ndouble twice(double x)\n{\n    int y;\n    return x;\n}\n'
-        },
-    )
+    unused = SIMPLE["kernel.c"].replace("return", "int y;\n    return")
+    folder = sources(tmp_path, **{"kernel.c": unused})
     with pytest.raises(CompilerError, match="unused variable"):
         compile_kernel(find_compiler(), folder, "exact")
 
 
 def test_a_hanging_compiler_is_stopped(monkeypatch, tmp_path):
     """The limit is named, and nothing of it is left running."""
-    fake = script(tmp_path, "slow", 'case "$1" in --version) echo slow 1.0;; *) sleep 60;; esac')
+    fake = script(tmp_path, "slow", "sleep 61 & echo $! > started; wait")
     monkeypatch.setattr(compiler._run, "__defaults__", (0.5,))
     with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
         compile_kernel(Compiler((str(fake),), "slow 1.0"), sources(tmp_path), "exact")
+    child = Path("/proc") / (tmp_path / "started").read_text().strip() / "cmdline"
+    for _ in range(50):
+        if not child.exists() or not child.read_bytes():  # gone, or a zombie
+            return
+        time.sleep(0.1)
+    pytest.fail("what the compiler started is still running")
+
+
+def test_a_compiler_that_needs_too_much_memory_is_stopped(monkeypatch, tmp_path):
+    """The limit holds for what the compiler starts, and its message is shown."""
+    found = find_compiler()
+    monkeypatch.setattr(compiler, "COMPILE_BYTES", 2**20)
+    with pytest.raises(CompilerError, match=r"failed on kernel\.c with status"):
+        compile_kernel(found, sources(tmp_path), "exact")
+
+
+def test_a_compiler_is_found_from_any_folder(monkeypatch, tmp_path):
+    """A relative CC is that of the folder where it was looked up."""
+    real = find_compiler().command[0]
+    script(tmp_path, "mine", f'exec {real} "$@"')
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("CC", "./mine")
+    found = find_compiler()
+    place = tmp_path / "elsewhere"
+    place.mkdir()
+    monkeypatch.chdir(place)
+    assert compile_kernel(found, sources(place), "exact").is_file()
 
 
 @pytest.mark.parametrize("body", ["exit 0", "echo garbage > kernel.so"])
@@ -143,14 +168,15 @@ def test_a_compiler_that_cannot_tell_its_version_is_refused(monkeypatch, tmp_pat
 
 
 def test_machines_without_march_native_still_compile(monkeypatch, tmp_path):
-    """The option is dropped where the compiler refuses it."""
+    """The option is dropped where the compiler refuses it, which is said."""
     real = find_compiler().command[0]
     fake = script(
         tmp_path,
         "picky",
         f'for a in "$@"; do [ "$a" = -march=native ] && exit 1; done; exec {real} "$@"',
     )
-    made = compile_kernel(Compiler((str(fake),), "picky"), sources(tmp_path), "exact")
+    with pytest.warns(CompilerWarning, match="picky refuses -march=native"):
+        made = compile_kernel(Compiler((str(fake),), "picky"), sources(tmp_path), "exact")
     assert made.is_file()
 
 

@@ -43,6 +43,7 @@ def test_every_layout_gives_the_right_value(layout, target):
         (STATE.astype(np.longdouble), "float128"),
         (np.array([2**60 + 1, 0, 0]), "int64"),
         (STATE > 0, "bool"),
+        (np.ma.masked_array(STATE, [True, False, False]), "masked array"),
     ],
 )
 def test_types_that_would_lose_something_are_refused(state, found):
@@ -140,6 +141,7 @@ def test_parameters_per_member_broadcast_with_shared_ones():
         ({"I2": 0.0}, "parameter I2"),
         (np.ones(7), r"parameters of heavy_top has the shape \(7,\)"),
         ({"m": np.ones(3), "g": np.ones(4)}, "do not fit together"),
+        ({"I": [1.0, 2.0, 3.0], "I3": 4.0}, "parameters gives I3 twice"),
         ({"m": np.ones(5)}, r"batch shape \(5,\), the state \(\)"),
     ],
 )

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError, OutputError
-from coadjoint.solve.plot import plot
+from coadjoint.solve.plot import _faces_viewer, plot
+from coadjoint.solve.solution import Solution
 from coadjoint.systems import heavy_top, rigid_body
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
@@ -41,10 +42,10 @@ def plot_figure(solution):
     import matplotlib as mpl
 
     mpl.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import pyplot as plt
 
     figure = plot(solution)
-    pyplot.close(figure)
+    plt.close(figure)
     return figure
 
 
@@ -59,6 +60,21 @@ def test_components_are_drawn_where_there_is_no_sphere(body, tmp_path):
 def legend(axes):
     """Texts of a legend, if there is one."""
     return axes.get_legend().get_texts() if axes.get_legend() else []
+
+
+def test_only_the_near_side_is_drawn_strong(body):
+    """Points toward the viewer are near, those opposite are not, and the parts touch."""
+    toward = np.array([0.6, -0.71, 0.37])
+    path = np.stack([toward, toward, -toward, -toward, -toward, toward], axis=1)
+    assert _faces_viewer(path).tolist() == [True, True, True, False, True, True]
+
+
+def test_a_trajectory_of_one_sample_and_one_that_is_not_finite_are_drawn(body, tmp_path):
+    """No warning, no exception."""
+    for n, state in enumerate(([[1.0], [0.0], [0.0]], [[1e200], [1e200], [0.0]])):
+        arguments = (body.time[:1], np.array(state), body.parameters, "NONFINITE", "")
+        Solution(body.system, *arguments).plot(tmp_path / f"{n}.png")
+        assert (tmp_path / f"{n}.png").stat().st_size > 10_000
 
 
 def test_an_unknown_ending_is_refused(body, tmp_path):

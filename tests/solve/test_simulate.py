@@ -7,6 +7,7 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.systems import heavy_top, kirchhoff, rigid_body
+from tests.solve.systems import EMPTYING, POLE, STIFF, build
 
 #: Local errors of 1e-10 per step add up to less than this over the times below.
 TOLERANCE = 1e-7
@@ -119,6 +120,9 @@ def test_a_solution_is_read_by_name():
         ({"t": (0, np.inf)}, "finite"),
         ({"method": "Euler"}, "method is 'Euler'; expected 'auto' or one of DOP853"),
         ({"samples": 1}, "samples is 1"),
+        ({"rtol": 0.0}, "rtol is 0.0; expected a positive number"),
+        ({"atol": float("nan")}, "atol is nan"),
+        ({"max_steps": 0}, "max_steps is 0"),
         ({"parameters": {"m": np.ones(2)}}, "follows one trajectory"),
     ],
 )
@@ -135,6 +139,47 @@ def test_a_motion_that_leaves_the_numbers_stops_and_says_so():
     assert found.status in ("NONFINITE", "STEP_UNDERFLOW")
     assert found.message
     assert np.isfinite(found.state).all()
+
+
+@pytest.mark.parametrize(
+    ("context", "method", "status", "end"),
+    [
+        (POLE, "auto", "STEP_UNDERFLOW", 1.0),
+        (POLE, "BDF", "MAX_STEPS", 1.0),
+        (EMPTYING, "auto", "NONFINITE", 2.0),
+        (EMPTYING, "Radau", "NONFINITE", 2.0),
+        (STIFF, "auto", "MAX_STEPS", 0.02),
+        (STIFF, "Radau", "OK", 3.0),
+    ],
+    ids=lambda value: getattr(value, "name", value),
+)
+def test_what_cannot_be_followed_ends_with_its_reason(tmp_path, context, method, status, end):
+    """A pole, rates that stop being real, stiffness: the samples before it are kept, and right."""
+    found = build(context, tmp_path).simulate([1.0], (0, 3), method=method, max_steps=2000)
+    assert found.status == status
+    assert (found.message == "") == (status == "OK")
+    assert end - 0.02 < found.time_reached <= end
+    exact = {"pole": 1 / (1 - found.time), "emptying": (1 - found.time / 2) ** 2}
+    if context.name in exact:
+        assert np.abs(found["y"] / exact[context.name] - 1)[:-3].max() < 1e-4
+    assert np.isfinite(found.state).all()
+    assert len(found) > 1
+
+
+def test_rates_that_are_not_finite_at_the_start_are_reported_at_once(tmp_path):
+    """One sample, the initial state, and no endless search for a first step."""
+    found = build(EMPTYING, tmp_path).simulate([-1.0], (0, 3))
+    assert (found.status, found.time_reached, len(found)) == ("NONFINITE", 0.0, 1)
+    assert found.state.tolist() == [[-1.0]]
+
+
+def test_a_solution_keeps_its_own_numbers():
+    """Arrays that the caller changes afterwards do not reach into it."""
+    start, inertia = np.array([1.0, 0.3, -0.8]), np.array([1.0, 2.0, 3.0])
+    found = rigid_body.simulate(start, (0, 1), inertia, samples=3)
+    start[:], inertia[:] = 7.0, 7.0
+    assert found.state[:, 0].tolist() == [1.0, 0.3, -0.8]
+    assert found.parameters.tolist() == [1.0, 2.0, 3.0]
 
 
 def test_xarray_export_has_names_and_units():

@@ -1,15 +1,17 @@
 """The cache: a private folder of compiled kernels by content, each checked whenever it is loaded.
 
-Comes in: the key of a kernel and the bytes of its object. Goes out: the path of an object whose hash
-has been checked. Any damage is a miss. Another process of the same user is trusted, as everywhere;
-other users are not.
+Comes in: the key of a kernel and the bytes of its object. Goes out: the path of an object whose
+hash has been checked. Any damage is a miss. Another process of the same user is trusted, as
+everywhere; other users are not. Read next: `coadjoint.build.library`, which fills it.
 """
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import os
 import secrets
+import shutil
 import stat
 import tempfile
 import warnings
@@ -44,6 +46,7 @@ def _usable(folder: Path) -> Path:
         check_private(folder)
     except OutputError as error:
         temporary = Path(tempfile.mkdtemp(prefix="coadjoint-cache-"))
+        atexit.register(shutil.rmtree, temporary, ignore_errors=True)
         warnings.warn(
             f"{error} Kernels are compiled anew in this process.", CacheWarning, stacklevel=3
         )

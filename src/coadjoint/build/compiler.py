@@ -13,7 +13,10 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
+import warnings
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -33,6 +36,10 @@ BUILDS: Mapping[str, str] = {"exact": "-ffp-contract=off", "fast": "-ffp-contrac
 _FLAGS = ("-std=c11", "-O3", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedantic")
 _NATIVE = "-march=native"
 _SHARED = ("-fPIC", "-shared")
+
+
+class CompilerWarning(UserWarning):
+    """Kernels are not what they could be: another processor's, or NumPy's instead of C."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +85,8 @@ def _find(chosen: str, path: str) -> Compiler:
                 "Unset CC to search for one.",
                 found=chosen,
             )
-        return Compiler((program,), _version((program,)))
+        command: tuple[str, ...] = (os.path.abspath(program),)  # noqa: PTH100 (links stay: clang is named by one)
+        return Compiler(command, _version(command))
     for candidate in CANDIDATES:
         program = shutil.which(candidate, path=path)
         if program is not None:
@@ -98,7 +106,7 @@ def _version(command: tuple[str, ...]) -> str:
     Raises:
         CompilerError: It does not answer.
     """
-    status, output = _run((*command, "--version"), Path.cwd(), seconds=30)
+    status, output = _run((*command, "--version"), Path(tempfile.gettempdir()), seconds=30)
     if status != 0 or not output.strip():
         raise CompilerError(
             f"{' '.join(command)} --version ended with status {status} and said "
@@ -122,9 +130,14 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
     """
     result = folder / "kernel.so"
     status, output = _attempt(compiler, folder, build, native=True)
-    if status != 0:  # some compilers and machines do not know -march=native
-        again, _ = _attempt(compiler, folder, build, native=False)
-        status = 0 if again == 0 else status
+    if status != 0 and _attempt(compiler, folder, build, native=False)[0] == 0:
+        status = 0  # some compilers and machines do not know -march=native
+        warnings.warn(
+            f"{compiler.command[0]} refuses {_NATIVE}; kernels are compiled without it, which may "
+            "be slower.",
+            CompilerWarning,
+            stacklevel=2,
+        )
     if status != 0:
         raise CompilerError(
             f"{compiler.command[0]} failed on kernel.c with status {status}: "
@@ -194,18 +207,15 @@ def _run(
 def _limit_memory(process: int) -> None:
     """Bound the address space of a child where the system can do that from outside."""
     if hasattr(resource, "prlimit"):
-        try:
+        # It may have ended already, or have inherited a lower limit.
+        with suppress(ProcessLookupError, ValueError, PermissionError):
             resource.prlimit(process, resource.RLIMIT_AS, (COMPILE_BYTES, COMPILE_BYTES))
-        except (ProcessLookupError, ValueError, PermissionError):
-            pass  # it has ended already, or a lower limit is inherited
 
 
 def _kill_group(process: subprocess.Popen[bytes]) -> None:
     """End a child and everything it started."""
-    try:
+    with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
     process.wait()
     if process.stdout is not None:
         process.stdout.close()

@@ -105,9 +105,15 @@ def as_float64(value: Any, name: str) -> Array:
         KernelTypeError: It is complex, text, object, or would lose digits.
         KernelArgumentError: It is ragged.
     """
-    if isinstance(value, np.ndarray) and value.dtype == np.float64 and value.flags.c_contiguous:
-        if value.dtype.isnative and value.flags.aligned:
-            return value
+    if _is_ready(value):
+        return value  # type: ignore[no-any-return]
+    if isinstance(value, np.ma.MaskedArray):
+        raise KernelTypeError(
+            f"{name} is a masked array; expected plain numbers, since kernels would ignore the "
+            "mask. Pass its .filled(...) or .compressed().",
+            found="masked array",
+            expected="float64",
+        )
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -130,6 +136,17 @@ def as_float64(value: Any, name: str) -> Array:
             expected="float64",
         )
     return converted
+
+
+def _is_ready(value: Any) -> bool:
+    """Whether a kernel can read a value in place."""
+    return (
+        type(value) is np.ndarray
+        and value.dtype == np.float64
+        and value.dtype.isnative
+        and value.flags.c_contiguous
+        and value.flags.aligned
+    )
 
 
 def _same_integers(array: NDArray[Any], converted: Array) -> bool:
@@ -183,23 +200,17 @@ def _assemble(
     defaults: Mapping[str, float], given: Mapping[str, Any], quantities: Quantities, name: str
 ) -> Array:
     """One array from defaults and named values, all broadcast to one batch shape."""
-    parts: dict[str, Any] = dict(defaults)
+    parts: dict[str, Any] = {}
     for key, value in given.items():
-        rows = quantities.rows(key)
-        array = as_float64(value, f"{name}[{key!r}]")
-        if isinstance(rows, int):
-            parts[quantities.components[rows]] = array
-            continue
-        quantity = quantities[key]
-        if array.shape[: len(quantity.shape)] != quantity.shape:
-            raise KernelArgumentError(
-                f"{name}[{key!r}] has the shape {array.shape}; expected {quantity.shape}, "
-                "followed by the batch if it differs from member to member.",
-                found=list(array.shape),
-                expected=list(quantity.shape),
-            )
-        flat = array.reshape(len(quantity.components), *array.shape[len(quantity.shape) :])
-        parts |= dict(zip(quantity.components, flat, strict=True))
+        for component, array in _components(key, value, quantities, name).items():
+            if component in parts:
+                raise KernelArgumentError(
+                    f"{name} gives {component} twice, alone and within its vector; expected one "
+                    "value. Leave one of them out.",
+                    found=component,
+                )
+            parts[component] = array
+    parts = {**defaults, **parts}
     missing = [component for component in quantities.components if component not in parts]
     if missing:
         raise KernelArgumentError(
@@ -218,6 +229,24 @@ def _assemble(
     for row, part in enumerate(ordered):
         packed[row] = part
     return packed
+
+
+def _components(key: str, value: Any, quantities: Quantities, name: str) -> dict[str, Array]:
+    """The rows that one named value stands for, by component."""
+    rows = quantities.rows(key)
+    array = as_float64(value, f"{name}[{key!r}]")
+    if isinstance(rows, int):
+        return {quantities.components[rows]: array}
+    quantity = quantities[key]
+    if array.shape[: len(quantity.shape)] != quantity.shape:
+        raise KernelArgumentError(
+            f"{name}[{key!r}] has the shape {array.shape}; expected {quantity.shape}, "
+            "followed by the batch if it differs from member to member.",
+            found=list(array.shape),
+            expected=list(quantity.shape),
+        )
+    flat = array.reshape(len(quantity.components), *array.shape[len(quantity.shape) :])
+    return dict(zip(quantity.components, flat, strict=True))
 
 
 def _check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:

@@ -6,37 +6,41 @@ for C, which is said once.
 
 from __future__ import annotations
 
-import ctypes
+import math
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from importlib.util import module_from_spec, spec_from_file_location
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coadjoint.build.compiler import HOW_TO_GET_ONE
+from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning
 from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, KernelArgumentError, OutputError
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from coadjoint.solve.arrays import Call
     from coadjoint.solve.system import System
 
 #: Build of the C library by target.
 BUILDS = {"c": "exact", "c-fast": "fast"}
-#: Members in one call of a C function: at most some tenths of a second, so that Ctrl-C is heard.
-CHUNK = 1 << 20
-#: Points at which a fresh library is compared with the NumPy kernel.
+#: Numbers that one call of a C function reads and writes. At 2 to 20 ns each it ends within a tenth
+#: of a second, so that Ctrl-C is heard; some microseconds for each call do not show.
+CHUNK = 1 << 22
+#: Points at which a fresh library is compared with the NumPy kernel: odd, so that the last of them
+#: fill no vector register.
 PROBES = 17
 #: Largest relative difference of a fresh library where bits are not promised: fused operations and
 #: other libraries' functions differ by roundings, a wrong kernel by much more.
 ROUNDINGS = 1e-9
 
 
-class CompilerWarning(UserWarning):
-    """There is no usable compiler; the NumPy kernels are used instead."""
+#: What was said about missing kernels: each message comes once in a process, whatever the system.
+_said: set[str] = set()
 
 
 class Kernels:
@@ -51,36 +55,40 @@ class Kernels:
         if self._stand_in(target):
             self._numpy_function(function)(call.state, call.parameters, call.block)
             return
-        for first in range(0, call.members, CHUNK):
-            self._c_call(function, call, target, first, min(CHUNK, call.members - first))()
+        for piece in self._pieces(function, call, target):
+            piece()
 
     def bind(self, function: str, call: Call, target: str) -> Callable[[], None]:
         """The call as a function without arguments."""
         if self._stand_in(target):
             return partial(self._numpy_function(function), call.state, call.parameters, call.block)
-        bound = self._c_call(function, call, target, 0, call.members)
-        return bound
+        pieces = list(self._pieces(function, call, target))
+        return pieces[0] if len(pieces) == 1 else partial(_each, pieces)
 
-    def _c_call(
-        self, function: str, call: Call, target: str, first: int, count: int
-    ) -> Callable[[], None]:
-        """A C call for some of the members, its arguments converted once."""
-        item = np.dtype(np.float64).itemsize
+    def _pieces(self, function: str, call: Call, target: str) -> Iterator[Callable[[], None]]:
+        """C calls that together evaluate all members."""
+        library: Library = self._library(target)
+        item = call.state.itemsize
         shared = call.parameters.ndim == 1
-        arguments = (
-            ctypes.c_size_t(count),
-            ctypes.c_void_p(call.state.ctypes.data + first * item),
-            ctypes.c_size_t(call.members),
-            ctypes.c_void_p(call.parameters.ctypes.data + (0 if shared else first * item)),
-            ctypes.c_size_t(0 if shared else call.members),
-            ctypes.c_void_p(call.block.ctypes.data + first * item),
-            ctypes.c_size_t(call.members),
-        )
-        bound = partial(self._library(target).function(function), *arguments)
-        bound.arrays = (call.state, call.parameters, call.block)  # type: ignore[attr-defined]
-        return bound
+        arrays = (call.state, call.parameters, call.block)
+        state, parameters, block = (array.ctypes.data for array in arrays)
+        size = max(1, CHUNK // sum(math.prod(array.shape[:-1]) for array in arrays))
+        stride = call.members
+        for first in range(0, call.members, size):
+            piece = library.bind(
+                function,
+                min(size, call.members - first),
+                state + first * item,
+                stride,
+                parameters if shared else parameters + first * item,
+                0 if shared else stride,
+                block + first * item,
+                stride,
+            )
+            piece.arrays = arrays  # type: ignore[attr-defined]  # they live as long as the call
+            yield piece
 
-    # -- loading --------------------------------------------------------------------------------------
+    # -- loading ----------------------------------------------------------------------------------
 
     def _stand_in(self, target: str) -> bool:
         """Whether the NumPy kernel answers for a target.
@@ -108,12 +116,14 @@ class Kernels:
                     system.folder, system.name, system.id, BUILDS[target], verify
                 )
             except CompilerError as error:
-                warnings.warn(
-                    f"{error} The NumPy kernels are used instead. {HOW_TO_GET_ONE}",
-                    CompilerWarning,
-                    stacklevel=6,
-                )
                 self._loaded[target] = None
+                if str(error) not in _said:
+                    _said.add(str(error))
+                    warnings.warn(
+                        f"{error} The NumPy kernels are used instead. {HOW_TO_GET_ONE}",
+                        CompilerWarning,
+                        stacklevel=6,
+                    )
         return self._loaded[target]
 
     def _numpy_function(self, function: str) -> Callable[..., Any]:
@@ -138,7 +148,7 @@ class Kernels:
             spec.loader.exec_module(module)
         finally:
             sys.dont_write_bytecode = before
-        if module.ID != self.system.id:
+        if module.ID != self.system.id:  # noqa: SIM300 (not a constant: the id of another file)
             raise OutputError(
                 f"{path} carries the id {module.ID!r}, its system {self.system.id!r}; expected one "
                 "id. Run `coadjoint regenerate`.",
@@ -156,19 +166,34 @@ class Kernels:
         """
         source = np.random.default_rng(0)
         state = source.uniform(0.5, 2.0, (self.system.STATE.size, PROBES))
-        parameters = source.uniform(0.5, 2.0, (self.system.PARAMETERS.size, PROBES))
+        own = source.uniform(0.5, 2.0, (self.system.PARAMETERS.size, PROBES))
         exact = target == "c" and not self.system.elementary
         for function, shape in self.system.functions.items():
-            expected = self._numpy_function(function)(state, parameters)
-            found = np.full((*shape, PROBES), np.nan)
-            addresses = (state.ctypes.data, PROBES, parameters.ctypes.data, PROBES)
-            library.function(function)(PROBES, *addresses, found.ctypes.data, PROBES)
-            size = np.abs(expected).max(initial=0.0)
-            with np.errstate(all="ignore"):
-                close = np.abs(found - expected) <= ROUNDINGS * size
-            if not (np.array_equal(found, expected, equal_nan=True) if exact else close.all()):
-                raise CompilerError(
-                    f"the compiler made a wrong kernel: {self.system.name}.{function} differs from "
-                    "the NumPy kernel. Set CC to another compiler.",
-                    found=function,
-                )
+            for parameters, stride in ((own, PROBES), (own[:, 0].copy(), 0)):
+                expected = self._numpy_function(function)(state, parameters)
+                found = np.full((*shape, PROBES), np.pi)
+                addresses = (state.ctypes.data, PROBES, parameters.ctypes.data, stride)
+                library.function(function)(PROBES, *addresses, found.ctypes.data, PROBES)
+                if not _agree(found, expected, exact=exact):
+                    raise CompilerError(
+                        f"the compiler made a wrong kernel: {self.system.name}.{function} differs "
+                        "from the NumPy kernel. Set CC to another compiler.",
+                        found=function,
+                    )
+
+
+def _each(pieces: list[Callable[[], None]]) -> None:
+    """One call after the other; signals are heard between them."""
+    for piece in pieces:
+        piece()
+
+
+def _agree(found: NDArray[Any], expected: NDArray[Any], *, exact: bool) -> bool:
+    """Whether two results are equal, or equal but for roundings; NaN equals NaN."""
+    if exact:
+        return np.array_equal(found, expected, equal_nan=True)
+    with np.errstate(all="ignore"):
+        size = np.abs(expected[np.isfinite(expected)]).max(initial=0.0)
+        close = np.abs(found - expected) <= ROUNDINGS * size
+        same = (found == expected) | (np.isnan(found) & np.isnan(expected))
+    return bool((close | same).all())

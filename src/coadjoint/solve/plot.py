@@ -6,6 +6,7 @@ is imported here alone.
 
 from __future__ import annotations
 
+import re
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,14 +16,18 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError, OutputError
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from coadjoint.solve.solution import Solution
+
+    Array = NDArray[np.float64]
 
 #: Colours that stay apart for colour-blind readers (Okabe and Ito, 2008).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 #: Relative change of |m|^2 below which a three-vector is drawn on its sphere.
 ON_SPHERE = 1e-6
-#: Below this, a drift is drawn as this: zero has no logarithm.
-FLOOR = 1e-17
+#: From where the sphere is seen: elevation and azimuth, degrees.
+VIEW = (22, -50)
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -38,7 +43,7 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
     """
     figure = _figure(headless=path is not None)
     sphere = _sphere_quantity(solution)
-    heights = [3.2, 1.0] if sphere else [2.2, 1.0]
+    heights = [3.0, 1.0] if sphere else [2.2, 1.0]
     grid = figure.add_gridspec(2, 1, height_ratios=heights)
     if sphere:
         _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
@@ -59,9 +64,9 @@ def _figure(*, headless: bool) -> Any:
             from matplotlib.figure import Figure
 
             return Figure(figsize=(7.2, 7.6), layout="constrained", dpi=150)
-        from matplotlib import pyplot
+        from matplotlib import pyplot as plt
 
-        return pyplot.figure(figsize=(7.2, 7.6), layout="constrained")
+        return plt.figure(figsize=(7.2, 7.6), layout="constrained")
     except ImportError as error:
         raise KernelArgumentError(
             "plot needs matplotlib, which is not installed. Run `pip install 'coadjoint[plot]'`.",
@@ -92,9 +97,10 @@ def _sphere_quantity(solution: Solution) -> str:
     """The first three-vector of the state whose length is conserved, or ""."""
     for name, quantity in solution.system.STATE.items():
         if quantity.shape == (3,):
-            square = (solution[name] ** 2).sum(axis=0)
-            if square[0] > 0 and np.ptp(square) <= ON_SPHERE * square.max():
-                return name
+            with np.errstate(over="ignore", invalid="ignore"):  # what is infinite has no sphere
+                square = (solution[name] ** 2).sum(axis=0)
+                if square[0] > 0 and np.ptp(square) <= ON_SPHERE * square.max():
+                    return name
     return ""
 
 
@@ -108,23 +114,55 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
         radius * np.sin(height) * np.sin(angle),
         radius * np.cos(height),
     )
-    axes.plot_surface(*ball, color="#d9e2ec", alpha=0.25, linewidth=0, shade=False)
-    axes.plot_wireframe(*ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6)
     axes.computed_zorder = False
-    axes.plot(*vector, color=COLOURS[0], linewidth=1.1, zorder=3)
+    axes.plot_surface(*ball, color="#d9e2ec", alpha=0.3, linewidth=0, shade=False, zorder=2)
+    axes.plot_wireframe(
+        *ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6, zorder=2
+    )
+    near = _faces_viewer(vector)
+    for shown, strength, order in ((~near, 0.3, 1), (near, 1.0, 3)):
+        part = np.where(shown, vector, np.nan)
+        axes.plot(*part, color=COLOURS[0], linewidth=1.1, alpha=strength, zorder=order)
     axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
     axes.scatter(*vector[:, -1:], color=COLOURS[2], s=36, marker="s", zorder=4, label="end")
-    unit = _unit(solution.system.STATE[name].unit)
-    symbol = _symbol(name)
-    for n, set_label in enumerate((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), 1):
-        set_label(f"{symbol}$_{n}$ {unit}", fontsize=9)
-    axes.set_box_aspect((1, 1, 1))
-    axes.tick_params(labelsize=7)
-    axes.view_init(elev=24, azim=-52)
+    _label_sphere(axes, solution, name, radius)
+
+
+def _faces_viewer(vector: Array) -> NDArray[np.bool_]:
+    """Which points lie on the near side of the sphere, ``(T,)``."""
+    elevation, azimuth = np.radians(VIEW)
+    toward = np.array(
+        [
+            np.cos(elevation) * np.cos(azimuth),
+            np.cos(elevation) * np.sin(azimuth),
+            np.sin(elevation),
+        ]
+    )
+    side: NDArray[np.bool_] = toward @ vector >= 0  # (T,)
+    # A sample beyond the edge joins the parts; they would be drawn with a gap between them.
+    near = side.copy()
+    near[:-1] |= side[1:]
+    near[1:] |= side[:-1]
+    return near
+
+
+def _label_sphere(axes: Any, solution: Solution, name: str, radius: float) -> None:
+    """Axes, ticks, legend and title of the sphere."""
+    unit, symbol = _unit(solution.system.STATE[name].unit), _symbol(name)
+    for n, axis in enumerate((axes.xaxis, axes.yaxis, axes.zaxis), 1):
+        axis.set_label_text(f"{symbol}$_{n}$ {unit}", fontsize=9)
+        axis.labelpad = 0
+        axis.get_major_locator().set_params(nbins=5)
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+        axis._axinfo["grid"].update(color="#e3e6ea", linewidth=0.6)
+    axes.set_box_aspect((1, 1, 1), zoom=1.0)
+    axes.tick_params(labelsize=7, pad=0)
+    axes.set_proj_type("ortho")  # its horizon is where `_faces_viewer` has it
+    axes.view_init(*VIEW)
     axes.legend(loc="upper left", fontsize=8, frameon=False)
     axes.set_title(
         f"{symbol} on the sphere |{symbol}| = {radius:.4g}, "
-        f"t = {solution.time[0]:g} .. {solution.time_reached:g}",
+        f"t = {solution.time[0]:g} .. {solution.time_reached:g} s",
         fontsize=10,
     )
 
@@ -143,29 +181,37 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
             )
         axes.set_ylabel(f"{_symbol(name)} {_unit(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
-        axes.legend(loc="upper right", ncols=min(6, len(quantity.components)), fontsize=8)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
+        _limit_time(axes, solution)
         axes.grid(alpha=0.3)
 
 
 def _draw_drift(axes: Any, solution: Solution) -> None:
     """Change of each conserved observable relative to its largest size, on a logarithmic axis."""
-    for colour, name in zip(_colours(), solution.conserved, strict=False):
+    for n, (colour, name) in enumerate(zip(_colours(), solution.conserved, strict=False)):
         size = float(np.abs(solution[name]).max()) or 1.0
-        change = np.abs(solution.change(name)) / size
-        axes.semilogy(
-            solution.time,
-            np.maximum(change, FLOOR),
-            color=colour,
-            linewidth=0.9,
-            label=f"{name} ({solution.drift[name]:.0e})",
-        )
+        with np.errstate(invalid="ignore"):  # of what is infinite
+            change = np.abs(solution.change(name)) / size
+        change[change == 0] = np.nan  # no place on a logarithmic axis
+        largest = f"{solution.drift[name]:.0e}" if solution.drift[name] else "none"
+        width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
+        axes.plot(solution.time, change, color=colour, linewidth=width, label=f"{name} ({largest})")
+    axes.set_yscale("log")
+    _limit_time(axes, solution)
     axes.set_xlabel("time [s]", fontsize=9)
     axes.set_ylabel("relative change", fontsize=9)
-    axes.set_title("Invariants: change since the start (largest)", fontsize=10)
+    axes.set_title("Invariants: change since the start (in parentheses: the largest)", fontsize=10)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
     if solution.conserved:
-        axes.legend(fontsize=8, ncols=3, loc="lower right")
+        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.3)}
+        axes.legend(fontsize=8, ncols=min(4, len(solution.conserved)), frameon=False, **below)
+
+
+def _limit_time(axes: Any, solution: Solution) -> None:
+    """The time axis from the first sample to the last."""
+    if len(solution) > 1:
+        axes.set_xlim(solution.time[0], solution.time_reached)
 
 
 def _colours() -> Any:
@@ -175,8 +221,9 @@ def _colours() -> Any:
 
 
 def _unit(unit: str) -> str:
-    """A unit for an axis."""
-    return "" if unit in ("", "1") else f"[{unit}]"
+    """A unit for an axis, its exponents raised."""
+    raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
+    return "" if unit in ("", "1") else f"[{raised}]"
 
 
 def _symbol(name: str) -> str:

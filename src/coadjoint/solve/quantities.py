@@ -1,6 +1,7 @@
 """Quantities: what the rows of state, parameters and observables are called.
 
-Comes in: the declarations of a generated package. Goes out: an immutable mapping from names to rows.
+Comes in: the declarations of a generated package. Goes out: an immutable mapping from names to
+rows, light to import.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ class Quantity:
 class Quantities(Mapping[str, Quantity]):
     """Quantities by name, in the order of their rows.
 
-    >>> state = Quantities(Quantity("Pi", (2,), "1", ("Pi1", "Pi2")), Quantity("s", (), "1", ("s",)))
+    >>> pair, scalar = Quantity("Pi", (2,), "1", ("Pi1", "Pi2")), Quantity("s", (), "1", ("s",))
+    >>> state = Quantities(pair, scalar)
     >>> state.components, state.size, state.rows("Pi"), state.rows("s")
     (('Pi1', 'Pi2', 's'), 3, slice(0, 2, None), 2)
     """
@@ -82,7 +84,7 @@ class Quantities(Mapping[str, Quantity]):
         """
         if name in self._rows:
             return self._rows[name]
-        near = get_close_matches(name, self._rows, n=1)
+        near = get_close_matches(str(name), self._rows, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         raise KernelArgumentError(
             f"{name!r} is not one of {', '.join(self)}.{hint}", found=name, expected=list(self)
@@ -95,7 +97,7 @@ class Quantities(Mapping[str, Quantity]):
         return next(q for q in self.values() if name in q.components)
 
     def _table(self) -> list[tuple[str, ...]]:
-        rows = [("name", "shape", "unit", "default")]
+        rows: list[tuple[str, ...]] = [("name", "shape", "unit", "default")]
         for q in self.values():
             default = "" if q.default is None else ", ".join(f"{value:g}" for value in q.default)
             rows.append((q.name, str(q.shape), q.unit, default))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, pack, pack_parameters
@@ -21,14 +21,11 @@ if TYPE_CHECKING:
 
     from coadjoint.solve.system import System
 
-METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
+    Array = NDArray[np.float64]
+    Rates = Callable[[float, Array], Array]
 
-class _NotFinite(Exception):
-    """The rates stopped being finite."""
-
-    def __init__(self, time: float) -> None:
-        super().__init__(time)
-        self.time = time
+#: Explicit methods of SciPy, then those that use the Jacobian.
+EXPLICIT, IMPLICIT = ("DOP853", "RK45", "RK23"), ("Radau", "BDF", "LSODA")
 
 
 def simulate(
@@ -41,94 +38,94 @@ def simulate(
     rtol: float,
     atol: float,
     samples: int,
+    max_steps: int,
     target: Any,
 ) -> Solution:
     """Integrate one trajectory; arguments as in `System.simulate`."""
-    initial = pack(state, system.STATE, "state")
-    _check_initial(system, initial)
-    packed = pack_parameters(system, parameters)
-    if packed.ndim != 1:
-        raise KernelArgumentError(
-            f"simulate follows one trajectory; parameters have the shape {packed.shape}, expected "
-            f"({system.PARAMETERS.size},). Call it for each member.",
-            found=list(packed.shape),
-        )
+    initial = _initial(system, state)
+    packed = _shared(system, parameters)
     times = _times(t, samples)
-    name = "DOP853" if method == "auto" else method
-    if name not in METHODS:
-        raise KernelArgumentError(
-            f"method is {method!r}; expected 'auto' or one of {', '.join(METHODS)}.",
-            found=method,
-            expected=["auto", *METHODS],
+    name = _method(method)
+    _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
+    rates, latest = _rates(system, packed, target)
+    rates(times[0], initial)
+    if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
+        reason = f"the rates are not finite at t = {times[0]:g}"
+        return Solution(system, times[:1], initial[:, None], packed, "NONFINITE", reason)
+    options = {"jac": _slopes(system, packed, target)} if name in IMPLICIT else {}
+    with np.errstate(all="ignore"):
+        solver = getattr(scipy.integrate, name)(
+            rates, times[0], initial, times[-1], rtol=rtol, atol=atol, **options
         )
-    rates, slopes = _bound(system, packed, target)
-    options: dict[str, Any] = {"jac": slopes} if name in ("Radau", "BDF", "LSODA") else {}
-    time, states, status, message = _integrate(rates, times, initial, name, rtol, atol, options)
-    return Solution(system, time, states, packed, status, message)
+        states, status, reason = _follow(solver, times, max_steps, latest)
+    return Solution(system, times[: states.shape[1]], states, packed, status, reason)
 
 
-def _integrate(
-    rates: Callable[..., Any],
-    times: NDArray[np.float64],
-    initial: NDArray[np.float64],
-    method: str,
-    rtol: float,
-    atol: float,
-    options: dict[str, Any],
-) -> list[Any]:
-    """Times reached, states there, status and message."""
+def _follow(
+    solver: scipy.integrate.OdeSolver, times: Array, max_steps: int, latest: Array
+) -> tuple[Array, str, str]:
+    """States at the times that were reached, status and reason.
+
+    A loop of our own over SciPy's steps: its `solve_ivp` has no bound on their number, and keeps
+    nothing of a trajectory that ends in an exception.
+    """
+    states = np.empty((solver.n, times.size))
+    states[:, 0] = solver.y
+    reached, steps, reason = 1, 0, ""
     try:
-        with np.errstate(all="ignore"):
-            found = solve_ivp(
-                rates,
-                (times[0], times[-1]),
-                initial,
-                method=method,
-                t_eval=times,
-                rtol=rtol,
-                atol=atol,
-                **options,
-            )
-    except _NotFinite as stop:
-        message = f"the rates are not finite near t = {stop.time:.17g}"
-        before = times[times < stop.time]
-        if len(before) > 1 and len(before) < len(times):
-            # The samples that were reached are worth having: run again up to there.
-            again = _integrate(rates, before, initial, method, rtol, atol, options)
-            return [again[0], again[1], "NONFINITE", message]
-        return [times[:1], initial[:, None], "NONFINITE", message]
-    status = "OK" if found.status == 0 else "STEP_UNDERFLOW"
-    if not len(found.t):  # not even one step was made
-        return [times[:1], initial[:, None], status, found.message]
-    return [found.t, found.y, status, "" if found.status == 0 else found.message]
+        while solver.status == "running" and steps < max_steps:
+            reason = solver.step() or ""
+            if reason or not np.isfinite(solver.y).all():
+                break
+            after = int(np.searchsorted(times, solver.t, side="right"))
+            if after > reached:
+                states[:, reached:after] = solver.dense_output()(times[reached:after])
+            reached, steps = after, steps + 1
+    except FloatingPointError:  # from the Jacobian
+        latest[:] = np.nan
+    place = f"near t = {solver.t:.6g}"
+    # An evaluation that is not finite spoils those after it in its step, the latest among them.
+    if not (np.isfinite(solver.y).all() and np.isfinite(latest).all()):
+        return states[:, :reached], "NONFINITE", f"the rates are not finite {place}"
+    if solver.status == "failed":
+        return states[:, :reached], "STEP_UNDERFLOW", f"{reason} This is {place}."
+    if solver.status == "running":
+        reason = f"{max_steps} steps came only {place}; raise max_steps"
+        return states[:, :reached], "MAX_STEPS", reason
+    return states, "OK", ""
 
 
-def _bound(
-    system: System, parameters: NDArray[np.float64], target: Any
-) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Rates and Jacobian for SciPy, with all checks made once."""
-    state, out = np.empty(system.STATE.size), np.empty(system.STATE.size)
-    slopes = np.empty((system.STATE.size, system.STATE.size))
-    evaluate = system.bind("rhs", state, parameters, out, target)
-    differentiate = system.bind("jacobian", state, parameters, slopes, target)
+def _rates(system: System, parameters: Array, target: Any) -> tuple[Rates, Array]:
+    """Rates for SciPy, all checks made once, and the array of the latest ones."""
+    state, latest = np.empty(system.STATE.size), np.empty(system.STATE.size)
+    evaluate = system.bind("rhs", state, parameters, latest, target)
 
-    def rates(time: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+    def rates(_: float, y: Array) -> Array:
         state[:] = y
         evaluate()
-        if not np.isfinite(out).all() and np.isfinite(y).all():
-            raise _NotFinite(time)
-        return out.copy()
+        return latest.copy()
 
-    def jacobian(time: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+    return rates, latest
+
+
+def _slopes(system: System, parameters: Array, target: Any) -> Rates:
+    """The Jacobian for SciPy."""
+    state, slopes = np.empty(system.STATE.size), np.empty((system.STATE.size,) * 2)
+    evaluate = system.bind("jacobian", state, parameters, slopes, target)
+
+    def jacobian(_: float, y: Array) -> Array:
         state[:] = y
-        differentiate()
+        evaluate()
+        if not np.isfinite(slopes).all():  # SciPy's solvers of linear systems do not take it
+            raise FloatingPointError
         return slopes.copy()
 
-    return rates, jacobian
+    return jacobian
 
 
-def _check_initial(system: System, initial: NDArray[np.float64]) -> None:
+def _initial(system: System, state: Any) -> Array:
     """One finite state."""
+    initial = pack(state, system.STATE, "state").copy()
     if initial.shape != (system.STATE.size,):
         raise KernelArgumentError(
             f"simulate follows one trajectory; the state has the shape {initial.shape}, expected "
@@ -143,9 +140,43 @@ def _check_initial(system: System, initial: NDArray[np.float64]) -> None:
             f"the initial {bad} is {initial[system.STATE.rows(bad)]}; expected a finite number.",
             found=bad,
         )
+    return initial
 
 
-def _times(t: Any, samples: int) -> NDArray[np.float64]:
+def _shared(system: System, parameters: Any) -> Array:
+    """One set of parameters."""
+    packed = pack_parameters(system, parameters).copy()
+    if packed.ndim != 1:
+        raise KernelArgumentError(
+            f"simulate follows one trajectory; parameters have the shape {packed.shape}, expected "
+            f"({system.PARAMETERS.size},). Call it for each member.",
+            found=list(packed.shape),
+        )
+    return packed
+
+
+def _method(method: str) -> str:
+    """The name of SciPy's class."""
+    name = "DOP853" if method == "auto" else method
+    if name not in EXPLICIT + IMPLICIT:
+        raise KernelArgumentError(
+            f"method is {method!r}; expected 'auto' or one of {', '.join(EXPLICIT + IMPLICIT)}.",
+            found=method,
+            expected=["auto", *EXPLICIT, *IMPLICIT],
+        )
+    return name
+
+
+def _check_positive(**numbers: float) -> None:
+    """Tolerances and bounds: a tolerance of zero has SciPy divide by it and never end."""
+    for name, value in numbers.items():
+        if not 0 < value < np.inf:
+            raise KernelArgumentError(
+                f"{name} is {value}; expected a positive number.", found=value, name=name
+            )
+
+
+def _times(t: Any, samples: int) -> Array:
     """Sample times from a pair or a sequence."""
     times = as_float64(t, "t")
     increasing = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) > 0).all())

@@ -32,9 +32,9 @@ class Solution:
         time: Sample times, ``(T,)``, up to where the integration came.
         state: States, ``(n, T)``.
         parameters: Packed parameters, ``(k,)``.
-        status: ``OK``, ``NONFINITE`` (the rates stopped being finite) or ``STEP_UNDERFLOW`` (no step
-            was small enough).
-        message: What the integrator said, empty if all is well.
+        status: ``OK``, ``NONFINITE`` (the rates stopped being finite), ``STEP_UNDERFLOW`` (no step
+            was small enough for the tolerances) or ``MAX_STEPS``.
+        message: Where it stopped and why, empty if all is well.
     """
 
     def __init__(
@@ -138,7 +138,8 @@ class Solution:
             import xarray
         except ImportError as error:
             raise KernelArgumentError(
-                "to_xarray needs xarray, which is not installed. Run `pip install 'coadjoint[data]'`.",
+                "to_xarray needs xarray, which is not installed. "
+                "Run `pip install 'coadjoint[data]'`.",
                 found="xarray",
             ) from error
         variables: dict[str, Any] = {}

@@ -1,9 +1,10 @@
 """The System: one generated folder as an object, light to import and complete to use.
 
-Comes in: the declarations in a generated ``__init__.py``. Goes out: functions of state and parameters
-by the C kernel or the NumPy kernel, and simulations. Only names are held here; arrays, kernels and
-integrators load on first use, so that importing a system costs next to nothing.
-Read next: `coadjoint.solve.arrays` for what may be passed, `coadjoint.solve.kernels` for who computes.
+Comes in: the declarations in a generated ``__init__.py``. Goes out: functions of state and
+parameters by the C kernel or the NumPy kernel, and simulations. Only names are held here; arrays,
+kernels and integrators load on first use, so that importing a system costs next to nothing.
+Read next: `coadjoint.solve.arrays` for what may be passed, `coadjoint.solve.kernels` for who
+computes.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ Target = Literal["c", "numpy", "c-fast"]
 class System:
     """A mechanical system with verified kernels.
 
-    All functions are vectorised: a state has shape ``(n,)`` for one member or ``(n, *batch)``, and the
-    result has the shape of the function for one member followed by ``batch``.
+    All functions are vectorised: a state has shape ``(n,)`` for one member or ``(n, *batch)``, and
+    the result has the shape of the function for one member followed by ``batch``.
 
     Attributes:
         name: Name of the system.
@@ -71,7 +72,7 @@ class System:
         self.elementary = tuple(elementary)
         self.id = identity
 
-    # -- functions ------------------------------------------------------------------------------------
+    # -- functions --------------------------------------------------------------------------------
 
     def rhs(
         self,
@@ -169,7 +170,8 @@ class System:
         Args:
             function: Name of a function.
             state: A float64, C-contiguous array, read at each call.
-            parameters: As in `rhs`; copied now.
+            parameters: As in `rhs`. A packed float64 array is read at each call, as the state is;
+                anything else is copied now. Signs are checked now.
             out: As in `rhs`, and not optional: it is where the results appear.
             target: As in `rhs`.
         """
@@ -194,22 +196,25 @@ class System:
         rtol: float = 1e-10,
         atol: float = 1e-12,
         samples: int = 1001,
+        max_steps: int = 1_000_000,
         target: Target = "c",
     ) -> Solution:
         """Integrate one trajectory.
 
         Args:
             state: Initial state, ``(n,)`` or by name.
-            t: ``(start, end)``, or an increasing sequence of three times or more at which to sample.
+            t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
             parameters: As in `rhs`, shared.
-            method: A method of `scipy.integrate.solve_ivp`; ``"auto"`` is ``"DOP853"``, order 8.
+            method: A method of `scipy.integrate`; ``"auto"`` is ``"DOP853"``, order 8.
             rtol: Relative tolerance of a step.
             atol: Absolute tolerance of a step.
             samples: Number of evenly spaced samples when ``t`` is a pair.
+            max_steps: After so many steps the trajectory ends with the status ``MAX_STEPS``.
             target: Kernel that computes the rates.
 
         Returns:
-            The labelled trajectory, with observables and the drift of what is conserved.
+            The labelled trajectory, with observables and the drift of what is conserved. One that
+            could not be followed to the end has a status other than ``OK`` and ends before.
 
         Raises:
             KernelArgumentError: The state is a batch, times do not increase, or a name is unknown.
@@ -225,10 +230,11 @@ class System:
             rtol=rtol,
             atol=atol,
             samples=samples,
+            max_steps=max_steps,
             target=target,
         )
 
-    # -- what is known about it -----------------------------------------------------------------------
+    # -- what is known about it -------------------------------------------------------------------
 
     @cached_property
     def _kernels(self) -> Kernels:

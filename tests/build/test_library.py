@@ -1,0 +1,110 @@
+"""The library: right ids, keys of all that matters, objects that are whole and of no use."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coadjoint.build import library
+from coadjoint.build.cache import fetch, store
+from coadjoint.build.compiler import find_compiler
+from coadjoint.build.library import Library, load_library
+from coadjoint.errors import CompilerError
+from coadjoint.systems import rigid_body
+
+BODY = rigid_body.system
+SOURCES = {file: (BODY.folder / file).read_bytes() for file in ("kernel.c", "kernel.h")}
+
+
+@pytest.fixture
+def cache(monkeypatch, tmp_path):
+    """An empty cache."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def load():
+    """The exact library of the rigid body, not compared with anything."""
+    return load_library(BODY.folder, BODY.name, BODY.id, "exact", lambda _: None)
+
+
+def test_a_bound_call_computes_what_the_function_does(cache):
+    """Arguments converted once or at each call: the same numbers."""
+    state, parameters = np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0])
+    plain, bound = np.zeros(3), np.zeros(3)
+    addresses = (1, state.ctypes.data, 1, parameters.ctypes.data, 0)
+    load().function("rhs")(*addresses, plain.ctypes.data, 1)
+    load().bind("rhs", *addresses, bound.ctypes.data, 1)()
+    # dPi1/dt = (1/I3 - 1/I2) Pi2 Pi3 and cyclic, exact in these numbers
+    assert plain.tolist() == bound.tolist() == [-1.5, 2.25, -1.0]
+
+
+def test_an_object_of_another_run_is_refused(cache):
+    """Both ids are in the message."""
+    with pytest.raises(CompilerError, match=f"carries the id b?'{BODY.id}'.*expected 'f{{16}}'"):
+        load_library(BODY.folder, BODY.name, "f" * 16, "exact", lambda _: None)
+
+
+def test_an_object_of_another_system_is_refused(cache):
+    """It lacks the symbols."""
+    load()
+    (path,) = cache.rglob("*.so")
+    with pytest.raises(CompilerError, match=r"kernel of other cannot be loaded.*other_id"):
+        Library(path, "other", BODY.id)
+
+
+def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
+    """Source, header, build, version, engine and processor: each change is another key."""
+    compiler = find_compiler()
+    keys = [
+        library._key(compiler, SOURCES, "exact"),
+        library._key(compiler, SOURCES | {"kernel.c": b"/* changed */"}, "exact"),
+        library._key(compiler, SOURCES | {"kernel.h": b"/* changed */"}, "exact"),
+        library._key(compiler, SOURCES, "fast"),
+        library._key(replace(compiler, version="another"), SOURCES, "exact"),
+        library._key(replace(compiler, command=("/bin/true",)), SOURCES, "exact"),
+    ]
+    for name in ("__version__", "_processor"):
+        with monkeypatch.context() as patch:
+            patch.setattr(library, name, "another" if name == "__version__" else lambda: "another")
+            keys.append(library._key(compiler, SOURCES, "exact"))
+    assert len(set(keys)) == len(keys) == 8
+    assert library._key(compiler, SOURCES, "exact") == keys[0]
+
+
+def test_a_whole_object_that_does_not_load_is_compiled_anew(cache):
+    """As after an update of the system: the hash is right, the object of no use."""
+    key = library._key(find_compiler(), SOURCES, "exact")
+    bad = store(key, b"\x7fELF and nothing that the loader would take")
+    assert fetch(key) == bad
+    assert isinstance(load(), Library)
+    assert fetch(key) != bad
+
+
+def test_a_kernel_that_fails_its_comparison_is_not_kept(cache):
+    """What the hook raises is raised, and nothing is cached."""
+
+    def refuse(_):
+        raise CompilerError("it differs")
+
+    with pytest.raises(CompilerError, match="it differs"):
+        load_library(BODY.folder, BODY.name, BODY.id, "exact", refuse)
+    assert not list(cache.rglob("*.so"))
+
+
+def test_builders_at_one_time_do_not_disturb_one_another(cache):
+    """Six processes on an empty cache: all right, no litter, one object served afterwards."""
+    script = (
+        "from coadjoint.systems import rigid_body\n"
+        "print(rigid_body.rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0]).tolist())"
+    )
+    started = [
+        subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+        for _ in range(6)
+    ]
+    answers = [process.communicate(timeout=120)[0].strip() for process in started]
+    assert answers == ["[-1.5, 2.25, -1.0]"] * 6
+    assert not list(cache.rglob("*.tmp"))
+    assert fetch(library._key(find_compiler(), SOURCES, "exact"))

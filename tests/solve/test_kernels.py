@@ -1,0 +1,146 @@
+"""Kernels: who computes, in which pieces, and how a stand-in is announced."""
+
+import shutil
+import stat
+import warnings
+
+import numpy as np
+import pytest
+
+from coadjoint.build import compiler
+from coadjoint.build.compiler import CompilerWarning, find_compiler
+from coadjoint.solve import kernels
+from coadjoint.solve.system import load_folder
+from coadjoint.systems import heavy_top, kirchhoff, rigid_body
+from tests.solve.systems import pendulum
+
+
+@pytest.fixture
+def fresh(monkeypatch, tmp_path):
+    """A shipped system as if for the first time: its own folder, an empty cache, nothing said."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(kernels, "_said", set())
+    compiler._find.cache_clear()
+
+    def load(module):
+        folder = tmp_path / module.system.name
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(module.system.folder, folder, ignore=ignored)
+        return load_folder(folder)
+
+    yield load
+    compiler._find.cache_clear()
+
+
+def test_a_missing_compiler_is_said_once_for_all_systems(monkeypatch, fresh):
+    """One warning in a process, with the pip command; right results from each system."""
+    monkeypatch.setenv("CC", "no-such-compiler")
+    body, top = fresh(rigid_body), fresh(heavy_top)
+    with pytest.warns(CompilerWarning, match=r"coadjoint\[c\]") as said:
+        found = body.rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])
+    assert said[0].filename == __file__
+    assert found.tolist() == [-1.5, 2.25, -1.0]
+    state = np.arange(1.0, 7.0)
+    for target in ("c", "c-fast"):  # another warning would be an error
+        assert np.array_equal(top.rhs(state, target=target), top.rhs(state, target="numpy"))
+
+
+def test_a_bound_call_works_without_a_compiler(monkeypatch, fresh):
+    """The NumPy kernel reads and writes in place, too."""
+    monkeypatch.setenv("CC", "no-such-compiler")
+    state, out = np.array([1.0, 2.0, 3.0]), np.empty(3)
+    with pytest.warns(CompilerWarning):
+        call = fresh(rigid_body).bind("rhs", state, [1.0, 2.0, 4.0], out)
+    call()
+    assert out.tolist() == [-1.5, 2.25, -1.0]
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        "s/= -Gamma2;/= Gamma2;/",  # one entry of the Poisson tensor, in both branches
+        "0,/Omega2 = _p2 [*] Pi2/s//Omega2 = _p2 * Pi1/",  # shared only
+        "s/parameters.3 [*] parameters_stride/parameters[2 * parameters_stride/",  # own only
+        "s/_n < count/_n + 1 < count/",  # the last member is left out
+    ],
+)
+def test_every_branch_of_a_wrong_kernel_is_noticed(monkeypatch, fresh, tmp_path, spoil):
+    """Shared and own parameters, all functions, all members: compared before caching."""
+    real, script = find_compiler().command[0], tmp_path / "traitor"
+    script.write_text(
+        f"#!/bin/sh\n[ -f kernel.c ] && sed -i '{spoil}' kernel.c\nexec {real} \"$@\""
+    )
+    script.chmod(script.stat().st_mode | stat.S_IXUSR)
+    system = fresh(heavy_top)
+    text = (system.folder / "kernel.c").read_text()
+    monkeypatch.setenv("CC", str(script))
+    with pytest.warns(CompilerWarning, match="made a wrong kernel"):
+        system.rhs(np.ones(6))
+    assert (system.folder / "kernel.c").read_text() == text
+
+
+@pytest.mark.parametrize("size", [1, 7, 500, 10_000])
+def test_large_batches_are_computed_in_pieces(monkeypatch, size):
+    """Ctrl-C is heard between pieces, called or bound; the pieces fit together."""
+    monkeypatch.setattr(kernels, "CHUNK", size)
+    source = np.random.default_rng(0)
+    state = source.normal(size=(6, 50))
+    own = source.uniform(0.5, 2.0, size=(kirchhoff.PARAMETERS.size, 50))
+    for parameters in (None, own):
+        expected = kirchhoff.jacobian(state, parameters, target="numpy")
+        assert np.array_equal(kirchhoff.jacobian(state, parameters), expected)
+        out = np.zeros_like(expected)
+        kirchhoff.bind("jacobian", state, parameters, out)()
+        assert np.array_equal(out, expected)
+
+
+def test_one_call_is_short_enough_to_be_interrupted():
+    """The largest piece of the largest function ends well within 0.2 s."""
+    import time
+
+    state = np.ones((6, kernels.CHUNK // (6 + 36 + 1)))
+    out = np.empty((6, 6, state.shape[1]))
+    call = heavy_top.bind("jacobian", state, None, out)
+    start = time.perf_counter()
+    call()
+    assert time.perf_counter() - start < 0.2
+
+
+def test_functions_beyond_the_square_root_agree_but_for_roundings(fresh, tmp_path):
+    """sin, cos and exp: C and NumPy within a few units in the last place, also when bound."""
+    system = pendulum(tmp_path)
+    assert set(system.elementary) == {"sin", "cos", "exp"}
+    state = np.random.default_rng(1).normal(size=(2, 1001))
+    for function in ("rhs", "energy"):
+        expected = getattr(system, function)(state, target="numpy")
+        for target in ("c", "c-fast"):
+            found = getattr(system, function)(state, target=target)
+            assert np.abs(found - expected).max() <= 2**-50 * np.abs(expected).max()
+            assert found.any()
+    # by hand, at one point
+    q, p, k = 0.5, -0.25, 2.0
+    by_hand = [p, -k * np.sin(q) - np.exp(-q * q) * p]
+    assert np.abs(system.rhs([q, p], [k]) - by_hand).max() < 1e-15
+
+
+def test_agreement_is_strict_where_bits_are_promised():
+    """One last bit, one NaN or one infinity in the wrong place is a difference."""
+    exact = np.array([1.0, np.nan, np.inf, 0.0])
+    for row, value in enumerate((np.nextafter(1.0, 2.0), 1.0, -np.inf, np.nan)):
+        spoiled = exact.copy()
+        spoiled[row] = value
+        assert not kernels._agree(spoiled, exact, exact=True)
+        assert kernels._agree(spoiled, exact, exact=False) == (row == 0)
+    assert kernels._agree(exact.copy(), exact, exact=True)
+    assert kernels._agree(exact.copy(), exact, exact=False)
+
+
+def test_a_kernel_that_was_verified_says_nothing(fresh):
+    """The ordinary way is silent."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert fresh(rigid_body).rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0]).tolist() == [
+            -1.5,
+            2.25,
+            -1.0,
+        ]
