@@ -140,8 +140,8 @@ MUTANTS = (
     # lowering
     Mutant(
         LOWER + "lowering.py",
-        "sign = -1 if coefficient.numer.LC < 0 else 1",
-        "sign = 1 if coefficient.numer.LC < 0 else -1",
+        "value, sign = -coefficient, -1",
+        "value, sign = -coefficient, 1",
     ),
     Mutant(
         LOWER + "lowering.py",

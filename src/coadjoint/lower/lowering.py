@@ -48,6 +48,7 @@ class Lowering:
         self.graph = Graph()
         self._members = frozenset((*equations.setting.state, *equations.setting.velocities))
         self._forms: dict[tuple[int, bool], Form] = {}
+        self._marks: set[Any] = set()
         self._kept: list[Element] = []
         self._products: dict[bool, list[Product]] = {True: [], False: []}
         for element in elements:
@@ -76,7 +77,7 @@ class Lowering:
             groups: dict[Any, list[tuple[int, Product]]] = {}
             coefficients: dict[Any, Element] = {}
             for product, part in self._collect(element, fixed).items():
-                sign, coefficient, mark = _normalised(part * inner)
+                sign, coefficient, mark = self._signed_coefficient(part * inner)
                 coefficients.setdefault(mark, coefficient)
                 groups.setdefault(mark, []).append((sign, product))
                 self._products[fixed].append(product)
@@ -86,6 +87,19 @@ class Lowering:
                 tuple((self._form(divisor, fixed=fixed), power) for divisor, power in outer),
             )
         return self._forms[key]
+
+    def _signed_coefficient(self, coefficient: Element) -> tuple[int, Element, Any]:
+        """Sign, what it multiplies, and a hashable mark that equal values share.
+
+        The sign is split off where that leaves a value seen before, or a single positive term; a
+        difference such as ``I3 - I1`` keeps the sign it has.
+        """
+        value, sign = coefficient, 1
+        negative = len(coefficient.numer) == 1 and coefficient.numer.LC < 0
+        if _mark(-coefficient) in self._marks or (negative and _mark(value) not in self._marks):
+            value, sign = -coefficient, -1
+        self._marks.add(_mark(value))
+        return sign, value, _mark(value)
 
     def _coefficient(self, element: Element) -> Fraction | Form:
         """A coefficient: a number, or the form of what depends on parameters alone."""
@@ -178,11 +192,9 @@ class Lowering:
         return self.graph.call(known.function, argument)
 
 
-def _normalised(coefficient: Element) -> tuple[int, Element, Any]:
-    """Sign, magnitude and a hashable mark that equal magnitudes share."""
-    sign = -1 if coefficient.numer.LC < 0 else 1
-    magnitude = coefficient if sign > 0 else -coefficient
-    return sign, magnitude, (magnitude.numer, tuple(sorted(magnitude.powers.items())))
+def _mark(element: Element) -> Any:
+    """Something hashable that tells elements apart by how they are written."""
+    return element.numer, tuple(sorted(element.powers.items()))
 
 
 def lower(equations: Equations) -> dict[str, Program]:
@@ -218,12 +230,29 @@ def _program(
 ) -> Program:
     """One Program from labelled elements."""
     setting, definitions = equations.setting, equations.exact.definitions
+    outputs = [(label, _shorter(equations, element)) for label, element in outputs]
     lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
     naming = Naming(lowering.graph, named, results, setting.parameters)
     size = (len(outputs),) if shape is None else shape
     return naming.program(name, setting.state, setting.parameters, size)
+
+
+def _shorter(equations: Equations, element: Element) -> Element:
+    """An element with its definitions multiplied out where that leaves fewer terms in the state.
+
+    ``Pi2*Omega3 - Pi3*Omega2`` becomes ``(1/I3 - 1/I2)*Pi2*Pi3``, whose coefficient depends on
+    parameters alone: half the operations, and again what the book writes.
+    """
+    field, closed = equations.setting.field, equations.closed(element)
+    members = frozenset((*equations.setting.state, *equations.setting.velocities))
+
+    def terms(of: Element) -> int:
+        return len({tuple(p for p in m.powers if p[0] in members) for m in field.monomials(of)})
+
+    moving = any(field.reach(divisor) & members for divisor, _ in field.divisors(closed))
+    return closed if terms(closed) < terms(element) and not moving else element
 
 
 def _jacobian(rhs: Program) -> Program:
