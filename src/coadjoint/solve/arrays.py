@@ -183,16 +183,16 @@ def pack_parameters(system: System, parameters: Any) -> Array:
     else:
         packed = as_float64(parameters, "parameters")
         _check_rows(packed, quantities, "parameters", system.name)
-    for quantity in quantities.values():
-        for component in quantity.components if quantity.positive else ():
-            row = packed[quantities.rows(component)]
-            if not (row > 0).all():
-                raise KernelArgumentError(
-                    f"parameter {component} of {system.name} is {np.min(row):g}; expected a "
-                    "positive value.",
-                    found=float(np.min(row)),
-                    component=component,
-                )
+    signed = packed[list(quantities.positive)]
+    if not (signed > 0).all():  # a NaN is not positive either
+        place = np.argwhere(~(signed > 0))[0]
+        component = quantities.components[quantities.positive[place[0]]]
+        value = float(signed[tuple(place)])
+        raise KernelArgumentError(
+            f"parameter {component} of {system.name} is {value:g}; expected a positive value.",
+            found=value,
+            component=component,
+        )
     return packed
 
 

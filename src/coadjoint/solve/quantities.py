@@ -40,6 +40,11 @@ class Quantity:
 class Quantities(Mapping[str, Quantity]):
     """Quantities by name, in the order of their rows.
 
+    Attributes:
+        components: Names of all rows.
+        size: Number of rows.
+        positive: Rows whose values must be positive.
+
     >>> pair, scalar = Quantity("Pi", (2,), "1", ("Pi1", "Pi2")), Quantity("s", (), "1", ("s",))
     >>> state = Quantities(pair, scalar)
     >>> state.components, state.size, state.rows("Pi"), state.rows("s")
@@ -49,13 +54,19 @@ class Quantities(Mapping[str, Quantity]):
     def __init__(self, *quantities: Quantity) -> None:
         self._by_name = {quantity.name: quantity for quantity in quantities}
         self._rows: dict[str, slice | int] = {}
+        self.components = tuple(name for quantity in quantities for name in quantity.components)
+        self.size = len(self.components)
         row = 0
+        positive: list[int] = []
         for quantity in quantities:
             for n, component in enumerate(quantity.components):
                 self._rows[component] = row + n
             if quantity.shape:
                 self._rows[quantity.name] = slice(row, row + len(quantity.components))
-            row += len(quantity.components)
+            after = row + len(quantity.components)
+            positive += range(row, after) if quantity.positive else ()
+            row = after
+        self.positive = tuple(positive)
 
     def __getitem__(self, name: str) -> Quantity:
         return self._by_name[name]
@@ -65,16 +76,6 @@ class Quantities(Mapping[str, Quantity]):
 
     def __len__(self) -> int:
         return len(self._by_name)
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of all rows."""
-        return tuple(name for quantity in self.values() for name in quantity.components)
-
-    @property
-    def size(self) -> int:
-        """Number of rows."""
-        return len(self.components)
 
     def rows(self, name: str) -> slice | int:
         """The rows of a quantity, or the row of a component.
