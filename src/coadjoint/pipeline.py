@@ -9,8 +9,8 @@
               -> crosscheck -> Report       coadjoint.crosscheck
 
 Comes in: a Spec. Goes out: the texts of its generated folder, proved and checked; they are written
-elsewhere. Read next: `coadjoint.regenerate`, which runs this for many systems in bounded children and
-writes what passed.
+elsewhere. Read next: `coadjoint.regenerate`, which runs this for many systems in bounded children
+and writes what passed.
 """
 
 from __future__ import annotations
@@ -80,13 +80,12 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     return Rendered(first, certificate, programs, texts)
 
 
-def verify(rendered: Rendered, progress: Progress = lambda stage: None, **points: int) -> Report:
+def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Report:
     """Compile, load and cross-check a rendered system: the numeric rungs.
 
     Args:
         rendered: What `render` returned.
         progress: Told of each stage.
-        points: ``oracle_points`` and ``bit_points`` of `coadjoint.crosscheck.ladder.crosscheck`.
 
     Raises:
         CompilerError: The compiler failed.
@@ -99,7 +98,7 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None, **points
         system = load_folder(Path(folder))
         progress("cross-check")
         reference = Reference(rendered.equations)
-        return crosscheck(rendered.programs, rendered.texts, reference, system, **points)
+        return crosscheck(rendered.programs, rendered.texts, reference, system)
 
 
 def kernel_context(equations: Equations, programs: dict[str, Program]) -> KernelContext:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -137,7 +138,7 @@ def regenerate(
         write_systems(output, systems, template_hashes(), keep, on_wait)
     for source in pending:
         if source.name in records:
-            rows[source.name] = Row(**records[source.name]["row"])
+            rows[source.name] = _row(records[source.name]["row"])
             _remember(source, records[source.name])
     return Outcome(tuple(rows[s.name] for s in sources if s.name in rows), failures)
 
@@ -182,8 +183,14 @@ def check(
             path=str(output),
             differences=[asdict(each) for each in differences],
         )
-    return Outcome(tuple(Row(**records[s.name]["row"]) for s in sources if s.name in records),
-                   failures)
+    return Outcome(
+        tuple(_row(records[s.name]["row"]) for s in sources if s.name in records), failures
+    )
+
+
+def _row(record: Mapping[str, Any]) -> Row:
+    """A row from JSON values, which know no tuples."""
+    return Row(**{**record, "routes": tuple(record["routes"]), "targets": tuple(record["targets"])})
 
 
 def _concerns(path: str, records: Mapping[str, Any]) -> bool:
@@ -208,7 +215,7 @@ def _sources(paths: Sequence[Path]) -> list[_Source]:
     return sources
 
 
-# -- what need not be done again ---------------------------------------------------------------------
+# -- what need not be done again -----------------------------------------------------
 
 
 def _is_current(output: Path, names: set[str] | None) -> bool:
@@ -227,7 +234,7 @@ def _unchanged(source: _Source, output: Path) -> Row | None:
         found = json.loads(_stamp(source).read_text(encoding="ascii"))
         entry = read_manifest(output)["systems"].get(source.name)
         if found["entry"] == entry and is_intact(output, source.name):
-            return Row(**{**found["row"], "seconds": 0.0, "fresh": False})
+            return _row({**found["row"], "seconds": 0.0, "fresh": False})
     except (OSError, ValueError, KeyError, TypeError):
         pass  # a damaged stamp is no stamp
     return None
@@ -236,10 +243,8 @@ def _unchanged(source: _Source, output: Path) -> Row | None:
 def _remember(source: _Source, record: Mapping[str, Any]) -> None:
     """Keep what a run has verified; if that fails, the next run verifies again."""
     content = {"entry": _generated_system(record).record(), "row": record["row"]}
-    try:
+    with suppress(OSError):
         replace_file(_stamp(source), json.dumps(content).encode("ascii"))
-    except OSError:
-        pass
 
 
 def _stamp(source: _Source) -> Path:
@@ -251,7 +256,7 @@ def _generated_system(record: Mapping[str, Any]) -> GeneratedSystem:
     return GeneratedSystem(record["texts"], record["spec_sha256"], record["route"])
 
 
-# -- building, in bounded children ------------------------------------------------------------------
+# -- building, in bounded children ---------------------------------------------------
 
 
 def _build_all(

@@ -30,7 +30,7 @@ def test_vector_representation_of_so3_is_the_cross_product():
 
 
 def test_diamond_of_so3_is_the_torque_of_the_book():
-    """b <> a = b x a for vectors (Holm 2011, section 8.2)."""
+    """The diamond b <> a is b x a for vectors (Holm 2011, section 8.2)."""
     vectors = representation_by_name(algebra_by_name("so(3)"), "vector")
     b, a = vector(3, 3), vector(3, 4)
     assert list(vectors.diamond(b, a)) == cross(b, a)

@@ -129,7 +129,7 @@ def test_square_roots_reduce_by_their_square():
 
 @pytest.mark.parametrize("function", ["sqrt", "sin", "cos", "tan", "exp", "log"])
 def test_derivatives_of_functions_agree_with_mpmath(function):
-    """d f(u)/dx by the chain rule equals the numerical derivative."""
+    """The derivative d f(u)/dx by the chain rule equals the numerical derivative."""
     field = Field(NAMES, slots=4)
     element = field.call(function, field["x"] ** 2 + field["y"]) * field["x"]
     slope = field.derivative(element, "x")

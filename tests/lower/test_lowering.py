@@ -10,6 +10,7 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.lowering import lower
+from coadjoint.lower.products import share_pairs
 from coadjoint.lower.program import (
     Add,
     Multiply,
@@ -21,7 +22,6 @@ from coadjoint.lower.program import (
     run,
     walk,
 )
-from coadjoint.lower.products import share_pairs
 from tests.conftest import rational_points
 from tests.sources import textbook
 from tests.specs import RIGID_BODY, shipped, spec
@@ -167,7 +167,7 @@ def test_shared_pairs_multiply_out_to_the_same_products():
 
 
 def test_operation_counts_count_differences_once():
-    """a - b is one addition; -a alone is a negation."""
+    """A difference a - b is one addition; -a alone is a negation."""
     a, b = Symbol("a"), Symbol("b")
     program = lower(derive(spec()))["rhs"]
     changed = dataclasses.replace(

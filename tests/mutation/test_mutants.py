@@ -16,6 +16,16 @@ from tests.mutation.judge import OUTPUT
 from tests.mutation.mutants import MUTANTS
 
 ROOT = Path(__file__).parents[2]
+EQUATIONS, KERNELS = "tests/sources/test_equations.py", "tests/sources/test_kernels.py"
+#: Tests that judge a mutant, by the beginning of its file: those of its step and the book's.
+JUDGES = {
+    "src/coadjoint/algebra": ("tests/algebra", EQUATIONS),
+    "src/coadjoint/derive": (EQUATIONS, "tests/derive"),
+    "src/coadjoint/exact": ("tests/exact",),
+    "src/coadjoint/lower": ("tests/lower",),
+    "src/coadjoint/render": (KERNELS,),
+    "templates": (KERNELS,),
+}
 COPIED = ("src", "templates", "derivations", "tests", "pyproject.toml")
 #: pytest's exit statuses for a failed test and for a tree that cannot even be imported.
 KILLED = (1, 2, 4)
@@ -32,8 +42,8 @@ def judge():
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
     )
 
-    def ask(folder):
-        server.stdin.write(f"{folder}\n")
+    def ask(folder, tests):
+        server.stdin.write(f"{folder} {' '.join(tests)}\n")
         server.stdin.flush()
         return int(server.stdout.readline())
 
@@ -61,6 +71,12 @@ def mutate(folder, mutant):
     path.write_text(text.replace(mutant.old, mutant.new))
 
 
+def judges_of(mutant):
+    """The tests that judge a mutant."""
+    (tests,) = [tests for start, tests in JUDGES.items() if mutant.file.startswith(start)]
+    return tests
+
+
 def names(mutants):
     """Arguments of a parametrised test."""
     return {"argvalues": mutants, "ids": [mutant.name for mutant in mutants]}
@@ -70,7 +86,7 @@ def names(mutants):
 def test_a_mutant_is_killed(mutant, judge, tmp_path):
     """A test fails on the changed tree."""
     mutate(tmp_path, mutant)
-    status = judge(tmp_path)
+    status = judge(tmp_path, judges_of(mutant))
     assert status in KILLED, (status, (tmp_path / OUTPUT).read_text()[-2000:])
 
 
@@ -79,13 +95,14 @@ def test_a_mutant_is_killed(mutant, judge, tmp_path):
 def test_an_equivalent_mutant_survives(mutant, judge, tmp_path):
     """No test fails, as the reason beside it says; one that does is no longer equivalent."""
     mutate(tmp_path, mutant)
-    assert judge(tmp_path) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
+    assert judge(tmp_path, judges_of(mutant)) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
 
 
 def test_the_unchanged_tree_survives(judge, tmp_path):
     """The judge passes without a mutation: what kills is the change."""
     copy_tree(tmp_path)
-    assert judge(tmp_path) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
+    tests = dict.fromkeys(test for tests in JUDGES.values() for test in tests)
+    assert judge(tmp_path, tests) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
 
 
 def test_there_are_enough_mutants():

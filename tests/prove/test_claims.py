@@ -38,7 +38,7 @@ def test_a_false_claim_is_refuted_with_its_point(claim, kind):
     assert refuted.kind == kind
     assert refuted.counterexample
     assert refuted.defect not in ("", "0")
-    with pytest.raises(ClaimError, match="refuted: .* At .*Pi") as caught:
+    with pytest.raises(ClaimError, match=r"refuted: .* At .*Pi") as caught:
         certificate.require()
     assert caught.value.exit_status == 1
 
@@ -62,7 +62,7 @@ def test_a_wrong_hamiltonian_is_refuted_on_three_grounds():
 
 
 def test_energy_with_the_wrong_sign_of_gravity_is_refuted():
-    """h with -m g Gamma.chi against l with -m g Gamma.chi: the routes differ."""
+    """The sign of gravity: with -m g Gamma.chi in both h and l, the routes differ."""
     heavy = shipped("heavy_top")
     text = heavy.path.read_text(encoding="utf-8")
     good = "+ m*g*dot(Gamma, chi)"

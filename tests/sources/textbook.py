@@ -32,7 +32,7 @@ def hat(a: Vector) -> list[list[Any]]:
     return [[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]]
 
 
-# -- rigid body: Holm (2011), sections 2.4.1 and 2.5.2; Landau and Lifshitz, Mechanics, sec. 36 ----
+# -- rigid body: Holm (2011), sections 2.4.1 and 2.5.2; Landau and Lifshitz, Mechanics, sec. 36 ---
 
 
 def rigid_body_rates(state: Vector, parameters: Vector) -> list[Any]:
@@ -61,7 +61,7 @@ def rigid_body_tensor(state: Vector) -> list[list[Any]]:
     return hat(state)
 
 
-# -- heavy top: Holm (2011), sections 8.2 and 8.3.2 --------------------------------------------------
+# -- heavy top: Holm (2011), sections 8.2 and 8.3.2 ----------------------------------------------
 
 
 def heavy_top_rates(state: Vector, parameters: Vector) -> list[Any]:
@@ -90,10 +90,10 @@ def se3_tensor(state: Vector) -> list[list[Any]]:
     """``[[hat mu, hat beta], [hat beta, 0]]`` (Holm 2011, sections 7.1.2 and 8.3.2)."""
     mu, beta = hat(state[:3]), hat(state[3:])
     top = [a + b for a, b in zip(mu, beta, strict=True)]
-    return top + [row + [0, 0, 0] for row in beta]
+    return top + [[*row, 0, 0, 0] for row in beta]
 
 
-# -- Kirchhoff: Holm (2011), section 7.2; Lamb, Hydrodynamics, 6th ed., sec. 124 ---------------------
+# -- Kirchhoff: Holm (2011), section 7.2; Lamb, Hydrodynamics, 6th ed., sec. 124 -----------------
 
 
 def kirchhoff_velocities(state: Vector, parameters: Vector) -> tuple[list[Any], list[Any]]:

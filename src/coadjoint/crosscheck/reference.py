@@ -1,7 +1,7 @@
 """The equations themselves, evaluated in any arithmetic: what every kernel is measured against.
 
-Comes in: Equations. Goes out: a `Reference` that computes each function of the kernels straight from
-the field elements, never from the Programs, so that a fault of lowering, printing or compiling
+Comes in: Equations. Goes out: a `Reference` that computes each function of the kernels straight
+from the field elements, never from the Programs, so that a fault of lowering, printing or compiling
 shows. The Jacobian is the exact derivative of the elements, by the chain rule through the
 definitions; the kernels get theirs by forward accumulation.
 Read next: `coadjoint.crosscheck.oracle`, which supplies 50 digits with an error envelope.

@@ -42,4 +42,5 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
         )
     return ROUTES[chosen](setting or make_setting(spec))
 
+
 make_callable(__name__, "derive")

@@ -1,10 +1,10 @@
 """Elements of the field: a polynomial over a product of powers of known factors.
 
 Comes in: polynomials of one SymPy ring over Q. Goes out: exact ``+ - * /`` whose result is zero
-just when its numerator is. Denominators of mechanics are products of few factors (moments of inertia,
-small determinants), so they are kept as such and cancelled by trial division: no polynomial gcd is
-ever taken. With SymPy's `FracField`, which takes one at each step, the energy of the Kirchhoff
-vehicle took 5.6 s; this way it takes hundredths.
+just when its numerator is. Denominators of mechanics are products of few factors (moments of
+inertia, small determinants), so they are kept as such and cancelled by trial division: no
+polynomial gcd is ever taken. With SymPy's `FracField`, which takes one at each step, the energy of
+the Kirchhoff vehicle took 5.6 s; this way it takes a tenth.
 Read next: `coadjoint.exact.field`.
 """
 
