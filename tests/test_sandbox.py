@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from coadjoint import sandbox
-from coadjoint.errors import AlgebraError, ResourceError
+from coadjoint.errors import AlgebraError, InternalError, ResourceError
 from coadjoint.sandbox import run_bounded
 
 GENEROUS = {"seconds": 60, "memory": 2**31}
@@ -93,7 +93,7 @@ def test_an_error_arrives_as_its_own_class_with_its_parts():
 
 def test_functions_of_other_packages_are_refused():
     """A request can name nothing but this package's functions."""
-    with pytest.raises(ResourceError, match="AssertionError"):
+    with pytest.raises(InternalError, match="AssertionError"):
         run_bounded("os:getcwd", None, **GENEROUS)
 
 
@@ -160,9 +160,11 @@ def _group(leader):
 
 
 def test_a_bug_shows_its_message(helper):
-    """An unexpected exception ends the child; the end of its traceback is shown."""
-    with pytest.raises(ResourceError, match="RuntimeError: a bug of ours"):
+    """An unexpected exception is a fault of ours, with its traceback for the report."""
+    with pytest.raises(InternalError, match="RuntimeError: a bug of ours") as caught:
         run_bounded(helper + "bug", None, **GENEROUS)
+    assert caught.value.exit_status == 70
+    assert "Traceback" in caught.value.traceback
 
 
 def test_prints_do_not_disturb_the_protocol(helper):

@@ -19,7 +19,8 @@ class CoadjointError(Exception):
         parts: The pieces of the message by name, plain JSON values only.
     """
 
-    #: Exit status of a command that ends with this error: 2 for wrong input, 1 for a failed check.
+    #: Exit status of a command that ends with this error: 2 for wrong input, 1 for a failed check,
+    #: 70 for a fault of our own.
     exit_status: ClassVar[int] = 2
 
     def __init__(self, message: str, **parts: Any) -> None:
@@ -89,6 +90,12 @@ class KernelTypeError(CoadjointError, TypeError):
 
 class ResourceError(CoadjointError):
     """A bounded child process ran out of its time or memory."""
+
+
+class InternalError(CoadjointError):
+    """A fault of coadjoint itself, found in a child process; please report it."""
+
+    exit_status = 70
 
 
 def from_record(record: Mapping[str, Any]) -> CoadjointError:

@@ -32,7 +32,8 @@ from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, prove
 from coadjoint.render.kernels import KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
-from coadjoint.spec import Parameter, Spec, Variable
+from coadjoint.spec import Formula, Parameter, Spec, Variable
+from coadjoint.spec.units import parse_unit, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
@@ -135,17 +136,33 @@ def _quantity(declared: Variable | Parameter) -> Quantity:
 
 def _observables(spec: Spec) -> tuple[Quantity, ...]:
     """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
-    conserved = {formula.text.strip() for formula in spec.conserved}
+    stated = {formula.text.strip() for formula in spec.conserved}
+    energy = _scalar("energy", _unit(spec, spec.hamiltonian or spec.lagrangian), conserved=True)
     casimirs = [
-        Quantity(f"casimir{n}", (), "1", (f"casimir{n}",), conserved=True)
-        for n in range(1, len(spec.casimirs) + 1)
+        _scalar(f"casimir{n}", _unit(spec, casimir), conserved=True)
+        for n, casimir in enumerate(spec.casimirs, 1)
     ]
     declared = [
-        Quantity(entry.name, (), entry.unit, (entry.name,), conserved=entry.name in conserved)
+        _scalar(entry.name, entry.unit, conserved=entry.name in stated)
         for entry in spec.observables
     ]
-    energy = Quantity("energy", (), "1", ("energy",), conserved=True)
     return (energy, *casimirs, *map(_quantity, spec.having_role("velocity")), *declared)
+
+
+def _scalar(name: str, unit: str, *, conserved: bool) -> Quantity:
+    return Quantity(name, (), unit, (name,), conserved=conserved)
+
+
+def _unit(spec: Spec, formula: Formula | None) -> str:
+    """The unit of a formula, as far as the declared units tell."""
+    assert formula is not None, "the reader asks for a Lagrangian or a Hamiltonian"
+    quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
+    units = {
+        name: parse_unit(quantity.unit)
+        for quantity in quantities
+        for name in (quantity.name, *quantity.components)
+    }
+    return unit_text(unit_of(formula.tree, units))
 
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:

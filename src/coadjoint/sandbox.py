@@ -15,6 +15,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
@@ -22,7 +23,7 @@ from pathlib import Path
 from threading import Timer
 from typing import IO, Any
 
-from coadjoint.errors import CoadjointError, ResourceError, from_record
+from coadjoint.errors import CoadjointError, InternalError, ResourceError, from_record
 
 #: Called with stage, number of stages done, number of stages.
 Progress = Callable[[str, int, int], None]
@@ -60,6 +61,7 @@ def run_bounded(
     Raises:
         CoadjointError: What the function raised, the same class with the same parts.
         ResourceError: The child ran out of time or memory, or was killed.
+        InternalError: The function raised anything else: a fault of ours.
     """
     request = {"target": target, "argument": argument, "seconds": seconds, "memory": memory}
     expired: list[bool] = []
@@ -173,14 +175,12 @@ def child() -> None:
         _send({"error": error.as_record()})
     except MemoryError:
         limit = f"{request['memory'] // 2**20} MiB"
-        _send(
-            {
-                "error": ResourceError(
-                    f"more than {limit} of memory were needed. Simplify the spec.",
-                    limit=request["memory"],
-                ).as_record()
-            }
-        )
+        message = f"more than {limit} of memory were needed. Simplify the spec."
+        _send({"error": ResourceError(message, limit=request["memory"]).as_record()})
+    except Exception as error:
+        message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."
+        trace = traceback.format_exc()
+        _send({"error": InternalError(message, traceback=trace).as_record()})
 
 
 def _function(target: str) -> Callable[[Any], Any]:

@@ -95,6 +95,8 @@ class Commands(click.Group):
         """An error for people, after its traceback if that is asked for."""
         if ctx.params["debug"]:
             traceback.print_exc()
+            # What a bounded child found wrong with itself comes with its own traceback.
+            click.echo(getattr(sys.exception(), "traceback", ""), err=True)
         click.echo(message, err=True)
 
 

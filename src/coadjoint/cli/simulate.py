@@ -71,6 +71,9 @@ def _assignments(
     show_default=True,
     help="Evenly spaced samples.",
 )
+@click.option(
+    "--max-steps", type=click.IntRange(1), default=1_000_000, show_default=True, help="Most steps."
+)
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
 @json_option
@@ -82,6 +85,7 @@ def command(
     method: str,
     rtol: float,
     samples: int,
+    max_steps: int,
     plot: Path | None,
     table: Path | None,
     as_json: bool,
@@ -95,6 +99,7 @@ def command(
         method=method,
         rtol=rtol,
         samples=samples,
+        max_steps=max_steps,
     )
     (print_json(_record(loaded, solution)) if as_json else _print(loaded, solution))
     if table is not None:
