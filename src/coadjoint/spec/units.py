@@ -1,7 +1,7 @@
 """Units: what the unit of a formula is, from the units of its names.
 
-Comes in: unit texts such as ``kg m^2/s`` and an expression tree. Goes out: the unit of its value, or
-None where the declared units do not tell. Units label results and pictures; they are never
+Comes in: unit texts such as ``kg m^2/s`` and an expression tree. Goes out: the unit of its value,
+or None where the declared units do not tell. Units label results and pictures; they are never
 checked or converted, since many specs leave some out. Read next: `coadjoint.pipeline`, which asks
 for the units of energy and Casimirs.
 """
