@@ -1,1 +1,1 @@
-"""Generated systems, one package each, importable as ``coadjoint.systems``; written by ``coadjoint regenerate``."""
+"""Systems written by `coadjoint regenerate`, one package each."""

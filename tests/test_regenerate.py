@@ -107,6 +107,7 @@ def test_the_command_for_a_false_claim_exits_with_one(checkout):
         "generated/rigid_body/kernel.c",
         "generated/rigid_body/certificate.json",
         "generated/manifest.json",
+        "generated/__init__.py",
         "templates/c/kernel.c.j2",
         "templates/numpy/__init__.py.j2",
         "derivations/rigid_body.toml",

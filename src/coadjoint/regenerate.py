@@ -25,6 +25,7 @@ from coadjoint.errors import CoadjointError, CompilerError, DriftError, SpecErro
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
 from coadjoint.render.write import (
+    PACKAGE,
     GeneratedSystem,
     manifest_text,
     read_manifest,
@@ -221,8 +222,17 @@ def _sources(paths: Sequence[Path]) -> list[_Source]:
 def _is_current(output: Path, names: set[str] | None) -> bool:
     """Whether the manifest speaks of these systems and of the templates as they are."""
     manifest = read_manifest(output)
+    if any(not _holds(output / file, text) for file, text in PACKAGE.items()):
+        return False
     same = names is None or manifest["systems"].keys() == names
     return bool(same and manifest["templates"] == template_hashes())
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a file has exactly this text."""
+    with suppress(OSError):
+        return path.read_bytes() == text.encode()
+    return False
 
 
 def _unchanged(source: _Source, output: Path) -> Row | None:

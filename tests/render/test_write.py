@@ -363,5 +363,5 @@ def test_data_reaches_the_disk_before_the_rename(folder, monkeypatch):
             )[1],
         )
     put(folder, "new")
-    expected = ["fsync"] * 5 + (["replace"] * 2 + ["fsync"]) * 2 + ["replace", "fsync"]
+    expected = ["fsync"] * 6 + (["replace"] * 2 + ["fsync"]) * 3
     assert order == expected

@@ -17,8 +17,8 @@ from typing import Final
 
 from coadjoint.render.write import LOCK, read_manifest
 
-#: Files of the tree that no run writes.
-NOT_OURS: Final = frozenset({LOCK, "__init__.py"})
+#: Files of the tree that are no output.
+NOT_OURS: Final = frozenset({LOCK})
 
 
 @dataclass(frozen=True)
