@@ -57,7 +57,7 @@ PARAMETER_COMPONENTS = 256
 MATRIX_ENTRIES = 4096
 #: Generators of an algebra given by name or as a product; constants are sparse.
 GENERATORS = 5000
-#: Operations of all equations after derivation, before common subexpressions are shared.
+#: Operations of one function after lowering.
 OPERATIONS = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
 C_STATEMENTS = 1000

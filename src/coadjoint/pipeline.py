@@ -26,7 +26,7 @@ from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.crosscheck.reference import Reference
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
-from coadjoint.lower.check import check_inverse
+from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, prove
@@ -74,6 +74,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     progress("lower")
     programs = lower(first)
     for program in programs.values():
+        check_size(first, program)
         check_inverse(first, program)
     progress("render")
     extra = {"certificate.json": certificate_json(spec, certificate)}

@@ -7,7 +7,8 @@ from itertools import combinations
 import pytest
 
 from coadjoint.algebra import CATALOGUE, algebra_by_name, from_brackets, from_matrices
-from coadjoint.errors import AlgebraError
+from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.limits import GENERATORS
 from tests.sources.textbook import cross
 
 ALGEBRAS = sorted(CATALOGUE)
@@ -138,6 +139,13 @@ def test_a_bracket_given_twice_or_with_itself_is_refused():
         from_brackets("a", ("e1", "e2"), {(0, 1): {0: 1}, (1, 0): {0: 1}})
     with pytest.raises(AlgebraError, match=r"\[e2, e2\]"):
         from_brackets("a", ("e1", "e2"), {(1, 1): {0: 1}})
+
+
+def test_too_many_generators_are_refused():
+    """The limit is named before any bracket is looked at."""
+    basis = [f"e{n}" for n in range(GENERATORS + 1)]
+    with pytest.raises(LimitError, match=r"5001 generators; expected at most 5000 .GENERATORS."):
+        from_brackets("large", basis, {})
 
 
 def test_a_bracket_may_be_given_in_either_order():

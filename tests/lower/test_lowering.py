@@ -6,8 +6,8 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.derive import derive
-from coadjoint.errors import CrossCheckError
-from coadjoint.lower.check import check_inverse
+from coadjoint.errors import CrossCheckError, LimitError
+from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.products import share_pairs
@@ -67,6 +67,17 @@ def test_operations_do_not_exceed_a_careful_hand_derivation(system):
     by_hand = {"rigid_body": 12, "heavy_top": 33, "kirchhoff": 48}
     rhs = lower(derive(shipped(system)))["rhs"]
     assert total(rhs.operation_counts()) <= by_hand[system]
+
+
+@pytest.mark.parametrize("limit", ["OPERATIONS", "C_STATEMENTS"])
+def test_programs_that_compilers_choke_on_are_refused(limit, monkeypatch):
+    """The function, the count and the limit are named."""
+    equations = derive(spec())
+    jacobian = lower(equations)["jacobian"]
+    check_size(equations, jacobian)
+    monkeypatch.setattr(f"coadjoint.lower.check.{limit}", 5)
+    with pytest.raises(LimitError, match=rf"jacobian takes \d+ .* at most 5 .{limit}."):
+        check_size(equations, jacobian)
 
 
 def test_statements_are_assigned_once_and_used(system):

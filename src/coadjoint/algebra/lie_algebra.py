@@ -15,7 +15,8 @@ from types import MappingProxyType
 from typing import Any
 
 from coadjoint.algebra.linear import solve_exactly
-from coadjoint.errors import AlgebraError
+from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.limits import GENERATORS
 
 #: [e_i, e_j] = sum of value * e_k over the items k: value; pairs with i < j only, zeros left out.
 Constants = Mapping[tuple[int, int], Mapping[int, Fraction]]
@@ -64,6 +65,13 @@ class LieAlgebra:
         kept = {pair: row for pair, row in frozen.items() if row}
         object.__setattr__(self, "constants", MappingProxyType(kept))
         object.__setattr__(self, "blocks", MappingProxyType(dict(self.blocks)))
+        if self.dimension > GENERATORS:
+            raise LimitError(
+                f"{self.name} has {self.dimension} generators; expected at most {GENERATORS} "
+                "(GENERATORS). Declare a smaller algebra.",
+                found=self.dimension,
+                limit=GENERATORS,
+            )
         violation = self.jacobi_violation()
         if violation is not None:
             raise AlgebraError(self._jacobi_message(*violation), triple=list(violation[0]))

@@ -7,9 +7,10 @@ second rung of the ladder: sharing, factoring and naming may not change a single
 from __future__ import annotations
 
 from coadjoint.derive import Equations
-from coadjoint.errors import CrossCheckError
+from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
-from coadjoint.lower.program import Program, run
+from coadjoint.limits import C_STATEMENTS, OPERATIONS
+from coadjoint.lower.program import LEVELS, Program, run
 
 
 def expected_outputs(equations: Equations, name: str) -> list[Element]:
@@ -29,6 +30,28 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
             return [equations.closed(value) for _, value in exact.observables]
     assert name == "poisson_tensor", name
     return [equations.closed(entry) for row in exact.poisson_tensor for entry in row]
+
+
+def check_size(equations: Equations, program: Program) -> None:
+    """Refuse what a compiler would need minutes for.
+
+    Raises:
+        LimitError: More operations or statements than docs/limits.md allows.
+    """
+    operations = sum(sum(program.operation_counts(level).values()) for level in LEVELS)
+    statements = len(program.statements) + len(program.outputs)
+    for found, most, what, limit in (
+        (operations, OPERATIONS, "operations", "OPERATIONS"),
+        (statements, C_STATEMENTS, "statements", "C_STATEMENTS"),
+    ):
+        if found > most:
+            raise LimitError(
+                f"{equations.spec.path}: {program.name} takes {found} {what}; expected at most "
+                f"{most} ({limit}). Declare a smaller system, or fewer observables.",
+                path=str(equations.spec.path),
+                found=found,
+                limit=most,
+            )
 
 
 def check_inverse(equations: Equations, program: Program) -> None:

@@ -15,6 +15,9 @@ from typing import Literal, TypeVar
 
 Value = TypeVar("Value")
 
+#: When a statement is computed: once for all members that share parameters, or for each member.
+LEVELS = ("parameters", "member")
+
 #: Elementary functions a Program may call; each has the same meaning in every target.
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")
 
