@@ -33,11 +33,12 @@ def rational_points(names, count, seed=0):
 
 def pytest_terminal_summary(terminalreporter):
     """Report how many mutants of the engine the tests have killed."""
+    reports = [report for found in terminalreporter.stats.values() for report in found]
     outcomes = [
         report.outcome
-        for reports in terminalreporter.stats.values()
         for report in reports
-        if "test_a_mutant_is_killed" in getattr(report, "nodeid", "") and report.when == "call"
+        if "test_a_mutant_is_killed" in getattr(report, "nodeid", "")
+        and getattr(report, "when", "") == "call"  # what was deselected has not run
     ]
     if outcomes:
         killed = outcomes.count("passed")

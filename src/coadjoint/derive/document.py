@@ -82,7 +82,7 @@ def _mathml(left: Left, expression: sympy.Expr) -> str:
     """The line as a MathML row, which browsers show without any script."""
     # The one named entity that SymPy prints is none of XML's own, so readers of XML refuse it.
     right = mathml(expression, printer="presentation").replace("&InvisibleTimes;", "&#x2062;")
-    return f"<math><mrow><mtext>{left.text}</mtext><mo>=</mo>{right}</mrow></math>"
+    return f"<math><mrow>{left.mathml}<mo>=</mo>{right}</mrow></math>"
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy
+from sympy.printing.mathml import mathml
 
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
@@ -20,30 +21,41 @@ from coadjoint.spec import Spec
 
 @dataclass(frozen=True)
 class Left:
-    """The left side of a line of a derivation, as plain text and as LaTeX."""
+    """The left side of a line of a derivation: plain text, LaTeX and presentation MathML."""
 
     text: str
     latex: str
+    mathml: str
 
 
 def symbol(name: str) -> Left:
     """The symbol itself: ``Pi1``."""
-    return Left(name, sympy.latex(sympy.Symbol(name)))
+    plain = sympy.Symbol(name)
+    return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
 
 
 def rate(name: str) -> Left:
     """Its time derivative: ``dPi1/dt``."""
-    return Left(f"d{name}/dt", rf"\dot{{{symbol(name).latex}}}")
+    of = symbol(name)
+    dotted = f"<mover accent='true'>{of.mathml}<mo>&#x2d9;</mo></mover>"
+    return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", dotted)
 
 
 def partial(function: str, name: str) -> Left:
     """A partial derivative: ``dl/dOmega1``."""
-    return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {symbol(name).latex}")
+    by = symbol(name)
+    fraction = (
+        f"<mfrac><mrow><mo>&#x2202;</mo><mi>{function}</mi></mrow>"
+        f"<mrow><mo>&#x2202;</mo>{by.mathml}</mrow></mfrac>"
+    )
+    return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {by.latex}", fraction)
 
 
 def bracket(a: str, b: str) -> Left:
     """A Poisson bracket: ``{Pi1, Pi2}``."""
-    return Left(f"{{{a}, {b}}}", rf"\{{{symbol(a).latex}, {symbol(b).latex}\}}")
+    x, y = symbol(a), symbol(b)
+    braced = f"<mo>{{</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>}}</mo>"
+    return Left(f"{{{a}, {b}}}", rf"\{{{x.latex}, {y.latex}\}}", braced)
 
 
 @dataclass(frozen=True)
