@@ -14,6 +14,7 @@ from sympy.printing.mathml import mathml
 
 from coadjoint.derive.equations import Equations, Left, Step
 from coadjoint.exact import Element, element_text
+from coadjoint.exact.text import partial_fractions
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def _section(equations: Equations, step: Step) -> Section:
 
 def _line(equations: Equations, left: Left, right: Element) -> Line:
     field = equations.setting.field
-    expression = field.to_sympy(right)
+    expression = sympy.Add(*(field.to_sympy(part) for part in partial_fractions(field, right)))
     return Line(
         f"{left.text} = {element_text(field, right)}",
         f"{left.latex} &= {sympy.latex(expression)}",

@@ -37,8 +37,8 @@ def symbol(name: str) -> Left:
 def rate(name: str) -> Left:
     """Its time derivative: ``dPi1/dt``."""
     of = symbol(name)
-    dotted = f"<mover accent='true'>{of.mathml}<mo>&#x2d9;</mo></mover>"
-    return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", dotted)
+    fraction = f"<mfrac><mrow><mi>d</mi>{of.mathml}</mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>"
+    return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", fraction)
 
 
 def partial(function: str, name: str) -> Left:

@@ -17,7 +17,30 @@ def element_text(field: Field, element: Element) -> str:
     >>> x, y, m = (field[name] for name in field.names)
     >>> element_text(field, (x**2 / 2 - y) / (m * (m + 1)))
     '(1/2*x^2 - y)/(m*(m + 1))'
+    >>> element_text(field, x**2 / (2 * m) - m * y)
+    '1/2*x^2/m - y*m'
     """
+    first, *others = (_fraction(field, part) for part in partial_fractions(field, element))
+    for other in others:
+        first += f" - {other[1:]}" if other.startswith("-") else f" + {other}"
+    return first
+
+
+def partial_fractions(field: Field, element: Element) -> list[Element]:
+    """An element as a sum by denominators, where single addends let some of it cancel.
+
+    Returns:
+        The addends in the order of the field; the element alone if nothing cancels.
+    """
+    groups: dict[tuple[tuple[int, int], ...], Element] = {}
+    for term in field.terms(element):
+        key = tuple(sorted(term.powers.items()))
+        groups[key] = groups[key] + term if key in groups else term
+    return list(groups.values()) or [element]
+
+
+def _fraction(field: Field, element: Element) -> str:
+    """One quotient as text."""
     top = _sum(field, field.monomials(element))
     bottom = [_power(_bracketed(field, d), e) for d, e in field.divisors(element)]
     if not bottom:
