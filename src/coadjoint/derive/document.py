@@ -14,7 +14,6 @@ from sympy.printing.mathml import mathml
 
 from coadjoint.derive.equations import Equations, Left, Step
 from coadjoint.exact import Element, element_text
-from coadjoint.exact.text import partial_fractions
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def _section(equations: Equations, step: Step) -> Section:
 
 def _line(equations: Equations, left: Left, right: Element) -> Line:
     field = equations.setting.field
-    expression = sympy.Add(*(field.to_sympy(part) for part in partial_fractions(field, right)))
+    expression = sympy.Add(*(field.to_sympy(part) for part in field.partial_fractions(right)))
     return Line(
         f"{left.text} = {element_text(field, right)}",
         f"{left.latex} &= {sympy.latex(expression)}",

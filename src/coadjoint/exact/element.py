@@ -1,19 +1,21 @@
-"""Elements of the field: a polynomial over a product of powers of known factors.
+"""Elements of the field: sums of quotients, each over a product of powers of known factors.
 
-Comes in: polynomials of one SymPy ring over Q. Goes out: exact ``+ - * /`` whose result is zero
-just when its numerator is. Denominators of mechanics are products of few factors (moments of
-inertia, small determinants), so they are kept as such and cancelled by trial division: no
-polynomial gcd is ever taken. With SymPy's `FracField`, which takes one at each step, the energy of
-the Kirchhoff vehicle took 5.6 s; this way it takes a tenth.
+Comes in: polynomials of one SymPy ring over Q. Goes out: exact ``+ - * /`` with a decidable zero.
+Denominators of mechanics are products of few factors (moments of inertia, small determinants), so
+they are kept as such and cancelled by trial division: no polynomial gcd is ever taken. With SymPy's
+`FracField`, which takes one at each step, the energy of the Kirchhoff vehicle took 5.6 s; this way
+it takes a tenth. Quotients over different factors stay apart: the energy of the free body in eight
+dimensions has the 28 denominators ``a_i + a_j``, and their product would have millions of terms.
 Read next: `coadjoint.exact.field`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from operator import le, mul, sub
+from operator import add, le, mul, sub
 from typing import Any
 
 from sympy.polys.domains import QQ
@@ -26,6 +28,8 @@ class Factors:
     def __init__(self, ring: PolyRing) -> None:
         self.ring = ring
         self.known: list[PolyElement] = []
+        self.monomial: list[bool] = []
+        self._numbers: dict[PolyElement, int] = {}
 
     def split(self, p: PolyElement) -> tuple[Any, dict[int, int]]:
         """``p = constant * product of known factors``, registering what is new.
@@ -52,9 +56,11 @@ class Factors:
         return reduce(mul, (self.known[n] ** e for n, e in sorted(powers.items())), self.ring.one)
 
     def _number(self, factor: PolyElement) -> int:
-        if factor not in self.known:
+        if factor not in self._numbers:
+            self._numbers[factor] = len(self.known)
             self.known.append(factor)
-        return self.known.index(factor)
+            self.monomial.append(len(factor) == 1)
+        return self._numbers[factor]
 
 
 def remove_factor(
@@ -95,30 +101,84 @@ def _divides(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
     return all(map(le, a, b))
 
 
-class Element:
-    """An exact rational function; make one through a `Field`, then use ``+ - * / **``.
+#: Numbers of the factors, other than single symbols, in the denominator of a quotient.
+Support = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """A nonzero polynomial over a product of powers of factors.
 
     Attributes:
         numer: The numerator, a polynomial over Q.
         powers: Exponents of the factors of the denominator, by their number; none divides `numer`.
     """
 
-    __slots__ = ("factors", "numer", "powers")
+    numer: PolyElement
+    powers: Mapping[int, int]
 
-    def __init__(self, factors: Factors, numer: PolyElement, powers: Mapping[int, int]) -> None:
+    def over(self, common: Mapping[int, int], factors: Factors) -> PolyElement:
+        """The numerator over a common denominator."""
+        missing = {n: e - self.powers.get(n, 0) for n, e in common.items()}
+        missing = {n: e for n, e in missing.items() if e}
+        return self.numer * factors.product(missing) if missing else self.numer
+
+    def order(self) -> tuple[Any, ...]:
+        """Where it stands in a sum: by its leading monomial, the greatest first."""
+        return (*(-exponent for exponent in self.numer.LM), *sorted(self.powers.items()))
+
+
+class Element:
+    """An exact rational function; make one through a `Field`, then use ``+ - * / **``."""
+
+    __slots__ = ("_parts", "factors")
+
+    def __init__(
+        self, factors: Factors, quotients: Iterable[tuple[PolyElement, Mapping[int, int]]]
+    ) -> None:
         self.factors = factors
-        kept = {}
-        for number, exponent in powers.items() if numer else ():
-            count, numer = remove_factor(numer, factors.known[number], exponent)
-            if exponent > count:
-                kept[number] = exponent - count
-        self.numer = numer
-        self.powers = kept
+        self._parts: dict[Support, Quotient] = {}
+        for numer, powers in quotients:
+            self._insert(numer, powers)
+
+    def _insert(self, numer: PolyElement, powers: Mapping[int, int]) -> None:
+        """Add a quotient: to the one with the same factors, or beside the others."""
+        while numer:
+            kept, support = {}, []
+            for number, exponent in powers.items():
+                count, numer = remove_factor(numer, self.factors.known[number], exponent)
+                if exponent > count:
+                    kept[number] = exponent - count
+                    if not self.factors.monomial[number]:
+                        support.append(number)
+            new, other = Quotient(numer, kept), self._parts.pop(tuple(sorted(support)), None)
+            if other is None:
+                self._parts[tuple(sorted(support))] = new
+                return
+            numer, powers = self._sum([new, other])
+
+    def _sum(self, quotients: Collection[Quotient]) -> tuple[PolyElement, dict[int, int]]:
+        """Numerator and denominator of a sum over the common denominator."""
+        common: dict[int, int] = {}
+        for quotient in quotients:
+            for number, exponent in quotient.powers.items():
+                common[number] = max(common.get(number, 0), exponent)
+        numers = (quotient.over(common, self.factors) for quotient in quotients)
+        return reduce(add, numers, self.factors.ring.zero), common
 
     @property
-    def denom(self) -> PolyElement:
-        """The denominator, multiplied out."""
-        return self.factors.product(self.powers)
+    def parts(self) -> tuple[Quotient, ...]:
+        """The quotients whose sum the element is, in the order of the ring."""
+        if len(self._parts) < 2:
+            return tuple(self._parts.values())
+        return tuple(sorted(self._parts.values(), key=Quotient.order))
+
+    def combined(self) -> Element:
+        """The same element as a single quotient, or zero."""
+        if len(self._parts) < 2:
+            return self
+        numer, powers = self._sum(self._parts.values())
+        return Element(self.factors, [(numer, powers)])
 
     def _coerce(self, other: object) -> Element | None:
         """A number as an element; None for what does not belong here."""
@@ -127,32 +187,32 @@ class Element:
         if isinstance(other, int | Fraction):
             exact = Fraction(other)
             ground = QQ(exact.numerator, exact.denominator)
-            return Element(self.factors, self.factors.ring.ground_new(ground), {})
+            return Element(self.factors, [(self.factors.ring.ground_new(ground), {})])
         return None
+
+    def _pairs(self) -> list[tuple[PolyElement, Mapping[int, int]]]:
+        return [(quotient.numer, quotient.powers) for quotient in self._parts.values()]
 
     def __add__(self, other: object) -> Element:
         right = self._coerce(other)
         if right is None:
             return NotImplemented
-        if self.powers == right.powers:
-            return Element(self.factors, self.numer + right.numer, self.powers)
-        numbers = sorted(self.powers.keys() | right.powers.keys())
-        common = {n: max(self.powers.get(n, 0), right.powers.get(n, 0)) for n in numbers}
-        return Element(self.factors, self._over(common) + right._over(common), common)
-
-    def _over(self, common: Mapping[int, int]) -> PolyElement:
-        """The numerator over a common denominator."""
-        missing = {n: e - self.powers.get(n, 0) for n, e in common.items()}
-        missing = {n: e for n, e in missing.items() if e}
-        return self.numer * self.factors.product(missing) if missing else self.numer
+        if not self._parts or not right._parts:
+            return right if right._parts else self
+        return Element(self.factors, [*self._pairs(), *right._pairs()])
 
     def __mul__(self, other: object) -> Element:
         right = self._coerce(other)
         if right is None:
             return NotImplemented
-        numbers = sorted(self.powers.keys() | right.powers.keys())
-        powers = {n: self.powers.get(n, 0) + right.powers.get(n, 0) for n in numbers}
-        return Element(self.factors, self.numer * right.numer, powers)
+        return Element(
+            self.factors,
+            [
+                (a * b, {n: p.get(n, 0) + q.get(n, 0) for n in sorted(p.keys() | q.keys())})
+                for a, p in self._pairs()
+                for b, q in right._pairs()
+            ],
+        )
 
     def inverse(self) -> Element:
         """``1 / self``.
@@ -160,13 +220,18 @@ class Element:
         Raises:
             ZeroDivisionError: The element is zero.
         """
-        if not self.numer:
+        whole = self.combined()
+        if not whole._parts:
             raise ZeroDivisionError("the inverse of the zero element")
-        constant, powers = self.factors.split(self.numer)
-        return Element(self.factors, self.denom * (QQ(1) / constant), powers)
+        (quotient,) = whole._parts.values()
+        constant, powers = self.factors.split(quotient.numer)
+        denom = self.factors.product(quotient.powers)
+        return Element(self.factors, [(denom * (QQ(1) / constant), powers)])
 
     def __neg__(self) -> Element:
-        return Element(self.factors, -self.numer, self.powers)
+        negative = Element(self.factors, [])
+        negative._parts = {s: Quotient(-q.numer, q.powers) for s, q in self._parts.items()}
+        return negative
 
     def __pos__(self) -> Element:
         return self
@@ -193,34 +258,69 @@ class Element:
     def __pow__(self, exponent: int) -> Element:
         if exponent < 0:
             return self.inverse() ** -exponent
-        powers = {n: e * exponent for n, e in self.powers.items()} if exponent else {}
-        return Element(self.factors, self.numer**exponent, powers)
+        if len(self._parts) == 1 and exponent:
+            (quotient,) = self._parts.values()
+            powers = {n: e * exponent for n, e in quotient.powers.items()}
+            return Element(self.factors, [(quotient.numer**exponent, powers)])
+        one = Element(self.factors, [(self.factors.ring.one, {})])
+        return reduce(mul, [self] * exponent, one)
 
     def __eq__(self, other: object) -> bool:
         right = self._coerce(other)
-        return NotImplemented if right is None else not (self - right).numer
+        return NotImplemented if right is None else not (self - right)
 
     def __hash__(self) -> int:
-        # Equal elements may be written over different factors, so only numbers share a hash.
-        return hash(self.numer) if not self.powers else 0
+        # Equal elements may be written over different factors, so only polynomials share a hash.
+        (quotient, *others) = self._parts.values() or [Quotient(self.factors.ring.zero, {})]
+        return hash(quotient.numer) if not quotient.powers and not others else 0
 
     def __bool__(self) -> bool:
-        return bool(self.numer)
+        """Whether the element is not zero: exact.
+
+        Symbols that no denominator has are independent of the denominators, so the coefficients of
+        their monomials vanish one by one: common denominators stay small.
+        """
+        if len(self._parts) < 2:
+            return bool(self._parts)
+        inside = {place for part in self._parts.values() for place in self._places(part.powers)}
+        coefficients: dict[tuple[int, ...], list[Quotient]] = {}
+        for part in self._parts.values():
+            sorted_terms: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+            for monomial, number in part.numer.terms():
+                outer = tuple(0 if n in inside else e for n, e in enumerate(monomial))
+                sorted_terms.setdefault(outer, {})[tuple(map(sub, monomial, outer))] = number
+            for outer, terms in sorted_terms.items():
+                inner = Quotient(self.factors.ring.from_dict(terms), part.powers)
+                coefficients.setdefault(outer, []).append(inner)
+        return any(bool(self._sum(quotients)[0]) for quotients in coefficients.values())
+
+    def _places(self, numbers: Iterable[int]) -> Iterator[int]:
+        """Places of the generators that occur in factors."""
+        for number in numbers:
+            for monomial in self.factors.known[number]:
+                yield from (place for place, exponent in enumerate(monomial) if exponent)
 
     def diff(self, generator: PolyElement) -> Element:
         """Partial derivative by a generator of the ring, by the quotient rule on the factors."""
-        result = Element(self.factors, self.numer.diff(generator), self.powers)
-        for number, exponent in self.powers.items():
-            slope = self.factors.known[number].diff(generator)
-            if slope:
-                powers = {**self.powers, number: self.powers[number] + 1}
-                result += Element(self.factors, self.numer * slope * -exponent, powers)
-        return result
+        quotients: list[tuple[PolyElement, Mapping[int, int]]] = []
+        for numer, powers in self._pairs():
+            quotients.append((numer.diff(generator), powers))
+            for number, exponent in powers.items():
+                slope = self.factors.known[number].diff(generator)
+                if slope:
+                    raised = {**powers, number: exponent + 1}
+                    quotients.append((numer * slope * -exponent, raised))
+        return Element(self.factors, quotients)
 
     def _sympy_(self) -> Any:
-        """What SymPy makes of the element: numerator over the product of factors."""
-        result = self.numer.as_expr()
-        for number, exponent in sorted(self.powers.items()):
+        """What SymPy makes of the element: a sum of numerators over products of factors."""
+        return reduce(
+            add, map(self._quotient_as_expr, self.parts), self.factors.ring.zero.as_expr()
+        )
+
+    def _quotient_as_expr(self, quotient: Quotient) -> Any:
+        result = quotient.numer.as_expr()
+        for number, exponent in sorted(quotient.powers.items()):
             result = result / self.factors.known[number].as_expr() ** exponent
         return result
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import isqrt
-from operator import mul
+from operator import add, mul
 from typing import Any, TypeVar
 
 import sympy
@@ -21,7 +21,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
-from coadjoint.exact.element import Element, Factors
+from coadjoint.exact.element import Element, Factors, Quotient
 
 Value = TypeVar("Value")
 
@@ -51,6 +51,14 @@ class Monomial:
 
     number: Fraction
     powers: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True)
+class Written:
+    """A quotient as it is written: addends of the numerator over powers of divisors."""
+
+    monomials: tuple[Monomial, ...]
+    divisors: tuple[tuple[Element, int], ...]
 
 
 class Field:
@@ -88,7 +96,7 @@ class Field:
         return self._generators[name]
 
     def _element(self, p: PolyElement) -> Element:
-        return Element(self._factors, p, {})
+        return Element(self._factors, [(p, {})])
 
     @property
     def zero(self) -> Element:
@@ -144,12 +152,17 @@ class Field:
         return self.number(root) if root**2 == value else None
 
     def normal(self, element: Element) -> Element:
-        """Normal form: even powers of square roots and of sines in the numerator are replaced."""
+        """Normal form: even powers of square roots and of sines in the numerator are replaced.
+
+        With functions the element is one quotient: a common denominator brings new squares.
+        """
+        if not self.adjoined or self.function_free(element):
+            return element
         for known in reversed(self.adjoined.values()):
             square = self._square_of(known)
             if square is not None:
-                element = self._reduce(element, known.generator, square)
-        return element
+                element = self._reduce(element.combined(), known.generator, square)
+        return element.combined()
 
     def _square_of(self, known: Adjoined) -> Element | None:
         """What the square of an adjoined generator equals, where there is such a relation."""
@@ -160,12 +173,13 @@ class Field:
         return None
 
     def _reduce(self, element: Element, generator: str, square: Element) -> Element:
-        """The element with ``generator ** 2`` replaced in its numerator."""
-        place, ring = self._position[generator], element.numer.ring
-        if element.numer.degree(ring.gens[place]) < 2:
+        """A single quotient with ``generator ** 2`` replaced in its numerator."""
+        place, ring = self._position[generator], self._ring
+        if not element or element.parts[0].numer.degree(ring.gens[place]) < 2:
             return element
+        (quotient,) = element.parts
         parts: dict[int, dict[tuple[int, ...], Any]] = {}
-        for monomial, coefficient in element.numer.terms():
+        for monomial, coefficient in quotient.numer.terms():
             rest = (*monomial[:place], monomial[place] % 2, *monomial[place + 1 :])
             part = parts.setdefault(monomial[place] // 2, {})
             part[rest] = part.get(rest, 0) + coefficient
@@ -173,7 +187,7 @@ class Field:
             (self._element(ring.from_dict(part)) * square**k for k, part in parts.items()),
             self.zero,
         )
-        return numer * Element(self._factors, ring.one, element.powers)
+        return numer * Element(self._factors, [(ring.one, quotient.powers)])
 
     def is_zero(self, element: Element) -> bool:
         """Whether the normal form is 0: exact for rational functions, and a proof of zero always.
@@ -191,14 +205,11 @@ class Field:
         """Names of the generators that occur in an element."""
         return frozenset(
             name
-            for part in (element.numer, *self._denominators(element))
+            for quotient in element.parts
+            for part in (quotient.numer, *map(self._factors.known.__getitem__, quotient.powers))
             for monomial in self._written(part)
             for name, _ in monomial.powers
         )
-
-    def _denominators(self, element: Element) -> list[PolyElement]:
-        """The factors of the denominator, without their exponents."""
-        return [self._factors.known[number] for number in element.powers]
 
     # -- calculus -----------------------------------------------------------------------
 
@@ -252,12 +263,19 @@ class Field:
             argument = self.adjoined[generator].argument
             inner = self.evaluate(argument, known, number, call)
             known[generator] = call(self.adjoined[generator].function, inner)
-        top = self._polynomial(element.numer, known, number)
-        if not element.powers:
+        quotients = [self._quotient(quotient, known, number) for quotient in element.parts]
+        return reduce(add, quotients) if quotients else number(Fraction(0))
+
+    def _quotient(
+        self, quotient: Quotient, values: Mapping[str, Value], number: Callable[[Fraction], Value]
+    ) -> Value:
+        """Numerator over the product of the factors."""
+        top = self._polynomial(quotient.numer, values, number)
+        if not quotient.powers:
             return top
         bottom = [
-            self._polynomial(self._factors.known[factor], known, number)
-            for factor, exponent in element.powers.items()
+            self._polynomial(self._factors.known[factor], values, number)
+            for factor, exponent in quotient.powers.items()
             for _ in range(exponent)
         ]
         return top / reduce(mul, bottom)  # type: ignore[operator, no-any-return]
@@ -310,29 +328,49 @@ class Field:
 
     def as_number(self, element: Element) -> Fraction | None:
         """The rational number that an element is, or None."""
-        if element.powers or not element.numer.is_ground:
+        if not element.parts:
+            return Fraction(0)
+        quotient, *others = element.parts
+        if others or quotient.powers or not quotient.numer.is_ground:
             return None
-        value = element.numer.LC
+        value = quotient.numer.LC
         return Fraction(int(value.numerator), int(value.denominator))
 
-    def monomials(self, element: Element) -> tuple[Monomial, ...]:
-        """The addends of the numerator in the order of the field."""
-        return self._written(element.numer)
-
-    def divisors(self, element: Element) -> list[tuple[Element, int]]:
-        """The factors of the denominator with their exponents."""
+    def quotients(self, element: Element) -> list[Written]:
+        """The quotients whose sum the element is, in the order of the field."""
         return [
-            (self._element(self._factors.known[number]), exponent)
-            for number, exponent in element.powers.items()
+            Written(
+                self._written(quotient.numer),
+                tuple((self._factor(n), exponent) for n, exponent in quotient.powers.items()),
+            )
+            for quotient in element.parts
         ]
 
+    def _factor(self, number: int) -> Element:
+        return self._element(self._factors.known[number])
+
     def terms(self, element: Element) -> tuple[Element, ...]:
-        """The addends of the numerator, each over the whole denominator."""
+        """The addends of the numerators, each over the whole denominator of its quotient."""
         ring = self._ring
         return tuple(
-            Element(self._factors, ring.from_dict({monomial: coefficient}), element.powers)
-            for monomial, coefficient in element.numer.terms()
+            Element(self._factors, [(ring.from_dict({monomial: coefficient}), quotient.powers)])
+            for quotient in element.parts
+            for monomial, coefficient in quotient.numer.terms()
         )
+
+    def partial_fractions(self, element: Element) -> list[Element]:
+        """An element as a sum by denominators, where single addends let some of it cancel.
+
+        ``(I2 - I3)/(I2*I3)`` is ``1/I3 - 1/I2``.
+
+        Returns:
+            Single quotients in the order of the field; zero alone for zero.
+        """
+        groups: dict[tuple[tuple[int, int], ...], Element] = {}
+        for term in self.terms(element):
+            key = tuple(sorted(term.parts[0].powers.items()))
+            groups[key] = groups[key] + term if key in groups else term
+        return list(groups.values()) or [element]
 
     def to_sympy(self, element: Element) -> sympy.Expr:
         """The element as a SymPy expression of plain symbols, for people to read and use."""

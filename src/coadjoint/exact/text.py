@@ -7,7 +7,7 @@ of generated files and in documents.
 from __future__ import annotations
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.field import Field, Monomial
+from coadjoint.exact.field import Field, Monomial, Written
 
 
 def element_text(field: Field, element: Element) -> str:
@@ -20,32 +20,20 @@ def element_text(field: Field, element: Element) -> str:
     >>> element_text(field, x**2 / (2 * m) - m * y)
     '1/2*x^2/m - y*m'
     """
-    first, *others = (_fraction(field, part) for part in partial_fractions(field, element))
+    parts = [part for whole in field.partial_fractions(element) for part in field.quotients(whole)]
+    first, *others = (_fraction(field, part) for part in parts) if parts else ("0",)
     for other in others:
         first += f" - {other[1:]}" if other.startswith("-") else f" + {other}"
     return first
 
 
-def partial_fractions(field: Field, element: Element) -> list[Element]:
-    """An element as a sum by denominators, where single addends let some of it cancel.
-
-    Returns:
-        The addends in the order of the field; the element alone if nothing cancels.
-    """
-    groups: dict[tuple[tuple[int, int], ...], Element] = {}
-    for term in field.terms(element):
-        key = tuple(sorted(term.powers.items()))
-        groups[key] = groups[key] + term if key in groups else term
-    return list(groups.values()) or [element]
-
-
-def _fraction(field: Field, element: Element) -> str:
+def _fraction(field: Field, quotient: Written) -> str:
     """One quotient as text."""
-    top = _sum(field, field.monomials(element))
-    bottom = [_power(_bracketed(field, d), e) for d, e in field.divisors(element)]
+    top = _sum(field, quotient.monomials)
+    bottom = [_power(_bracketed(field, d), e) for d, e in quotient.divisors]
     if not bottom:
         return top
-    lead = f"({top})" if len(field.monomials(element)) > 1 else top
+    lead = f"({top})" if len(quotient.monomials) > 1 else top
     return f"{lead}/{bottom[0]}" if len(bottom) == 1 else f"{lead}/({'*'.join(bottom)})"
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.exact import Element, Field
-from coadjoint.exact.text import partial_fractions
+from coadjoint.exact.field import Written
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
@@ -24,8 +24,8 @@ from coadjoint.lower.program import Program
 
 
 @dataclass(frozen=True)
-class Form:
-    """An element as a quotient of sums.
+class Ratio:
+    """A quotient of sums.
 
     Attributes:
         groups: Coefficients (numbers, or forms to be added) with the signed products they multiply.
@@ -34,6 +34,12 @@ class Form:
 
     groups: tuple[tuple[Any, tuple[tuple[int, Product], ...]], ...]
     divisors: tuple[tuple[Form, int], ...]
+
+
+#: An element as a sum of quotients, one for each denominator that moves with the member.
+Form = tuple[Ratio, ...]
+#: What to compute before it is shared: coefficients by product, for each such denominator.
+_Sums = dict[Any, tuple[list[tuple[Element, int]], dict[Product, Element]]]
 
 
 class Lowering:
@@ -68,26 +74,52 @@ class Lowering:
         """The form of an element, whose products are noted for sharing.
 
         Args:
-            element: What to write as a quotient of sums.
+            element: What to write as a sum of quotients of sums.
             fixed: Whether only numbers are coefficients, as for what depends on parameters alone.
         """
         key = (id(element), fixed)
         if key not in self._forms:
             self._kept.append(element)  # so that its id stays its own
-            inner, outer = self._split_denominator(element, fixed)
-            groups: dict[Any, list[tuple[int, Product]]] = {}
-            coefficients: dict[Any, Element] = {}
-            for product, part in self._collect(element, fixed).items():
-                sign, coefficient, mark = self._signed_coefficient(part * inner)
-                coefficients.setdefault(mark, coefficient)
-                groups.setdefault(mark, []).append((sign, product))
-                self._products[fixed].append(product)
-                self._note_functions(product)
-            self._forms[key] = Form(
-                tuple((self._coefficient(coefficients[m]), tuple(g)) for m, g in groups.items()),
-                tuple((self._form(divisor, fixed=fixed), power) for divisor, power in outer),
+            self._forms[key] = tuple(
+                self._ratio(coefficients, divisors, fixed=fixed)
+                for divisors, coefficients in self._sums(element, fixed).values()
             )
         return self._forms[key]
+
+    def _sums(self, element: Element, fixed: bool) -> _Sums:
+        """The products of an element with their coefficients, by denominator."""
+        sums: _Sums = {}
+        for written in self.field.quotients(element):
+            inner, outer = self._split_denominator(written, fixed)
+            key = tuple((_mark(divisor), power) for divisor, power in outer)
+            _, coefficients = sums.setdefault(key, (outer, {}))
+            for product, part in self._collect(written, fixed).items():
+                known = coefficients.get(product, self.field.zero)
+                coefficients[product] = known + part * inner
+        return sums
+
+    def _ratio(
+        self,
+        coefficients: dict[Product, Element],
+        divisors: list[tuple[Element, int]],
+        *,
+        fixed: bool,
+    ) -> Ratio:
+        """One quotient, equal coefficients factored out."""
+        groups: dict[Any, list[tuple[int, Product]]] = {}
+        found: dict[Any, Element] = {}
+        for product, part in coefficients.items():
+            if part == 0:  # quotients over different parameters may cancel
+                continue
+            sign, coefficient, mark = self._signed_coefficient(part)
+            found.setdefault(mark, coefficient)
+            groups.setdefault(mark, []).append((sign, product))
+            self._products[fixed].append(product)
+            self._note_functions(product)
+        return Ratio(
+            tuple((self._coefficient(found[mark]), tuple(g)) for mark, g in groups.items()),
+            tuple((self._form(divisor, fixed=fixed), power) for divisor, power in divisors),
+        )
 
     def _signed_coefficient(self, coefficient: Element) -> tuple[int, Element, Any]:
         """Sign, what it multiplies, and a hashable mark that equal values share.
@@ -96,7 +128,9 @@ class Lowering:
         difference such as ``I3 - I1`` keeps the sign it has.
         """
         value, sign = coefficient, 1
-        negative = len(coefficient.numer) == 1 and coefficient.numer.LC < 0
+        written = self.field.quotients(coefficient)
+        single = len(written) == 1 and len(written[0].monomials) == 1
+        negative = single and written[0].monomials[0].number < 0
         if _mark(-coefficient) in self._marks or (negative and _mark(value) not in self._marks):
             value, sign = -coefficient, -1
         self._marks.add(_mark(value))
@@ -111,9 +145,7 @@ class Lowering:
         number = self.field.as_number(element)
         if number is not None:
             return number
-        return tuple(
-            self._form(part, fixed=True) for part in partial_fractions(self.field, element)
-        )
+        return tuple(self._form(part, fixed=True) for part in self.field.partial_fractions(element))
 
     def _note_functions(self, product: Product) -> None:
         """Collect the arguments of the elementary functions in a product, too."""
@@ -132,10 +164,10 @@ class Lowering:
             return True
         return self._moves(self.field[name])
 
-    def _collect(self, element: Element, fixed: bool) -> dict[Product, Element]:
+    def _collect(self, written: Written, fixed: bool) -> dict[Product, Element]:
         """Numerator terms by their product, with the coefficient polynomial of each."""
         parts: dict[Product, Element] = {}
-        for term in self.field.monomials(element):
+        for term in written.monomials:
             product: list[str] = []
             coefficient = self.field.number(term.number)
             for name, power in term.powers:
@@ -148,11 +180,11 @@ class Lowering:
         return parts
 
     def _split_denominator(
-        self, element: Element, fixed: bool
+        self, written: Written, fixed: bool
     ) -> tuple[Element, list[tuple[Element, int]]]:
         """The reciprocal of the factors that go into the coefficients, and the other factors."""
         inner, outer = self.field.one, []
-        for divisor, power in self.field.divisors(element):
+        for divisor, power in written.divisors:
             if fixed or self._moves(divisor):
                 outer.append((divisor, power))
             else:
@@ -166,9 +198,22 @@ class Lowering:
         return self._build(self._form(element, fixed=False), fixed=False)
 
     def _build(self, form: Form, *, fixed: bool) -> int:
-        graph = self.graph
-        terms: list[int] = []
-        for coefficient, members in form.groups:
+        addends: list[int] = []
+        for ratio in form:
+            terms = self._terms(ratio, fixed=fixed)
+            divisor = self.graph.product(
+                self._build(inner, fixed=fixed)
+                for inner, power in ratio.divisors
+                for _ in range(power)
+            )
+            whole = not ratio.divisors
+            addends += terms if whole else [self.graph.divide(self.graph.sum(terms), divisor)]
+        return self.graph.sum(addends)
+
+    def _terms(self, ratio: Ratio, *, fixed: bool) -> list[int]:
+        """The addends of a numerator."""
+        graph, terms = self.graph, list[int]()
+        for coefficient, members in ratio.groups:
             factor = (
                 graph.number(coefficient)
                 if isinstance(coefficient, Fraction)
@@ -180,10 +225,7 @@ class Lowering:
             else:
                 inner = graph.sum(self._signed(sign, [], product) for sign, product in products)
                 terms.append(graph.multiply(factor, inner))
-        divisor = graph.product(
-            self._build(inner, fixed=fixed) for inner, power in form.divisors for _ in range(power)
-        )
-        return graph.divide(graph.sum(terms), divisor)
+        return terms
 
     def _signed(self, sign: int, lead: list[int], product: Product) -> int:
         node = self.graph.product([*lead, *map(self._factor, product)])
@@ -203,7 +245,7 @@ class Lowering:
 
 def _mark(element: Element) -> Any:
     """Something hashable that tells elements apart by how they are written."""
-    return element.numer, tuple(sorted(element.powers.items()))
+    return tuple((part.numer, tuple(sorted(part.powers.items()))) for part in element.parts)
 
 
 def lower(equations: Equations) -> dict[str, Program]:
@@ -258,9 +300,15 @@ def _shorter(equations: Equations, element: Element) -> Element:
     members = frozenset((*equations.setting.state, *equations.setting.velocities))
 
     def terms(of: Element) -> int:
-        return len({tuple(p for p in m.powers if p[0] in members) for m in field.monomials(of)})
+        products = {
+            tuple(p for p in monomial.powers if p[0] in members)
+            for written in field.quotients(of)
+            for monomial in written.monomials
+        }
+        return len(products)
 
-    moving = any(field.reach(divisor) & members for divisor, _ in field.divisors(closed))
+    divisors = (divisor for written in field.quotients(closed) for divisor, _ in written.divisors)
+    moving = any(field.reach(divisor) & members for divisor in divisors)
     return closed if terms(closed) < terms(element) and not moving else element
 
 
