@@ -129,8 +129,8 @@ MUTANTS = (
     # exact calculus
     Mutant(
         "src/coadjoint/exact/element.py",
-        "self.numer * slope * -exponent",
-        "self.numer * slope * exponent",
+        "numer * slope * -exponent",
+        "numer * slope * exponent",
     ),
     Mutant(
         "src/coadjoint/exact/field.py",

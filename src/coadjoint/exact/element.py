@@ -30,6 +30,7 @@ class Factors:
         self.known: list[PolyElement] = []
         self.monomial: list[bool] = []
         self._numbers: dict[PolyElement, int] = {}
+        self._slopes: dict[tuple[int, int], PolyElement] = {}
 
     def split(self, p: PolyElement) -> tuple[Any, dict[int, int]]:
         """``p = constant * product of known factors``, registering what is new.
@@ -38,10 +39,11 @@ class Factors:
         new factor, whole: it need not be irreducible.
         """
         powers: dict[int, int] = {}
-        for generator in self.ring.gens:
-            count, p = remove_factor(p, generator)
+        least = tuple(map(min, zip(*p, strict=True)))
+        for generator, count in zip(self.ring.gens, least, strict=True):
             if count:
                 powers[self._number(generator)] = count
+        p = p.quo_term((least, self.ring.domain.one))
         for number, factor in enumerate(self.known):
             count, p = remove_factor(p, factor)
             if count:
@@ -54,6 +56,12 @@ class Factors:
     def product(self, powers: Mapping[int, int]) -> PolyElement:
         """The product of powers of known factors."""
         return reduce(mul, (self.known[n] ** e for n, e in sorted(powers.items())), self.ring.one)
+
+    def slope(self, number: int, place: int) -> PolyElement:
+        """Derivative of a known factor by the generator at a place, remembered."""
+        if (number, place) not in self._slopes:
+            self._slopes[number, place] = self.known[number].diff(place)
+        return self._slopes[number, place]
 
     def _number(self, factor: PolyElement) -> int:
         if factor not in self._numbers:
@@ -141,6 +149,18 @@ class Element:
         for numer, powers in quotients:
             self._insert(numer, powers)
 
+    def _with(self, parts: Mapping[Support, Quotient]) -> Element:
+        """An element of quotients from which everything is cancelled."""
+        result = Element(self.factors, [])
+        result._parts = dict(parts)
+        return result
+
+    def _scaled(self, number: Any) -> Element:
+        """The element times a nonzero number."""
+        return self._with(
+            {s: Quotient(q.numer.mul_ground(number), q.powers) for s, q in self._parts.items()}
+        )
+
     def _insert(self, numer: PolyElement, powers: Mapping[int, int]) -> None:
         """Add a quotient: to the one with the same factors, or beside the others."""
         while numer:
@@ -197,11 +217,17 @@ class Element:
         right = self._coerce(other)
         if right is None:
             return NotImplemented
-        if not self._parts or not right._parts:
-            return right if right._parts else self
-        return Element(self.factors, [*self._pairs(), *right._pairs()])
+        result = self._with(self._parts)
+        for support, quotient in right._parts.items():
+            if support in result._parts:
+                result._insert(quotient.numer, quotient.powers)
+            else:  # cancelled already
+                result._parts[support] = quotient
+        return result
 
     def __mul__(self, other: object) -> Element:
+        if isinstance(other, int | Fraction) and other:
+            return self._scaled(QQ(other.numerator, other.denominator))
         right = self._coerce(other)
         if right is None:
             return NotImplemented
@@ -229,9 +255,7 @@ class Element:
         return Element(self.factors, [(denom * (QQ(1) / constant), powers)])
 
     def __neg__(self) -> Element:
-        negative = Element(self.factors, [])
-        negative._parts = {s: Quotient(-q.numer, q.powers) for s, q in self._parts.items()}
-        return negative
+        return self._with({s: Quotient(-q.numer, q.powers) for s, q in self._parts.items()})
 
     def __pos__(self) -> Element:
         return self
@@ -300,13 +324,13 @@ class Element:
             for monomial in self.factors.known[number]:
                 yield from (place for place, exponent in enumerate(monomial) if exponent)
 
-    def diff(self, generator: PolyElement) -> Element:
-        """Partial derivative by a generator of the ring, by the quotient rule on the factors."""
+    def diff(self, place: int) -> Element:
+        """Partial derivative by the generator at a place, by the quotient rule on the factors."""
         quotients: list[tuple[PolyElement, Mapping[int, int]]] = []
         for numer, powers in self._pairs():
-            quotients.append((numer.diff(generator), powers))
+            quotients.append((numer.diff(place), powers))
             for number, exponent in powers.items():
-                slope = self.factors.known[number].diff(generator)
+                slope = self.factors.slope(number, place)
                 if slope:
                     raised = {**powers, number: exponent + 1}
                     quotients.append((numer * slope * -exponent, raised))

@@ -215,9 +215,9 @@ class Field:
 
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
-        result = element.diff(self._ring.gens[self._position[name]])
-        for generator in sorted(self.names_in(element) & self.adjoined.keys()):
-            outer = element.diff(self._ring.gens[self._position[generator]])
+        result = element.diff(self._position[name])
+        for generator in self._needed(element):
+            outer = element.diff(self._position[generator])
             result += outer * self._derivative_of(self.adjoined[generator], name)
         return result
 
