@@ -4,30 +4,87 @@ import random
 from fractions import Fraction
 from itertools import combinations
 
+import pytest
+
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.lie_algebra import LieAlgebra
-from coadjoint.algebra.linear import solve_exactly
-
-
-def unit(place, value=1):
-    """A matrix with one entry."""
-    return {place: Fraction(value)}
+from coadjoint.algebra.linear import Span, nullspace, rank, rank_modulo
+from coadjoint.errors import AlgebraError, LimitError
 
 
 def test_coordinates_of_several_targets_come_from_one_elimination():
     """3 a - b/2 has the coordinates (3, -1/2); a target outside the span has none."""
-    a, b = {(0, 0): Fraction(1), (0, 1): Fraction(2)}, {(0, 1): Fraction(4)}
-    target = {(0, 0): Fraction(3), (0, 1): Fraction(4)}
-    assert solve_exactly([a, b], [target, unit((1, 1)), {}]) == [
-        [Fraction(3), Fraction(-1, 2)],
-        None,
-        [Fraction(0), Fraction(0)],
+    span = Span([{"x": 1, "y": 2}, {"y": Fraction(4)}])
+    assert span.coordinates({"x": Fraction(3), "y": 4}) == {0: 3, 1: Fraction(-1, 2)}
+    assert span.coordinates({"z": 1}) is None
+    assert span.coordinates({}) == {}
+
+
+def test_dependent_vectors_are_named_and_take_no_part():
+    """Of two multiples of one vector the second is no member of the basis."""
+    span = Span([{"x": 1}, {"x": 2}, {"y": 1, "x": 5}])
+    assert (span.dependent, span.rank) == ([1], 2)
+    assert span.coordinates({"y": 2}) == {0: -10, 2: 2}
+
+
+def random_rows(source, unknowns, count, relations):
+    """Random sparse equations, some of them combinations of the others."""
+    rows = [
+        {
+            source.randrange(unknowns): Fraction(source.randint(-9, 9), source.randint(1, 5))
+            for _ in range(3)
+        }
+        for _ in range(count)
     ]
+    for _ in range(relations):
+        a, b = source.sample(rows, 2)
+        rows.append({c: a.get(c, 0) + 7 * b.get(c, 0) for c in a.keys() | b.keys()})
+    return rows
 
 
-def test_dependent_vectors_have_no_coordinates():
-    """Two multiples of one matrix are no basis."""
-    assert solve_exactly([unit((0, 0)), unit((0, 0), 2)], [unit((0, 0))]) is None
+def test_null_space_is_the_one_that_elimination_over_the_rationals_gives():
+    """The basis solves every equation, is reduced, and rank plus nullity is the unknowns."""
+    source = random.Random(3)
+    sizes = set()
+    for _ in range(40):
+        n = source.randint(3, 9)
+        rows = random_rows(source, n, source.randint(1, n), 2 * (n > 4))
+        basis = nullspace(rows, n)
+        for vector in basis:
+            for row in rows:
+                assert sum(value * vector.get(c, 0) for c, value in row.items()) == 0
+        by_fractions = Span(rows).rank
+        assert rank(rows) == by_fractions == n - len(basis)
+        assert [Span([v]).rows[0] for v in basis] == basis == Span(basis).rows
+        sizes.add(len(basis))
+    assert len(sizes) > 3, "the trials differ"
+
+
+def test_null_space_with_long_numbers_takes_a_larger_prime():
+    """Numbers of a hundred digits come back exactly, which no prime of 61 bits can hold."""
+    long = 10**100 + 267
+    assert nullspace([{0: long, 1: -1}], 2) == [{0: 1, 1: long}]
+    assert nullspace([{0: 2**61 - 1, 1: 1}], 3) == [{0: 1, 1: 1 - 2**61}, {2: 1}]
+
+
+def test_null_space_refuses_numbers_that_no_prime_holds():
+    """The limit is in the message."""
+    with pytest.raises(LimitError, match="null space of 1 equations has numbers of more than 2000"):
+        nullspace([{0: 1, 1: 3**2000}], 2)
+
+
+def test_rank_modulo_a_prime_may_only_fall():
+    """A matrix whose determinant is the prime loses one."""
+    rows = [{0: 7, 1: 0}, {1: 1}]
+    assert rank([{0: 7, 1: 1}, {0: 7, 1: 8}]) == 2
+    assert rank_modulo([{0: 1, 1: 1}, {0: 1, 1: 8}], 7) == 1
+    assert rank_modulo(rows) == 2
+
+
+def test_a_float_is_refused():
+    """0.5 is not exact; the message says what is."""
+    with pytest.raises(AlgebraError, match=r"0\.5 is a floating-point number.*Fraction"):
+        Span([{0: 0.5}])
 
 
 def by_definition(algebra):

@@ -77,5 +77,5 @@ def test_matrices_that_do_not_commute_like_the_algebra_are_refused():
 
 def test_unknown_representation_lists_what_there_is():
     """The message offers the known names."""
-    with pytest.raises(AlgebraError, match="'spinor'; expected 'vector', 'adjoint'"):
+    with pytest.raises(AlgebraError, match="'spinor'; expected 'vector', 'dual'"):
         representation_by_name(algebra_by_name("so(3)"), "spinor")

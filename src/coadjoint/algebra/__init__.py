@@ -1,13 +1,19 @@
 """Lie algebras: structure constants, representations, products, and the actions built on them.
 
-Everything here is exact and free of SymPy: constants are rationals, and the vectors that `bracket`,
+Everything here is exact and free of SymPy: constants are rationals or elements of a field of
+parameters, and the vectors that `bracket`,
 `ad_star` and `diamond` take may hold any values that add and multiply (fractions, floats, elements
 of a function field), so one implementation serves the reader, the derivation and the tests.
 Read next: `coadjoint.algebra.lie_algebra`.
 """
 
 from coadjoint.algebra.catalogue import CATALOGUE, algebra_by_name
-from coadjoint.algebra.lie_algebra import LieAlgebra, from_brackets, from_matrices
+from coadjoint.algebra.lie_algebra import (
+    LieAlgebra,
+    from_brackets,
+    from_matrices,
+    same_constants,
+)
 from coadjoint.algebra.products import semidirect_product
 from coadjoint.algebra.representation import Representation
 
@@ -18,5 +24,6 @@ __all__ = [
     "algebra_by_name",
     "from_brackets",
     "from_matrices",
+    "same_constants",
     "semidirect_product",
 ]

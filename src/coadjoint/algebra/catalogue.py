@@ -1,87 +1,224 @@
-"""Lie algebras by name, with the blocks, matrices and representations that books give them.
+"""Lie algebras by name, and the representations that every algebra has.
 
-Comes in: a name as a spec writes it. Goes out: a `LieAlgebra` and its named representations.
+Comes in: a name as a spec writes it, such as ``so(8)`` or ``sp(4)``. Goes out: a `LieAlgebra`, or
+one of its representations. What a name costs is known before anything is built.
+Read next: `coadjoint.algebra.families`, where the bases are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from difflib import get_close_matches
-from fractions import Fraction
 from functools import cache
-from types import MappingProxyType
 
-from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, from_matrices
-from coadjoint.algebra.representation import Representation, adjoint, coadjoint, defining
-from coadjoint.errors import AlgebraError
-
-
-def _hat(axis: int) -> dict[tuple[int, int], Fraction]:
-    """``hat(e_axis)_ij = -epsilon_ijk``, so that ``hat(a) b = a x b`` (Holm 2011, 2.1.1)."""
-    j, k = (axis + 1) % 3, (axis + 2) % 3
-    return {(k, j): Fraction(1), (j, k): Fraction(-1)}
-
-
-@cache
-def so3() -> LieAlgebra:
-    """Rotations of R^3, spanned by the hat matrices: ``[J_i, J_j] = epsilon_ijk J_k``."""
-    matrices = [_hat(axis) for axis in range(3)]
-    return from_matrices("so(3)", ("J1", "J2", "J3"), matrices, {"rotation": (0, 1, 2)})
+from coadjoint.algebra import families
+from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.algebra.matrices import size
+from coadjoint.algebra.representation import (
+    Representation,
+    adjoint,
+    coadjoint,
+    columns,
+    defining,
+    symmetric,
+    trivial,
+)
+from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.limits import GENERATORS
 
 
-@cache
-def se3() -> LieAlgebra:
-    """Rigid motions of R^3 by 4 x 4 matrices ``[[hat xi, alpha], [0, 0]]`` (Holm 2011, 1.6)."""
-    matrices: list[SparseMatrix] = [_hat(axis) for axis in range(3)]
-    matrices += [{(axis, 3): Fraction(1)} for axis in range(3)]
-    basis = ("J1", "J2", "J3", "P1", "P2", "P3")
-    blocks = {"rotation": (0, 1, 2), "translation": (3, 4, 5)}
-    return from_matrices("se(3)", basis, matrices, blocks)
+@dataclass(frozen=True)
+class Family:
+    """Named algebras of one kind.
+
+    Attributes:
+        form: How the name is written, for messages.
+        pattern: What a name of the family looks like; its groups are the sizes.
+        accepts: Whether there is an algebra of these sizes.
+        sizes: What is accepted, in words.
+        dimension: The number of generators.
+        build: The algebra.
+    """
+
+    form: str
+    pattern: str
+    accepts: Callable[..., bool]
+    sizes: str
+    dimension: Callable[..., int]
+    build: Callable[..., LieAlgebra]
 
 
-CATALOGUE: Mapping[str, Callable[[], LieAlgebra]] = MappingProxyType({"so(3)": so3, "se(3)": se3})
+def _family(
+    form: str, least: int, dimension: Callable[[int], int], build: Callable[[int], LieAlgebra]
+) -> Family:
+    """A family ``name(n)``, which may be written ``name(n,R)`` where its form says so."""
+    letters = form.partition("(")[0]
+    real = "(?:,R)?" if form.endswith(",R)") else ""
+    pattern = rf"{letters}\((\d{{1,6}}){real}\)"
+    return Family(form, pattern, lambda n: n >= least, f"n >= {least}", dimension, build)
 
 
-def algebra_by_name(name: str) -> LieAlgebra:
-    """The algebra that a spec names.
+def _single(form: str, dimension: int, build: Callable[[], LieAlgebra]) -> Family:
+    """A family of one."""
+    pattern = re.escape(form)
+    return Family(form, pattern, lambda: True, "", lambda: dimension, build)
+
+
+FAMILIES = (
+    _family("so(n)", 2, lambda n: n * (n - 1) // 2, families.so),
+    Family(
+        "so(p,q)",
+        r"so\((\d{1,6}),(\d{1,6})\)",
+        lambda p, q: p >= 1 and q >= 1,
+        "p >= 1 and q >= 1",
+        lambda p, q: (p + q) * (p + q - 1) // 2,
+        families.so_indefinite,
+    ),
+    _family("se(n)", 2, lambda n: n * (n + 1) // 2, families.se),
+    _family("su(n)", 2, lambda n: n * n - 1, families.su),
+    _family("u(n)", 1, lambda n: n * n, families.u),
+    _family("sl(n,R)", 2, lambda n: n * n - 1, families.sl),
+    _family("gl(n,R)", 1, lambda n: n * n, families.gl),
+    Family(
+        "sp(2n,R)",
+        r"sp\((\d{1,6})(?:,R)?\)",
+        lambda size: size >= 2 and size % 2 == 0,
+        "an even size of at least 2",
+        lambda size: size * (size + 1) // 2,
+        families.sp,
+    ),
+    _family("h(n)", 1, lambda n: 2 * n + 1, families.heisenberg),
+    Family("R^n", r"R\^(\d{1,6})", lambda n: n >= 1, "n >= 1", lambda n: n, families.translations),
+    _single("g(3)", 10, families.galilei),
+    _single("bargmann", 11, families.bargmann),
+    _single("aff(1)", 2, families.affine),
+    _single("quaternions", 3, families.quaternions),
+    _single("coquaternions", 3, families.coquaternions),
+)
+
+ALIASES = {"heisenberg": "h(1)", "galilei": "g(3)"}
+
+#: Members that lists show and laws are tried on: every family, in its smallest telling sizes.
+CATALOGUE = (
+    *("so(2)", "so(3)", "so(4)", "so(5)", "so(2,1)", "so(3,1)", "so(2,2)", "so(1,1)"),
+    *("se(2)", "se(3)", "se(4)", "su(2)", "su(3)", "u(1)", "u(2)"),
+    *("sl(2,R)", "sl(3,R)", "gl(1)", "gl(2)", "sp(2)", "sp(4)", "h(1)", "h(2)", "R^3"),
+    *("g(3)", "bargmann", "aff(1)", "quaternions", "coquaternions"),
+)
+
+
+def algebra_by_name(name: str, most: int = GENERATORS) -> LieAlgebra:
+    """The algebra that a spec names; blanks do not matter.
+
+    Args:
+        name: Such as ``so(8)``, ``so(2,1)``, ``sl(3,R)``, ``heisenberg``.
+        most: How many generators it may have; by default the limit of the engine.
 
     Raises:
-        AlgebraError: No algebra of that name; the message lists what there is.
+        AlgebraError: No algebra of that name or size; the message lists what there is.
+        LimitError: It would have more generators; nothing has been built.
 
     >>> algebra_by_name("se(3)").blocks["translation"]
     (3, 4, 5)
     """
-    if name in CATALOGUE:
-        return CATALOGUE[name]()
-    near = get_close_matches(name, CATALOGUE, n=1)
-    hint = f"Did you mean {near[0]!r}?" if near else "Declare it by brackets or matrices."
+    plain = ALIASES.get("".join(name.split()), "".join(name.split()))
+    for family in FAMILIES:
+        found = re.fullmatch(family.pattern, plain, re.ASCII)
+        if found:
+            sizes = tuple(map(int, found.groups()))
+            _check_sizes(name, family, sizes, most)
+            return _built(family, sizes)
+    near = get_close_matches(name, (*CATALOGUE, *ALIASES), n=3)
+    hint = "Declare it by brackets or matrices."
+    if near:
+        hint = f"Did you mean {'? Or '.join(map(repr, near))}?"
     raise AlgebraError(
-        f"no algebra is called {name!r}; expected one of {', '.join(CATALOGUE)}. {hint}", found=name
+        f"no algebra is called {name!r}; expected one of "
+        f"{', '.join((*(family.form for family in FAMILIES), *ALIASES))}. {hint}",
+        found=name,
+        near=near,
     )
+
+
+@cache
+def _built(family: Family, sizes: tuple[int, ...]) -> LieAlgebra:
+    return family.build(*sizes)
+
+
+def _check_sizes(name: str, family: Family, sizes: tuple[int, ...], most: int) -> None:
+    if not family.accepts(*sizes):
+        raise AlgebraError(
+            f"there is no algebra {name!r}; {family.form} has {family.sizes}.",
+            found=name,
+            expected=family.sizes,
+        )
+    generators = family.dimension(*sizes)
+    if generators > most:
+        pairs = generators * (generators - 1) // 2
+        raise LimitError(
+            f"{name!r} has {generators} generators and {pairs} brackets between them; expected at "
+            f"most {most} generators (GENERATORS = {GENERATORS} unless the caller asks for less). "
+            "Take a smaller size.",
+            found=generators,
+            limit=most,
+            brackets=pairs,
+        )
+
+
+# -- representations ------------------------------------------------------------------------------
+
+_REPRESENTATIONS: dict[str, Callable[[LieAlgebra], Representation]] = {
+    "vector": lambda algebra: _vector(algebra),
+    "dual": lambda algebra: _vector(algebra).dual(),
+    "defining": lambda algebra: defining(algebra, "defining"),
+    "adjoint": adjoint,
+    "coadjoint": coadjoint,
+    "symmetric": symmetric,
+    "columns": columns,
+    "trivial": trivial,
+}
+REPRESENTATIONS = tuple(_REPRESENTATIONS)
 
 
 def representation_by_name(algebra: LieAlgebra, name: str) -> Representation:
     """A representation that every algebra has, by the name a spec uses.
 
-    ``vector`` is the action of the rotation block on R^3 for so(3) and se(3) (translations act as
-    zero), and the defining matrices for an algebra declared by matrices.
+    - ``vector``: the rotation block on R^n for so(n), se(n), g(3) and bargmann (all else acts as
+      zero), else the defining matrices; ``dual`` is its dual;
+    - ``defining``: the algebra's own matrices on column vectors;
+    - ``adjoint``, ``coadjoint``: on the algebra and on its dual;
+    - ``symmetric``: ``S -> X S + S X^T`` for the defining X, components S_ij, i <= j, row by row;
+    - ``columns``: ``A -> X A`` on square matrices A, row by row;
+    - ``trivial``: zero on R.
 
     Raises:
-        AlgebraError: No such representation.
+        AlgebraError: No such representation, or it wants matrices and there are none.
     """
-    match name:
-        case "vector" if algebra.name in CATALOGUE and "rotation" in algebra.blocks:
-            turning = dict(zip(algebra.blocks["rotation"], map(_hat, range(3)), strict=True))
-            matrices = tuple(turning.get(i, {}) for i in range(algebra.dimension))
-            return Representation(algebra, "vector", 3, matrices)
-        case "vector":
-            return defining(algebra)
-        case "adjoint":
-            return adjoint(algebra)
-        case "coadjoint":
-            return coadjoint(algebra)
+    if name in _REPRESENTATIONS:
+        return _REPRESENTATIONS[name](algebra)
+    near = get_close_matches(name, REPRESENTATIONS, n=1)
+    hint = f" Did you mean {near[0]!r}?" if near else ""
     raise AlgebraError(
-        f"{algebra.name} has no representation {name!r}; expected 'vector', 'adjoint', "
-        "'coadjoint' or one declared under [representations].",
+        f"{algebra.name} has no representation {name!r}; expected "
+        f"{', '.join(map(repr, REPRESENTATIONS))} or one declared under [representations].{hint}",
         found=name,
     )
+
+
+def _vector(algebra: LieAlgebra) -> Representation:
+    """The action on vectors of space, where the algebra is a named one that has rotations."""
+    if "rotation" not in algebra.blocks or not _is_named(algebra):
+        return defining(algebra)
+    turning = algebra.blocks["rotation"]
+    matrices = tuple(m if i in turning else {} for i, m in enumerate(algebra.matrices))
+    return Representation(algebra, "vector", size(matrices), matrices)
+
+
+def _is_named(algebra: LieAlgebra) -> bool:
+    """Whether this is the algebra that its name stands for; a spec may call its own anything."""
+    try:
+        return algebra_by_name(algebra.name, algebra.dimension) == algebra
+    except (AlgebraError, LimitError):
+        return False

@@ -7,38 +7,56 @@ Read next: `coadjoint.algebra.representation`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import combinations
 from types import MappingProxyType
 from typing import Any
 
-from coadjoint.algebra.linear import solve_exactly
+from coadjoint.algebra.invariants import Invariants
+from coadjoint.algebra.linear import Span, exact
+from coadjoint.algebra.matrices import (
+    SparseMatrix,
+    combination,
+    commutator,
+    converted,
+    entries_text,
+)
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import GENERATORS
 
+__all__ = [
+    "Constants",
+    "LieAlgebra",
+    "SparseMatrix",
+    "from_brackets",
+    "from_matrices",
+    "same_constants",
+    "scaled",
+]
+
 #: [e_i, e_j] = sum of value * e_k over the items k: value; pairs with i < j only, zeros left out.
-Constants = Mapping[tuple[int, int], Mapping[int, Fraction]]
-#: A matrix as nonzero entries {(row, column): value}.
-SparseMatrix = Mapping[tuple[int, int], Fraction]
+#: Values are exact: `int` where integral (the fast case), `Fraction`, or elements of a field of
+#: declared parameters.
+Constants = Mapping[tuple[int, int], Mapping[int, Any]]
 
 
-def scaled(value: Any, factor: Fraction) -> Any:
+def scaled(value: Any, factor: Any) -> Any:
     """``factor * value`` for values that know integers but not fractions, such as floats."""
-    if factor.denominator == 1:
-        return value * factor.numerator
-    if isinstance(value, int):
+    if isinstance(factor, int) and abs(factor) == 1:
+        return value if factor == 1 else -value
+    if not isinstance(factor, Fraction) or isinstance(value, int):
         return value * factor
     return value * factor.numerator / factor.denominator
 
 
 @dataclass(frozen=True)
-class LieAlgebra:
+class LieAlgebra(Invariants):
     """A Lie algebra with a basis: ``[e_i, e_j] = c_ij^k e_k``.
 
     Vectors of the algebra and covectors of its dual are plain sequences of ``dimension`` values of
-    any kind that adds and multiplies.
+    any kind that adds and multiplies. What depends on the constants alone (Killing form, center,
+    series, rank) is in `coadjoint.algebra.invariants`.
 
     Attributes:
         name: As books write it, ``so(3)``, or the name of the spec that declared it.
@@ -59,7 +77,7 @@ class LieAlgebra:
 
     def __post_init__(self) -> None:
         frozen = {
-            pair: MappingProxyType({k: c for k, c in sorted(row.items()) if c != 0})
+            pair: MappingProxyType({k: exact(c) for k, c in sorted(row.items()) if c != 0})
             for pair, row in sorted(self.constants.items())
         }
         kept = {pair: row for pair, row in frozen.items() if row}
@@ -72,21 +90,16 @@ class LieAlgebra:
                 found=self.dimension,
                 limit=GENERATORS,
             )
-        violation = self.jacobi_violation()
-        if violation is not None:
-            raise AlgebraError(self._jacobi_message(*violation), triple=list(violation[0]))
+        self.check_jacobi()
 
-    @property
-    def dimension(self) -> int:
-        """Number of basis vectors."""
-        return len(self.basis)
+    def over(self, convert: Callable[[Any], Any]) -> LieAlgebra:
+        """The algebra with every constant that holds parameters converted; rationals stay.
 
-    def structure(self) -> Iterator[tuple[int, int, int, Fraction]]:
-        """Every nonzero ``(i, j, k, c_ij^k)``, both orders of i and j, sorted."""
-        for (i, j), row in self.constants.items():
-            for k, c in row.items():
-                yield i, j, k, c
-                yield j, i, k, -c
+        It moves parameters into another field, or puts numbers for them.
+        """
+        constants = {pair: converted(row, convert) for pair, row in self.constants.items()}
+        matrices = tuple(converted(matrix, convert) for matrix in self.matrices)
+        return LieAlgebra(self.name, self.basis, constants, self.blocks, matrices)
 
     def bracket(self, xi: Sequence[Any], eta: Sequence[Any]) -> tuple[Any, ...]:
         """``[xi, eta]^k = c_ij^k xi^i eta^j``."""
@@ -112,53 +125,104 @@ class LieAlgebra:
             result[j] = result[j] + scaled(xi[i] * mu[k], c)
         return tuple(result)
 
-    def lie_poisson_tensor(self, mu: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
-        """Minus Lie-Poisson tensor ``{mu_i, mu_j} = -c_ij^k mu_k`` (left-invariant systems)."""
+    def lie_poisson_tensor(self, mu: Sequence[Any], sign: int = -1) -> tuple[tuple[Any, ...], ...]:
+        """Lie-Poisson tensor ``{mu_i, mu_j} = -+ c_ij^k mu_k``.
+
+        The sign is minus for left-invariant systems, plus for right-invariant ones.
+        """
         matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
         for i, j, k, c in self.structure():
-            matrix[i][j] = matrix[i][j] - scaled(mu[k], c)
+            matrix[i][j] = matrix[i][j] + scaled(mu[k], sign * c)
         return tuple(map(tuple, matrix))
 
-    def jacobi_violation(self) -> tuple[tuple[int, int, int], dict[int, Fraction]] | None:
+    # -- checks ---------------------------------------------------------------------------
+
+    def jacobi_violation(self) -> tuple[tuple[int, int, int], dict[int, Any]] | None:
         """The first i < j < k with ``[e_i, [e_j, e_k]] + cyclic != 0`` and that sum, or None.
 
         Only brackets that are there are visited: the time goes with the nonzero constants, not with
         the cube of the dimension.
         """
-        acting: dict[int, list[tuple[int, int, Fraction]]] = {}
+        acting: list[list[tuple[int, int, Any]]] = [[] for _ in self.basis]
         for a, m, n, constant in self.structure():
-            acting.setdefault(m, []).append((a, n, constant))  # [e_a, e_m] = constant e_n + ...
-        defects: dict[tuple[int, int, int], dict[int, Fraction]] = {}
+            acting[m].append((a, n, constant))  # [e_a, e_m] = constant e_n + ...
+        defects: dict[tuple[int, int, int, int], Any] = {}
         for (b, c), row in self.constants.items():
             for m, inner in row.items():
-                for a, n, outer in acting.get(m, []):
-                    if a in (b, c):
-                        continue  # a triple with two equal members satisfies the identity
-                    triple = (min(a, b), a + b + c - min(a, b) - max(a, c), max(a, c))
-                    defect = defects.setdefault(triple, {})
-                    # [e_j, [e_k, e_i]] has the pair the other way round
-                    sign = -1 if b < a < c else 1
-                    defect[n] = defect.get(n, Fraction(0)) + sign * inner * outer
-        for triple, sums in sorted(defects.items()):
-            left = {n: value for n, value in sums.items() if value != 0}
-            if left:
-                return triple, left
-        return None
+                for a, n, outer in acting[m]:
+                    # A triple with two equal members satisfies the identity. Where a stands between
+                    # b and c, the cyclic order has their bracket the other way round.
+                    if a < b:
+                        place, term = (a, b, c, n), inner * outer
+                    elif a > c:
+                        place, term = (b, c, a, n), inner * outer
+                    elif b < a < c:
+                        place, term = (b, a, c, n), -inner * outer
+                    else:
+                        continue
+                    defects[place] = defects.get(place, 0) + term
+        wrong = sorted(place for place, value in defects.items() if value != 0)
+        if not wrong:
+            return None
+        i, j, k, _ = wrong[0]
+        return (i, j, k), {at[3]: exact(defects[at]) for at in wrong if at[:3] == (i, j, k)}
 
-    def _jacobi_message(self, triple: tuple[int, int, int], defect: dict[int, Fraction]) -> str:
+    def check_jacobi(self) -> None:
+        """Check that ``[e_i, [e_j, e_k]] + cyclic = 0`` for every triple.
+
+        Raises:
+            AlgebraError: It is not; the message names the first triple and the defect.
+        """
+        violation = self.jacobi_violation()
+        if violation is None:
+            return
+        triple, defect = violation
         a, b, c = (self.basis[i] for i in triple)
         total = " + ".join(f"({value}) {self.basis[k]}" for k, value in sorted(defect.items()))
-        return (
+        raise AlgebraError(
             f"{self.name}: the brackets violate the Jacobi identity: "
             f"[{a}, [{b}, {c}]] + cyclic = {total}; expected 0. "
-            f"Check the signs of the brackets between {a}, {b} and {c}."
+            f"Check the signs of the brackets between {a}, {b} and {c}.",
+            triple=list(triple),
         )
+
+    def check_matrices(self) -> None:
+        """Check that the matrices are independent and commute by the structure constants.
+
+        Raises:
+            AlgebraError: They do not, or there are none; the message names the pair at fault.
+        """
+        if len(self.matrices) != self.dimension:
+            raise AlgebraError(
+                f"{self.name} carries {len(self.matrices)} matrices; expected {self.dimension}. "
+                "Declare the algebra by matrices.",
+                found=len(self.matrices),
+            )
+        _independent(self.name, self.basis, self.matrices)
+        for i, a in enumerate(self.matrices):
+            for j in range(i + 1, self.dimension):
+                row = self.constants.get((i, j), {})
+                expected = combination((c, self.matrices[k]) for k, c in row.items())
+                found = commutator(a, self.matrices[j])
+                if found != expected:
+                    pair = [self.basis[i], self.basis[j]]
+                    raise AlgebraError(
+                        f"{self.name}: the matrices of {pair[0]} and {pair[1]} have a commutator "
+                        f"with the entries {entries_text(found)}; expected "
+                        f"{entries_text(expected)}. Check [{pair[0]}, {pair[1]}].",
+                        pair=pair,
+                    )
+
+
+def same_constants(a: LieAlgebra, b: LieAlgebra) -> bool:
+    """Whether two algebras are equal up to the names of their bases."""
+    return a.dimension == b.dimension and a.constants == b.constants
 
 
 def from_brackets(
     name: str,
     basis: Sequence[str],
-    brackets: Mapping[tuple[int, int], Mapping[int, Fraction | int]],
+    brackets: Mapping[tuple[int, int], Mapping[int, Any]],
     blocks: Mapping[str, tuple[int, ...]] | None = None,
     matrices: tuple[SparseMatrix, ...] = (),
 ) -> LieAlgebra:
@@ -175,7 +239,7 @@ def from_brackets(
         AlgebraError: A pair is given twice or a bracket ``[e_i, e_i]`` is not zero, or the Jacobi
             identity fails.
     """
-    constants: dict[tuple[int, int], dict[int, Fraction]] = {}
+    constants: dict[tuple[int, int], dict[int, Any]] = {}
     for (i, j), row in brackets.items():
         if i == j:
             raise AlgebraError(
@@ -190,7 +254,7 @@ def from_brackets(
                 "expected once, in either order.",
                 pair=[basis[i], basis[j]],
             )
-        constants[pair] = {k: sign * Fraction(c) for k, c in row.items()}
+        constants[pair] = {k: sign * c for k, c in row.items()}
     return LieAlgebra(name, tuple(basis), constants, blocks or {}, matrices)
 
 
@@ -205,40 +269,45 @@ def from_matrices(
     Raises:
         AlgebraError: The matrices are linearly dependent, or a commutator leaves their span.
     """
-    pairs = list(combinations(range(len(basis)), 2))
-    products = [commutator(matrices[i], matrices[j]) for i, j in pairs]
-    solved = solve_exactly(matrices, products)
-    if solved is None:
-        raise AlgebraError(
-            f"{name}: the matrices of the basis are linearly dependent; expected a basis. "
-            "Remove the redundant ones.",
-            basis=list(basis),
-        )
+    span = _independent(name, basis, matrices)
     brackets = {}
-    for (i, j), product, coordinates in zip(pairs, products, solved, strict=True):
+    for i, j in _overlapping(matrices):
+        product = commutator(matrices[i], matrices[j])
+        coordinates = span.coordinates(product)
         if coordinates is None:
             raise AlgebraError(
                 f"{name}: the commutator of {basis[i]} and {basis[j]} is not in the span of the "
-                f"basis; it has the entries {_entries(product)}. Add what is missing to the "
+                f"basis; it has the entries {entries_text(product)}. Add what is missing to the "
                 "basis.",
                 pair=[basis[i], basis[j]],
             )
-        brackets[i, j] = {k: c for k, c in enumerate(coordinates) if c != 0}
+        brackets[i, j] = coordinates
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
 
 
-def commutator(a: SparseMatrix, b: SparseMatrix) -> dict[tuple[int, int], Fraction]:
-    """``a b - b a`` of sparse matrices."""
-    result: dict[tuple[int, int], Fraction] = {}
-    for left, right, sign in ((a, b, 1), (b, a, -1)):
-        for (row, middle), x in left.items():
-            for (other, column), y in right.items():
-                if middle == other:
-                    value = result.get((row, column), Fraction(0)) + sign * x * y
-                    result[row, column] = value
-    return {place: value for place, value in result.items() if value != 0}
+def _independent(name: str, basis: Sequence[str], matrices: Sequence[SparseMatrix]) -> Span:
+    """The span of matrices that must be a basis of it."""
+    span = Span(matrices)
+    if span.dependent:
+        redundant = [basis[n] for n in span.dependent]
+        raise AlgebraError(
+            f"{name}: the matrices of the basis are linearly dependent; expected a basis. "
+            f"Remove {', '.join(redundant)}.",
+            basis=list(basis),
+            found=redundant,
+        )
+    return span
 
 
-def _entries(matrix: SparseMatrix) -> str:
-    """Nonzero entries for a message, places counted from 1."""
-    return ", ".join(f"({r + 1}, {c + 1}): {value}" for (r, c), value in sorted(matrix.items()))
+def _overlapping(matrices: Sequence[SparseMatrix]) -> Iterator[tuple[int, int]]:
+    """Pairs i < j whose products are not zero by their places alone, sorted."""
+    with_row: dict[int, set[int]] = {}
+    with_column: dict[int, set[int]] = {}
+    for i, matrix in enumerate(matrices):
+        for row, column in matrix:
+            with_row.setdefault(row, set()).add(i)
+            with_column.setdefault(column, set()).add(i)
+    for i, matrix in enumerate(matrices):
+        partners = {j for _, column in matrix for j in with_row.get(column, ())}
+        partners |= {j for row, _ in matrix for j in with_column.get(row, ())}
+        yield from ((i, j) for j in sorted(partners) if j > i)

@@ -1,53 +1,281 @@
-"""Exact linear solves over the rationals for sparse matrices given as dictionaries.
+"""Exact linear algebra for sparse vectors: coordinates in a span, null spaces, ranks.
 
-Small and used only to find structure constants; SciPy has no exact solver and SymPy must stay out
-of everything the spec reader imports.
+Comes in: vectors as dictionaries of their nonzero entries. Goes out: coordinates, bases, ranks, all
+exact. `Span` works with any exact values (integers, fractions, elements of a function field);
+`nullspace` and `rank` are for large systems over the rationals. SciPy has no exact solver, SymPy
+must stay out of everything that the spec reader imports.
+Read next: `coadjoint.algebra.invariants`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from fractions import Fraction
+from math import gcd, isqrt, lcm
+from typing import Any
+
+from coadjoint.errors import AlgebraError, LimitError
+
+#: Exponents e of prime numbers 2^e - 1.
+_MERSENNE = (61, 127, 521, 1279, 4423)
+#: The prime that random ranks are taken by; a false rank has a probability of about degree / PRIME.
+PRIME = 2**61 - 1
+
+Row = dict[int, int]
 
 
-def solve_exactly(
-    vectors: Sequence[Mapping[tuple[int, int], Fraction]],
-    targets: Sequence[Mapping[tuple[int, int], Fraction]],
-) -> list[list[Fraction] | None] | None:
-    """Coordinates of each target in independent ``vectors``, by one elimination for all.
+def exact(value: Any) -> Any:
+    """The value with integral fractions as `int`, which is ten times as fast.
 
-    Returns:
-        For each target one coefficient per vector, or None if they do not span it; None for all if
-        the vectors are dependent.
+    Raises:
+        AlgebraError: A float, which is not exact.
     """
-    rows: dict[Hashable, dict[int, Fraction]] = {}
-    for column, vector in enumerate([*vectors, *targets]):
-        for place, value in vector.items():
-            rows.setdefault(place, {})[column] = Fraction(value)
-    pending, n = [row for _, row in sorted(rows.items())], len(vectors)
-    pivots: list[dict[int, Fraction]] = []
-    for column in range(n):
-        pivot = next((row for row in pending if row.get(column)), None)
-        if pivot is None:
-            return None
-        pending = [row for row in pending if row is not pivot]
-        pivot = {j: value / pivot[column] for j, value in pivot.items()}
-        pending = [_eliminate(row, pivot, column) for row in pending]
-        pivots = [_eliminate(row, pivot, column) for row in pivots] + [pivot]
-    outside = {column for row in pending for column in row}
-    return [
-        None if column in outside else [row.get(column, Fraction(0)) for row in pivots]
-        for column in range(n, n + len(targets))
-    ]
+    if isinstance(value, Fraction):
+        return value.numerator if value.denominator == 1 else value
+    if isinstance(value, float):
+        raise AlgebraError(
+            f"{value!r} is a floating-point number; expected an exact one. "
+            "Write an integer or a Fraction.",
+            found=value,
+        )
+    return value
+
+
+def quotient(a: Any, b: Any) -> Any:
+    """``a / b`` without rounding, for integers too."""
+    return exact((Fraction(a) if isinstance(a, int) else a) / b)
+
+
+def add_multiple(total: dict[Any, Any], factor: Any, vector: Mapping[Any, Any]) -> None:
+    """``total += factor * vector`` in place, zeros left out."""
+    for place, value in vector.items():
+        new = exact(total.get(place, 0) + factor * value)
+        if new == 0:
+            total.pop(place, None)
+        else:
+            total[place] = new
+
+
+class Span:
+    """The span of sparse vectors, in which coordinates of any number of targets are looked up.
+
+    Args:
+        vectors: ``{place: value}`` each; places may be anything that sorts, such as (row, column).
+
+    Attributes:
+        dependent: Numbers of the vectors that lie in the span of those before them.
+
+    >>> plane = Span([{"x": 1, "y": 2}, {"y": 4}])
+    >>> plane.coordinates({"x": 3, "y": 4}), plane.coordinates({"z": 1})
+    ({0: 3, 1: Fraction(-1, 2)}, None)
+    """
+
+    def __init__(self, vectors: Iterable[Mapping[Any, Any]] = ()) -> None:
+        # Reduced row echelon form: pivot -> (vector, the combination of given vectors that it is).
+        self._rows: dict[Hashable, tuple[dict[Any, Any], dict[int, Any]]] = {}
+        self._count = 0
+        self.dependent: list[int] = []
+        for vector in vectors:
+            self.add(vector)
+
+    @property
+    def rank(self) -> int:
+        """Dimension of the span."""
+        return len(self._rows)
+
+    @property
+    def rows(self) -> list[dict[Any, Any]]:
+        """The reduced row echelon basis, sorted by pivots."""
+        return [self._rows[pivot][0] for pivot in sorted(self._rows)]  # type: ignore[type-var]
+
+    def add(self, vector: Mapping[Any, Any]) -> bool:
+        """Take in one more vector; False if it lay in the span already."""
+        number, self._count = self._count, self._count + 1
+        rest, combination = self._reduce(vector)
+        if not rest:
+            self.dependent.append(number)
+            return False
+        combination = {k: -value for k, value in combination.items()} | {number: 1}
+        pivot = min(rest)
+        scale = rest[pivot]
+        new = {place: quotient(value, scale) for place, value in rest.items()}
+        combined = {k: quotient(value, scale) for k, value in combination.items()}
+        for row, known in self._rows.values():
+            factor = row.get(pivot)
+            if factor is not None:
+                add_multiple(row, -factor, new)
+                add_multiple(known, -factor, combined)
+        self._rows[pivot] = new, combined
+        return True
+
+    def coordinates(self, target: Mapping[Any, Any]) -> dict[int, Any] | None:
+        """Nonzero coefficients of the vectors given, by their numbers; None outside the span."""
+        rest, combination = self._reduce(target)
+        return None if rest else dict(sorted(combination.items()))
+
+    def _reduce(self, vector: Mapping[Any, Any]) -> tuple[dict[Any, Any], dict[int, Any]]:
+        """What is left of a vector, and the combination that was taken away."""
+        rest = {place: exact(value) for place, value in vector.items() if value != 0}
+        combination: dict[int, Any] = {}
+        # A reduced row has no pivot but its own, so one pass over the entries is enough.
+        for pivot in [place for place in rest if place in self._rows]:
+            factor = rest[pivot]
+            row, combined = self._rows[pivot]
+            add_multiple(rest, -factor, row)
+            add_multiple(combination, factor, combined)
+        return rest, combination
+
+
+# -- large systems over the rationals -------------------------------------------------------------
+
+
+def nullspace(
+    rows: Iterable[Mapping[int, Fraction | int]], unknowns: int
+) -> list[dict[int, Fraction]]:
+    """All x with ``sum_j row[j] x[j] = 0``: the reduced row echelon basis, which is unique.
+
+    The elimination is done modulo a prime, where numbers stay small; the basis is then written over
+    the rationals and multiplied by every row. This proves it: modulo a prime a rank can only fall,
+    so the true null space is no larger than the one found, and what is found lies in it. Should the
+    proof fail, a larger prime is taken.
+
+    Args:
+        rows: Equations, sparse; entries integers or fractions.
+        unknowns: How many unknowns there are; those in no equation are free.
+
+    Raises:
+        LimitError: The solution has numbers of more than 2000 bits.
+
+    >>> nullspace([{0: 1, 1: -2}, {1: 1, 2: Fraction(1, 3)}], 3)
+    [{0: Fraction(1, 1), 1: Fraction(1, 2), 2: Fraction(-3, 2)}]
+    """
+    equations = _integral(rows)
+    for exponent in _MERSENNE:
+        prime = 2**exponent - 1
+        basis = [_rational(row, prime) for row in _nullspace_modulo(equations, unknowns, prime)]
+        found = [vector for vector in basis if vector is not None]
+        if len(found) == len(basis) and _solves(equations, found):
+            return found
+    raise LimitError(
+        f"the null space of {len(equations)} equations has numbers of more than 2000 bits; "
+        "expected coefficients that fit. Scale the equations.",
+        found=len(equations),
+    )
+
+
+def rank(rows: Iterable[Mapping[int, Fraction | int]]) -> int:
+    """The rank over the rationals.
+
+    >>> rank([{0: 1, 1: 2}, {0: 2, 1: 4}, {5: 1}])
+    2
+    """
+    kept = [dict(row) for row in rows]
+    number = {column: n for n, column in enumerate(sorted({c for row in kept for c in row}))}
+    numbered = [{number[c]: value for c, value in row.items()} for row in kept]
+    return len(number) - len(nullspace(numbered, len(number)))
+
+
+def rank_modulo(rows: Iterable[Mapping[int, Fraction | int]], prime: int = PRIME) -> int:
+    """The rank modulo a prime: never above the rank over the rationals, nearly always equal."""
+    return len(_eliminate(_integral(rows), prime, min))
+
+
+def _integral(rows: Iterable[Mapping[int, Fraction | int]]) -> list[Row]:
+    """Distinct rows in integers without common factor, the short ones first."""
+    distinct: dict[tuple[tuple[int, int], ...], None] = {}
+    for row in rows:
+        entries = sorted((column, value) for column, value in row.items() if value)
+        if not entries:
+            continue
+        common = lcm(*(value.denominator for _, value in entries))
+        whole = [int(value * common) for _, value in entries]
+        shared = gcd(*whole) if whole[0] > 0 else -gcd(*whole)
+        scaled = ((c, value // shared) for (c, _), value in zip(entries, whole, strict=True))
+        distinct[tuple(scaled)] = None
+    return [dict(row) for row in sorted(distinct, key=len)]
 
 
 def _eliminate(
-    row: dict[int, Fraction], pivot: dict[int, Fraction], column: int
-) -> dict[int, Fraction]:
-    """``row`` minus the multiple of ``pivot`` that clears ``column``."""
-    factor = row.get(column)
-    if not factor:
-        return row
-    columns = row.keys() | pivot.keys()
-    new = {j: row.get(j, Fraction(0)) - factor * pivot.get(j, Fraction(0)) for j in columns}
-    return {j: value for j, value in new.items() if value != 0}
+    rows: Iterable[Row], prime: int, choose: Callable[[Iterable[int]], int]
+) -> dict[int, Row]:
+    """Rows by their pivots, pivot entries 1; a row has none of the pivots before it."""
+    pivots: dict[int, Row] = {}
+    for row in rows:
+        rest = {column: value % prime for column, value in row.items()}
+        while shared := [column for column in rest if column in pivots]:
+            for column in shared:
+                _clear(rest, column, pivots, prime)
+        rest = {column: value for column, value in rest.items() if value}
+        if rest:
+            pivot = choose(rest)
+            inverse = pow(rest[pivot], -1, prime)
+            pivots[pivot] = {column: value * inverse % prime for column, value in rest.items()}
+    return pivots
+
+
+def _clear(row: Row, column: int, pivots: Mapping[int, Row], prime: int) -> None:
+    """Clear a column that is a pivot of another row."""
+    factor = row.pop(column, 0)
+    if factor:
+        for other, value in pivots[column].items():
+            if other != column:
+                new = (row.get(other, 0) - factor * value) % prime
+                if new:
+                    row[other] = new
+                else:
+                    row.pop(other, None)
+
+
+def _reduced(pivots: dict[int, Row], prime: int) -> dict[int, Row]:
+    """The same rows, each with no pivot but its own: the last row has none, so go backwards."""
+    done: dict[int, Row] = {}
+    for pivot, row in reversed(pivots.items()):
+        for column in [c for c in row if c in done]:
+            _clear(row, column, done, prime)
+        done[pivot] = row
+    return done
+
+
+def _nullspace_modulo(equations: list[Row], unknowns: int, prime: int) -> list[Row]:
+    """The reduced row echelon basis of the null space modulo a prime, sorted by pivots."""
+    # A pivot in a column that few rows have keeps the others sparse.
+    frequency = Counter(column for row in equations for column in row)
+    pivots = _eliminate(
+        equations, prime, lambda columns: min(columns, key=lambda c: (frequency[c], c))
+    )
+    solved = _reduced(pivots, prime)
+    vectors: dict[int, Row] = {free: {free: 1} for free in range(unknowns) if free not in solved}
+    for pivot, row in solved.items():
+        for column, value in row.items():
+            if column != pivot:
+                vectors[column][pivot] = -value % prime
+    basis = _reduced(_eliminate(vectors.values(), prime, min), prime)
+    return [basis[pivot] for pivot in sorted(basis)]
+
+
+def _rational(row: Row, prime: int) -> dict[int, Fraction] | None:
+    """The rational vector that a row modulo a prime is the image of, if it is small enough."""
+    found = {}
+    bound = isqrt(prime // 2)
+    for column, value in sorted(row.items()):
+        # The half extended Euclidean algorithm (Wang 1981): u = v * value modulo the prime.
+        u, last, v, before = value, prime, 1, 0
+        while u > bound:
+            step = last // u
+            u, last, v, before = last - step * u, u, before - step * v, v
+        if v == 0 or abs(v) > bound:
+            return None
+        found[column] = Fraction(u, v)
+    return found
+
+
+def _solves(equations: list[Row], vectors: list[dict[int, Fraction]]) -> bool:
+    """Whether every vector satisfies every equation, in exact arithmetic."""
+    for vector in vectors:
+        common = lcm(*(value.denominator for value in vector.values()))
+        whole = {column: int(value * common) for column, value in vector.items()}
+        for row in equations:
+            if sum(value * whole.get(column, 0) for column, value in row.items()):
+                return False
+    return True

@@ -6,13 +6,21 @@ been checked to commute like the algebra. Read next: `coadjoint.algebra.products
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, commutator, scaled
+from coadjoint.algebra.lie_algebra import LieAlgebra, scaled
+from coadjoint.algebra.matrices import (
+    Matrix,
+    SparseMatrix,
+    combination,
+    commutator,
+    converted,
+    kronecker,
+    size,
+)
 from coadjoint.errors import AlgebraError
 
 
@@ -37,11 +45,8 @@ class Representation:
 
     def __post_init__(self) -> None:
         for i, j in combinations(range(self.algebra.dimension), 2):
-            expected: dict[tuple[int, int], Fraction] = {}
-            for k, c in self.algebra.constants.get((i, j), {}).items():
-                for place, value in self.matrices[k].items():
-                    expected[place] = expected.get(place, Fraction(0)) + c * value
-            expected = {place: value for place, value in expected.items() if value != 0}
+            row = self.algebra.constants.get((i, j), {})
+            expected = combination((c, self.matrices[k]) for k, c in row.items())
             if expected != commutator(self.matrices[i], self.matrices[j]):
                 a, b = self.algebra.basis[i], self.algebra.basis[j]
                 raise AlgebraError(
@@ -70,6 +75,19 @@ class Representation:
                 result[i] = result[i] - scaled(b[row] * a[column], value)
         return tuple(result)
 
+    def over(
+        self, convert: Callable[[Any], Any], algebra: LieAlgebra | None = None
+    ) -> Representation:
+        """The same representation with entries that hold parameters converted; rationals stay.
+
+        Args:
+            convert: As in `LieAlgebra.over`.
+            algebra: The converted algebra, where it is at hand already.
+        """
+        matrices = tuple(converted(matrix, convert) for matrix in self.matrices)
+        acting = algebra or self.algebra.over(convert)
+        return Representation(acting, self.name, self.dimension, matrices)
+
     def dual(self) -> Representation:
         """The contragredient action on W*: ``rho*(xi) = -rho(xi)^T``."""
         turned = tuple({(c, r): -v for (r, c), v in matrix.items()} for matrix in self.matrices)
@@ -78,7 +96,7 @@ class Representation:
 
 def adjoint(algebra: LieAlgebra) -> Representation:
     """``rho(xi) = ad_xi`` on the algebra itself."""
-    matrices: list[dict[tuple[int, int], Fraction]] = [{} for _ in algebra.basis]
+    matrices: list[Matrix] = [{} for _ in algebra.basis]
     for i, j, k, c in algebra.structure():
         matrices[i][k, j] = c
     return Representation(algebra, "adjoint", algebra.dimension, tuple(matrices))
@@ -90,7 +108,12 @@ def coadjoint(algebra: LieAlgebra) -> Representation:
     return Representation(algebra, "coadjoint", dual.dimension, dual.matrices)
 
 
-def defining(algebra: LieAlgebra) -> Representation:
+def trivial(algebra: LieAlgebra) -> Representation:
+    """``rho = 0`` on R."""
+    return Representation(algebra, "trivial", 1, ({},) * algebra.dimension)
+
+
+def defining(algebra: LieAlgebra, name: str = "vector") -> Representation:
     """The algebra's own matrices acting on column vectors.
 
     Raises:
@@ -98,9 +121,41 @@ def defining(algebra: LieAlgebra) -> Representation:
     """
     if not algebra.matrices:
         raise AlgebraError(
-            f"{algebra.name} is declared by brackets and has no matrices, so it has no 'vector' "
+            f"{algebra.name} is declared by brackets and has no matrices, so it has no {name!r} "
             "representation. Declare the algebra by matrices, or declare the representation.",
             algebra=algebra.name,
         )
-    size = 1 + max(max(place) for matrix in algebra.matrices for place in matrix)
-    return Representation(algebra, "vector", size, algebra.matrices)
+    return Representation(algebra, name, size(algebra.matrices), algebra.matrices)
+
+
+def columns(algebra: LieAlgebra) -> Representation:
+    """``A -> X A`` on n x n matrices A, row by row: n copies of the defining representation."""
+    vectors = defining(algebra, "columns")
+    n = vectors.dimension
+    identity = {(i, i): 1 for i in range(n)}
+    matrices = tuple(kronecker(X, identity, n) for X in vectors.matrices)
+    return Representation(algebra, "columns", n * n, matrices)
+
+
+def symmetric(algebra: LieAlgebra) -> Representation:
+    """``S -> X S + S X^T`` on symmetric matrices, components ``S_ij``, i <= j, row by row.
+
+    ``Ad_A`` of the group acts as ``S -> A S A^T``.
+    """
+    vectors = defining(algebra, "symmetric")
+    places = list(combinations_with_replacement(range(vectors.dimension), 2))
+    number = {place: n for n, place in enumerate(places)}
+    matrices: list[Matrix] = []
+    for X in vectors.matrices:
+        moved: Matrix = {}
+        for (row, middle), x in X.items():
+            for other in range(vectors.dimension):
+                # (X S)_(row, other) has the term x S_(middle, other); X S + (X S)^T on the
+                # diagonal is twice that.
+                at = (
+                    number[min(row, other), max(row, other)],
+                    number[min(middle, other), max(middle, other)],
+                )
+                moved[at] = moved.get(at, 0) + (2 * x if row == other else x)
+        matrices.append({at: x for at, x in moved.items() if x != 0})
+    return Representation(algebra, "symmetric", len(places), tuple(matrices))

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from coadjoint.algebra.catalogue import so3
+from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.spec import tree
@@ -161,12 +161,12 @@ def _power(base: Quantity, exponent: int, field: Field) -> Quantity:
 
 def _cross(a: Quantity, b: Quantity) -> Quantity:
     """The bracket of so(3), so that one table of signs serves the whole engine."""
-    return so3().bracket(a, b)
+    return algebra_by_name("so(3)").bracket(a, b)
 
 
 def _hat(a: Quantity) -> Matrix:
     zero = 0 * a[0]
-    return tuple(tuple(x + zero for x in row) for row in so3().ad(a))
+    return tuple(tuple(x + zero for x in row) for row in algebra_by_name("so(3)").ad(a))
 
 
 _BINARY: dict[str, Callable[..., Quantity]] = {

@@ -1,0 +1,103 @@
+"""Sparse exact matrices: the few operations that algebras and their representations need.
+
+A matrix is the dictionary of its nonzero entries. Comes in and goes out: such dictionaries.
+Read next: `coadjoint.algebra.lie_algebra`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from coadjoint.algebra.linear import add_multiple
+
+#: A matrix as nonzero entries {(row, column): value}.
+SparseMatrix = Mapping[tuple[int, int], Any]
+Place = TypeVar("Place")
+Matrix = dict[tuple[int, int], Any]
+
+
+def unit(row: int, column: int, value: Any = 1) -> Matrix:
+    """The matrix with a single entry."""
+    return {(row, column): value}
+
+
+def combination(terms: Iterable[tuple[Any, SparseMatrix]]) -> Matrix:
+    """The sum of multiples of matrices."""
+    result: Matrix = {}
+    for factor, matrix in terms:
+        add_multiple(result, factor, matrix)
+    return result
+
+
+def product(a: SparseMatrix, b: SparseMatrix) -> Matrix:
+    """``a b``."""
+    result: Matrix = {}
+    for (row, middle), x in a.items():
+        add_multiple(result, x, {(row, c): y for (r, c), y in b.items() if r == middle})
+    return result
+
+
+def commutator(a: SparseMatrix, b: SparseMatrix) -> Matrix:
+    """``a b - b a``."""
+    result = product(a, b)
+    add_multiple(result, -1, product(b, a))
+    return result
+
+
+def converted(row: Mapping[Place, Any], convert: Callable[[Any], Any]) -> dict[Place, Any]:
+    """A sparse row or matrix whose entries with parameters are converted; rationals stay."""
+    return {
+        at: value if isinstance(value, int | Fraction) else convert(value)
+        for at, value in row.items()
+    }
+
+
+def transpose(a: SparseMatrix) -> Matrix:
+    """Rows and columns exchanged."""
+    return {(c, r): value for (r, c), value in a.items()}
+
+
+def size(matrices: Iterable[SparseMatrix]) -> int:
+    """The least number of rows and columns that holds all entries."""
+    return 1 + max((max(place) for matrix in matrices for place in matrix), default=-1)
+
+
+def shifted(a: SparseMatrix, rows: int, columns: int) -> Matrix:
+    """The matrix as a block that begins further down and to the right."""
+    return {(r + rows, c + columns): value for (r, c), value in a.items()}
+
+
+def kronecker(a: SparseMatrix, b: SparseMatrix, width: int) -> Matrix:
+    """``a (x) b`` for b of ``width`` rows and columns."""
+    return {
+        (r * width + s, c * width + d): x * y for (r, c), x in a.items() for (s, d), y in b.items()
+    }
+
+
+def realified(real: SparseMatrix, imaginary: SparseMatrix, width: int) -> Matrix:
+    """``A + iB`` as the real matrix ``[[A, -B], [B, A]]``, for A and B of ``width`` rows."""
+    turned = {place: -value for place, value in imaginary.items()}
+    return {
+        **shifted(real, 0, 0),
+        **shifted(real, width, width),
+        **shifted(turned, 0, width),
+        **shifted(imaginary, width, 0),
+    }
+
+
+def faithful_sum(parts: Sequence[Sequence[SparseMatrix]]) -> tuple[Matrix, ...]:
+    """Block-diagonal matrices, one for each place of the (equally long) parts."""
+    result: list[Matrix] = [{} for _ in parts[0]]
+    start = 0
+    for part in parts:
+        for whole, block in zip(result, part, strict=True):
+            whole.update(shifted(block, start, start))
+        start += size(part)
+    return tuple(result)
+
+
+def entries_text(matrix: SparseMatrix) -> str:
+    """Nonzero entries for a message, places counted from 1."""
+    return ", ".join(f"({r + 1}, {c + 1}): {value}" for (r, c), value in sorted(matrix.items()))
