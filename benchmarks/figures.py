@@ -6,6 +6,7 @@ compared as well as speed.
 
 from __future__ import annotations
 
+import statistics
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
@@ -52,14 +53,14 @@ def best_of(
     return best
 
 
-def fresh_process(code: str, runs: int = 5) -> float:
-    """Smallest number that ``code`` prints, over several fresh processes."""
+def fresh_process(code: str, runs: int = 5, *, median: bool = False) -> float:
+    """Smallest number, or the median, of those that ``code`` prints in several fresh processes."""
     command = [sys.executable, "-P", "-c", code]
     answers = [
         subprocess.run(command, check=True, capture_output=True, text=True).stdout
         for _ in range(runs)
     ]
-    return min(map(float, answers))
+    return statistics.median(map(float, answers)) if median else min(map(float, answers))
 
 
 def script(measure: Callable[[], list[Figure]]) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from coadjoint.cli.output import print_table
 
-BENCHMARKS = ("start", "derivation", "c_kernels", "numpy_kernels", "call_overhead")
+BENCHMARKS = ("start", "derivation", "algebra", "c_kernels", "numpy_kernels", "call_overhead")
 
 
 def main(names: tuple[str, ...]) -> int:

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from operator import add, le, mul, sub
+from operator import add, itemgetter, le, mul, sub
 from typing import Any
 
 from sympy.polys.domains import QQ
@@ -127,6 +127,8 @@ class Quotient:
 
     def over(self, common: Mapping[int, int], factors: Factors) -> PolyElement:
         """The numerator over a common denominator."""
+        if common == self.powers:
+            return self.numer
         missing = {n: e - self.powers.get(n, 0) for n, e in common.items()}
         missing = {n: e for n, e in missing.items() if e}
         return self.numer * factors.product(missing) if missing else self.numer
@@ -178,13 +180,12 @@ class Element:
             numer, powers = self._sum([new, other])
 
     def _sum(self, quotients: Collection[Quotient]) -> tuple[PolyElement, dict[int, int]]:
-        """Numerator and denominator of a sum over the common denominator."""
+        """Numerator and denominator of a nonempty sum over the common denominator."""
         common: dict[int, int] = {}
         for quotient in quotients:
             for number, exponent in quotient.powers.items():
                 common[number] = max(common.get(number, 0), exponent)
-        numers = (quotient.over(common, self.factors) for quotient in quotients)
-        return reduce(add, numers, self.factors.ring.zero), common
+        return reduce(add, (quotient.over(common, self.factors) for quotient in quotients)), common
 
     @property
     def parts(self) -> tuple[Quotient, ...]:
@@ -290,6 +291,8 @@ class Element:
         return reduce(mul, [self] * exponent, one)
 
     def __eq__(self, other: object) -> bool:
+        if isinstance(other, int) and other == 0:
+            return not self
         right = self._coerce(other)
         return NotImplemented if right is None else not (self - right)
 
@@ -307,15 +310,19 @@ class Element:
         if len(self._parts) < 2:
             return bool(self._parts)
         inside = {place for part in self._parts.values() for place in self._places(part.powers)}
-        coefficients: dict[tuple[int, ...], list[Quotient]] = {}
+        outside = [n for n in range(self.factors.ring.ngens) if n not in inside]
+        # Two more places, so that there is a tuple whatever is outside.
+        outer = itemgetter(slice(0), slice(0), *outside)
+        coefficients: dict[Any, list[Quotient]] = {}
         for part in self._parts.values():
-            sorted_terms: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-            for monomial, number in part.numer.terms():
-                outer = tuple(0 if n in inside else e for n, e in enumerate(monomial))
-                sorted_terms.setdefault(outer, {})[tuple(map(sub, monomial, outer))] = number
-            for outer, terms in sorted_terms.items():
-                inner = Quotient(self.factors.ring.from_dict(terms), part.powers)
-                coefficients.setdefault(outer, []).append(inner)
+            terms: dict[Any, dict[tuple[int, ...], Any]] = {}
+            for monomial, number in part.numer.items():
+                terms.setdefault(outer(monomial), {})[monomial] = number
+            for key, inner in terms.items():
+                quotient = Quotient(self.factors.ring.from_dict(inner), part.powers)
+                coefficients.setdefault(key, []).append(quotient)
+        if any(len(quotients) == 1 for quotients in coefficients.values()):
+            return True
         return any(bool(self._sum(quotients)[0]) for quotients in coefficients.values())
 
     def _places(self, numbers: Iterable[int]) -> Iterator[int]:
@@ -328,7 +335,8 @@ class Element:
         """Partial derivative by the generator at a place, by the quotient rule on the factors."""
         quotients: list[tuple[PolyElement, Mapping[int, int]]] = []
         for numer, powers in self._pairs():
-            quotients.append((numer.diff(place), powers))
+            if any(monomial[place] for monomial in numer):
+                quotients.append((numer.diff(place), powers))
             for number, exponent in powers.items():
                 slope = self.factors.slope(number, place)
                 if slope:

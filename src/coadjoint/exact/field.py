@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import isqrt
-from operator import add, mul
+from operator import add, mul, truediv
 from typing import Any, TypeVar
 
 import sympy
@@ -111,6 +111,38 @@ class Field:
     def number(self, value: Fraction | int) -> Element:
         """A rational number as an element."""
         return self.zero + Fraction(value)
+
+    def adopt(self, element: Element) -> Element:
+        """An element of another field, of symbols that this one has too.
+
+        Raises:
+            KeyError: A symbol is not known here.
+        """
+        names = [str(symbol) for symbol in element.factors.ring.symbols]
+
+        def moved(p: PolyElement) -> Element:
+            total = self.zero
+            for exponents, number in p.terms():
+                powers = (
+                    self[name] ** e for name, e in zip(names, exponents, strict=True) if e
+                )
+                total += reduce(mul, powers, self._element(self._ring.ground_new(number)))
+            return total
+
+        return sum(
+            (
+                reduce(
+                    truediv,
+                    (
+                        moved(element.factors.known[factor]) ** exponent
+                        for factor, exponent in quotient.powers.items()
+                    ),
+                    moved(quotient.numer),
+                )
+                for quotient in element.parts
+            ),
+            self.zero,
+        )
 
     def vector(self, values: Iterable[Element | int]) -> tuple[Element, ...]:
         """Values that may still be plain numbers, as elements."""
