@@ -7,23 +7,40 @@ of a function field), so one implementation serves the reader, the derivation an
 Read next: `coadjoint.algebra.lie_algebra`.
 """
 
-from coadjoint.algebra.catalogue import CATALOGUE, algebra_by_name
+from coadjoint.algebra.catalogue import CATALOGUE, algebra_by_name, representation_by_name
+from coadjoint.algebra.extensions import (
+    central_extension,
+    complexification,
+    leibniz_extension,
+    subalgebra,
+)
 from coadjoint.algebra.lie_algebra import (
     LieAlgebra,
     from_brackets,
     from_matrices,
     same_constants,
 )
-from coadjoint.algebra.products import semidirect_product
+from coadjoint.algebra.linear import Span, nullspace, rank
+from coadjoint.algebra.products import direct_sum, semidirect_product, semidirect_sum
 from coadjoint.algebra.representation import Representation
 
 __all__ = [
     "CATALOGUE",
     "LieAlgebra",
     "Representation",
+    "Span",
     "algebra_by_name",
+    "central_extension",
+    "complexification",
+    "direct_sum",
     "from_brackets",
     "from_matrices",
+    "leibniz_extension",
+    "nullspace",
+    "rank",
+    "representation_by_name",
     "same_constants",
     "semidirect_product",
+    "semidirect_sum",
+    "subalgebra",
 ]

@@ -14,7 +14,7 @@ from difflib import get_close_matches
 from functools import cache
 
 from coadjoint.algebra import families
-from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.algebra.lie_algebra import LieAlgebra, check_size
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import (
     Representation,
@@ -154,17 +154,7 @@ def _check_sizes(name: str, family: Family, sizes: tuple[int, ...], most: int) -
             found=name,
             expected=family.sizes,
         )
-    generators = family.dimension(*sizes)
-    if generators > most:
-        pairs = generators * (generators - 1) // 2
-        raise LimitError(
-            f"{name!r} has {generators} generators and {pairs} brackets between them; expected at "
-            f"most {most} generators (GENERATORS = {GENERATORS} unless the caller asks for less). "
-            "Take a smaller size.",
-            found=generators,
-            limit=most,
-            brackets=pairs,
-        )
+    check_size(name, family.dimension(*sizes), most)
 
 
 # -- representations ------------------------------------------------------------------------------

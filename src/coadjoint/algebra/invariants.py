@@ -138,12 +138,13 @@ class Invariants:
         """A basis of the span of the brackets of pairs of sparse vectors."""
         span = Span()
         for x, y in pairs:
-            bracket = self._sparse_bracket(x, y)
+            bracket = self.sparse_bracket(x, y)
             if bracket:
                 span.add(bracket)
         return span.rows
 
-    def _sparse_bracket(self, x: Mapping[int, Any], y: Mapping[int, Any]) -> dict[int, Any]:
+    def sparse_bracket(self, x: Mapping[int, Any], y: Mapping[int, Any]) -> dict[int, Any]:
+        """``[x, y]`` of vectors given by their nonzero components."""
         result: dict[int, Any] = {}
         for i, a in x.items():
             for j, b in y.items():

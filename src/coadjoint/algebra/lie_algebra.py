@@ -29,6 +29,7 @@ __all__ = [
     "Constants",
     "LieAlgebra",
     "SparseMatrix",
+    "check_size",
     "from_brackets",
     "from_matrices",
     "same_constants",
@@ -83,13 +84,7 @@ class LieAlgebra(Invariants):
         kept = {pair: row for pair, row in frozen.items() if row}
         object.__setattr__(self, "constants", MappingProxyType(kept))
         object.__setattr__(self, "blocks", MappingProxyType(dict(self.blocks)))
-        if self.dimension > GENERATORS:
-            raise LimitError(
-                f"{self.name} has {self.dimension} generators; expected at most {GENERATORS} "
-                "(GENERATORS). Declare a smaller algebra.",
-                found=self.dimension,
-                limit=GENERATORS,
-            )
+        check_size(self.name, self.dimension)
         self.check_jacobi()
 
     def over(self, convert: Callable[[Any], Any]) -> LieAlgebra:
@@ -184,6 +179,7 @@ class LieAlgebra(Invariants):
             f"[{a}, [{b}, {c}]] + cyclic = {total}; expected 0. "
             f"Check the signs of the brackets between {a}, {b} and {c}.",
             triple=list(triple),
+            defect=total,
         )
 
     def check_matrices(self) -> None:
@@ -212,6 +208,23 @@ class LieAlgebra(Invariants):
                         f"{entries_text(expected)}. Check [{pair[0]}, {pair[1]}].",
                         pair=pair,
                     )
+
+
+def check_size(name: str, generators: int, most: int = GENERATORS) -> None:
+    """Refuse an algebra that would take too long, before it is built.
+
+    Raises:
+        LimitError: There are too many generators; the message says what they would cost.
+    """
+    if generators > most:
+        pairs = generators * (generators - 1) // 2
+        raise LimitError(
+            f"{name} has {generators} generators and {pairs} brackets between them; expected at "
+            f"most {most} generators (GENERATORS is {GENERATORS}). Take a smaller algebra.",
+            found=generators,
+            limit=most,
+            brackets=pairs,
+        )
 
 
 def same_constants(a: LieAlgebra, b: LieAlgebra) -> bool:

@@ -87,7 +87,7 @@ def realified(real: SparseMatrix, imaginary: SparseMatrix, width: int) -> Matrix
     }
 
 
-def faithful_sum(parts: Sequence[Sequence[SparseMatrix]]) -> tuple[Matrix, ...]:
+def block_diagonal(parts: Sequence[Sequence[SparseMatrix]]) -> tuple[Matrix, ...]:
     """Block-diagonal matrices, one for each place of the (equally long) parts."""
     result: list[Matrix] = [{} for _ in parts[0]]
     start = 0
