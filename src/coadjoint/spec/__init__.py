@@ -9,10 +9,12 @@ from coadjoint.spec.model import (
     Formula,
     Observable,
     Parameter,
+    Poisson,
     Shape,
     Spec,
     Variable,
     component_names,
+    unpacked,
 )
 from coadjoint.spec.reader import read_spec, read_spec_text
 from coadjoint.spec.schema import json_schema
@@ -23,6 +25,7 @@ __all__ = [
     "Formula",
     "Observable",
     "Parameter",
+    "Poisson",
     "Shape",
     "Spec",
     "Variable",
@@ -31,4 +34,5 @@ __all__ = [
     "read_spec",
     "read_spec_text",
     "tree",
+    "unpacked",
 ]

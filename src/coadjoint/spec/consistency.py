@@ -129,14 +129,78 @@ def check_blocks(source: Source, variables: Sequence[Variable], algebra: LieAlge
                 )
 
 
+def check_tables(source: Source, file: SpecFile) -> None:
+    """There is an algebra or a Poisson bracket, not both, and nothing of the one beside the other.
+
+    Raises:
+        SpecError: Neither, both, or a table or route that goes with the other.
+    """
+    if file.algebra is None and file.poisson is None:
+        raise source.fault(
+            (),
+            "the table 'algebra' is missing",
+            found="algebra",
+            expected="a table [algebra], or [poisson] for a system without an algebra",
+            hint='Write [algebra] and below it name = "so(3)".',
+        )
+    if file.algebra is not None and file.poisson is not None:
+        raise source.fault(
+            ("poisson",),
+            "there are both [algebra] and [poisson]",
+            found="poisson",
+            expected="one of them",
+            hint="The bracket on the dual of an algebra follows from it: remove [poisson].",
+        )
+    _check_roads(source, file)
+    for table in ("representations", "lagrangian"):
+        if file.poisson is not None and getattr(file, table):
+            raise source.fault(
+                (table,),
+                f"there is a table [{table}] beside [poisson]",
+                found=table,
+                expected=f"[{table}] beside [algebra] alone",
+                hint=f"Remove [{table}].",
+            )
+
+
+def _check_roads(source: Source, file: SpecFile) -> None:
+    """Each route starts from a table that is there."""
+    nambu = file.poisson is not None and file.poisson.nambu is not None
+    starts = {
+        "algebra": (file.algebra is not None, ("euler-poincare", "lie-poisson")),
+        "poisson": (file.poisson is not None, ("poisson", "nambu") if nambu else ("poisson",)),
+    }
+    routes = next(routes for is_there, routes in starts.values() if is_there)
+    for place, route in enumerate(file.routes):
+        if route not in routes:
+            missing = "nambu functions in [poisson]" if file.poisson is not None else "[poisson]"
+            if route in starts["algebra"][1]:
+                missing = "[algebra]"
+            raise source.fault(
+                ("routes", place),
+                f"the route {route} starts from {missing}, which is not there",
+                found=route,
+                expected=f"one of {listed(routes)}",
+            )
+
+
 def check_routes(
-    source: Source, file: SpecFile, variables: Sequence[Variable], algebra: LieAlgebra
+    source: Source, file: SpecFile, variables: Sequence[Variable], algebra: LieAlgebra | None
 ) -> None:
     """Each route finds the variables and the energy that it starts from.
 
     Raises:
         SpecError: Something is missing for a route, or is used by none.
     """
+    if algebra is None:
+        if file.hamiltonian is None:
+            raise _missing(
+                source,
+                f"the route {file.routes[0]} has no Hamiltonian",
+                "hamiltonian",
+                'Write [hamiltonian] and below it h = "dot(p, p)/2".',
+            )
+        return
     _check_energies(source, file)
     _check_covered(source, "momentum", "Pi", variables, algebra)
     if file.lagrangian is not None:

@@ -32,6 +32,11 @@ def read_float(text: str) -> Decimal:
         return Decimal("NaN")
 
 
+def is_number_text(text: str) -> bool:
+    """Whether a text is meant as a number, such as ``9.81`` or ``1/3``."""
+    return _TEXT.fullmatch(text) is not None
+
+
 def read_number(value: object) -> Fraction:
     """An exact number.
 

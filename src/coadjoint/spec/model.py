@@ -7,10 +7,13 @@ and JSON only and never reaches a template, a C file or a Python file.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import combinations, combinations_with_replacement, product
+from math import isqrt
 from pathlib import Path
+from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
@@ -19,36 +22,90 @@ from coadjoint.spec.tree import Node
 Shape = tuple[int, ...]
 
 
-def component_names(name: str, shape: Shape) -> tuple[str, ...]:
+#: How a matrix is kept as a list: the entries above the diagonal, those with the diagonal, or all.
+FORMS = ("antisymmetric", "symmetric", "matrix")
+
+
+def component_names(name: str, shape: Shape, form: str = "") -> tuple[str, ...]:
     """Names of the components of a quantity, as books write them, row by row.
 
     >>> component_names("Pi", (3,))
     ('Pi1', 'Pi2', 'Pi3')
     >>> component_names("A", (2, 2))
     ('A11', 'A12', 'A21', 'A22')
+    >>> component_names("M", (3,), "antisymmetric")
+    ('M12', 'M13', 'M23')
     >>> component_names("Pi1", (2,))  # a digit at the end would run into the index
     ('Pi1_1', 'Pi1_2')
     """
     if not shape:
         return (name,)
-    indices = product(*(range(1, length + 1) for length in shape))
+    if form:
+        shape = (matrix_size(shape[0], form) or 0,) * 2
+    indices = _places(shape[0], form) if form else product(*map(range, shape))
     joint = "_" if len(shape) == 2 and max(shape) > 9 else ""
     lead = name + "_" if name[-1].isdigit() or joint else name
-    return tuple(lead + joint.join(map(str, index)) for index in indices)
+    return tuple(lead + joint.join(str(n + 1) for n in index) for index in indices)
+
+
+def _places(size: int, form: str) -> list[tuple[int, int]]:
+    """Rows and columns, from 0, of the entries that a form keeps."""
+    match form:
+        case "antisymmetric":
+            return list(combinations(range(size), 2))
+        case "symmetric":
+            return list(combinations_with_replacement(range(size), 2))
+    return [(i, j) for i in range(size) for j in range(size)]
+
+
+def matrix_size(count: int, form: str) -> int | None:
+    """Rows of the matrix of a form that has ``count`` entries to keep; None if there is none.
+
+    >>> matrix_size(28, "antisymmetric"), matrix_size(6, "symmetric"), matrix_size(6, "matrix")
+    (8, 3, None)
+    """
+    near = isqrt(2 * count) if form != "matrix" else isqrt(count)
+    sizes = (size for size in (near, near + 1) if len(_places(size, form)) == count > 0)
+    return next(sizes, None)
+
+
+def unpacked(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
+    """The rows of the matrix that the kept entries stand for.
+
+    Args:
+        values: The kept entries, of any kind that negates and multiplies by 0.
+        form: ``"antisymmetric"``, ``"symmetric"`` or ``"matrix"``.
+
+    >>> unpacked([3, -2, 1], "antisymmetric")
+    ((0, 3, -2), (-3, 0, 1), (2, -1, 0))
+    >>> unpacked([1, 2, 3], "symmetric")
+    ((1, 2), (2, 3))
+    """
+    size = matrix_size(len(values), form)
+    assert size is not None, (len(values), form)
+    entries = dict(zip(_places(size, form), values, strict=True))
+    zero = 0 * values[0]
+    for (i, j), value in list(entries.items()):
+        if form == "antisymmetric":
+            entries[j, i] = -value
+        elif form == "symmetric":
+            entries[j, i] = value
+    return tuple(tuple(entries.get((i, j), zero) for j in range(size)) for i in range(size))
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A velocity, momentum or advected quantity.
+    """A velocity, momentum or advected quantity, or a coordinate of a space with a bracket.
 
     Attributes:
         name: As declared, e.g. ``Omega``.
-        role: ``"velocity"``, ``"momentum"`` or ``"advected"``.
-        shape: ``()`` for a block of one basis element, else ``(n,)``.
+        role: ``"velocity"``, ``"momentum"``, ``"advected"`` or ``"coordinate"``.
+        shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
         block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
         representation: How the algebra acts on an advected quantity; None otherwise.
         unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
         doc: Free text for documents.
+        form: One of `FORMS` if the components are the entries of a matrix, else "".
     """
 
     name: str
@@ -58,11 +115,22 @@ class Variable:
     representation: Representation | None = None
     unit: str = "1"
     doc: str = ""
+    form: str = ""
 
     @property
     def components(self) -> tuple[str, ...]:
         """Names of the components, in order."""
-        return component_names(self.name, self.shape)
+        return component_names(self.name, self.shape, self.form)
+
+    @property
+    def matrix_size(self) -> int | None:
+        """Rows of the matrix that it is in formulas; None for scalars and vectors."""
+        return matrix_size(self.shape[0], self.form) if self.form else None
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas: that of the whole matrix where there is a form."""
+        return self.shape if self.matrix_size is None else (self.matrix_size,) * 2
 
 
 @dataclass(frozen=True)
@@ -89,6 +157,11 @@ class Parameter:
     def components(self) -> tuple[str, ...]:
         """Names of the components, in order."""
         return component_names(self.name, self.shape)
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas."""
+        return self.shape
 
 
 @dataclass(frozen=True)
@@ -121,6 +194,24 @@ class Observable:
 
 
 @dataclass(frozen=True)
+class Poisson:
+    """A declared Poisson bracket of the coordinates.
+
+    Attributes:
+        kind: ``"nambu"``, ``"brackets"`` or ``"canonical"``.
+        functions: The n - 2 distinguished functions of a Nambu bracket, else empty.
+        entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
+            the declared brackets, or the magnetic terms of a canonical one.
+        pairs: ``(i, j)`` with ``{x_i, x_j} = 1`` of a canonical bracket, else empty.
+    """
+
+    kind: str
+    functions: tuple[Formula, ...] = ()
+    entries: tuple[tuple[int, int, Formula], ...] = ()
+    pairs: tuple[tuple[int, int], ...] = ()
+
+
+@dataclass(frozen=True)
 class Spec:
     """One declared system.
 
@@ -129,14 +220,15 @@ class Spec:
         title: Free text, like ``source`` and ``description``; for documents only.
         license: SPDX expression of the spec's own licence, or "".
         routes: Routes to derive by; the first is emitted, the others are proved equal to it.
-        algebra: The Lie algebra of the velocities.
-        invariance: ``"left"`` (body) or ``"right"`` (space).
-        variables: Velocities, momenta and advected quantities in declared order.
+        algebra: The Lie algebra of the velocities; None where a Poisson bracket is declared.
+        poisson: The declared bracket of the coordinates; None where there is an algebra.
+        invariance: ``"left"`` (body, and without an algebra) or ``"right"`` (space).
+        variables: Velocities, momenta, advected quantities or coordinates in declared order.
         parameters: Constants in declared order.
         lagrangian: l of the velocities and advected quantities, or None.
-        hamiltonian: h of the momenta and advected quantities, or None.
+        hamiltonian: h of the state, or None.
         observables: Declared scalars in order.
-        casimirs: Claimed Casimirs of the Lie-Poisson bracket.
+        casimirs: Claimed Casimirs of the bracket.
         conserved: Claimed integrals of the motion.
         path: File the spec was read from, for messages only.
         sha256: Hash of the file's bytes.
@@ -148,7 +240,8 @@ class Spec:
     description: str
     license: str
     routes: tuple[str, ...]
-    algebra: LieAlgebra
+    algebra: LieAlgebra | None
+    poisson: Poisson | None
     invariance: str
     variables: tuple[Variable, ...]
     parameters: tuple[Parameter, ...]
@@ -166,5 +259,6 @@ class Spec:
 
     @property
     def state(self) -> tuple[Variable, ...]:
-        """Momenta, then advected quantities, each in declared order: the state of the kernels."""
-        return self.having_role("momentum") + self.having_role("advected")
+        """Momenta, then advected quantities, or else the coordinates: the state of the kernels."""
+        roles = ("momentum", "advected", "coordinate")
+        return tuple(variable for role in roles for variable in self.having_role(role))

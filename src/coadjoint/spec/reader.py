@@ -2,8 +2,9 @@
 
 Comes in: a path, or a text. Goes out: a frozen, checked `Spec`; or an error with file, line,
 column, source line and likely fix. Faults are looked for in the order in which they are worth
-reporting: the file, its form (`validate`), the algebra and what is declared over it (`structure`),
-the names and routes (`consistency`), the formulas (`formulas`).
+reporting: the file, its form (`validate`), the parameters, the algebra (`algebras`) and what is
+declared over it (`structure`) or a bracket without one (`poisson`), the names and routes
+(`consistency`), the formulas (`formulas`).
 Read next: `coadjoint.derive.setting`.
 """
 
@@ -16,22 +17,29 @@ from collections.abc import Sequence
 from hashlib import sha256
 from pathlib import Path
 
+from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.limits import SPEC_BYTES
-from coadjoint.spec.consistency import check_blocks, check_names, check_routes, check_sizes
+from coadjoint.spec.algebras import read_algebra
+from coadjoint.spec.coefficients import Scalars
+from coadjoint.spec.consistency import (
+    check_blocks,
+    check_names,
+    check_routes,
+    check_sizes,
+    check_tables,
+)
 from coadjoint.spec.faults import did_you_mean
 from coadjoint.spec.formulas import Scope, make_scope, read_formula
 from coadjoint.spec.model import Formula, Observable, Parameter, Spec, Variable
 from coadjoint.spec.names import system_refusal
+from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
+from coadjoint.spec.representations import read_representations
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
-from coadjoint.spec.structure import (
-    read_algebra,
-    read_parameter,
-    read_representations,
-    read_variable,
-)
+from coadjoint.spec.structure import read_parameter, read_variable
 from coadjoint.spec.validate import validate
 
 
@@ -84,18 +92,20 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     plain = text.replace("\r\n", "\n")
     source = Source(os.fspath(path), plain, scan(plain))
     file = validate(source)
-    algebra = read_algebra(source, file.algebra, name)
-    representations = read_representations(source, file.representations, algebra)
-    variables = tuple(
-        read_variable(source, variable, part, algebra, representations)
-        for variable, part in file.variables.items()
-    )
+    check_tables(source, file)
     parameters = tuple(
         read_parameter(source, parameter, part) for parameter, part in file.parameters.items()
     )
+    check_sizes(source, (), parameters)
+    check_names(source, (), parameters, ())  # the algebra may depend on them
+    algebra, variables = _read_structure(source, file, name, Scalars(parameters))
     check_sizes(source, variables, parameters)
     check_names(source, variables, parameters, file.observables)
-    check_blocks(source, variables, algebra)
+    if algebra is not None:
+        check_blocks(source, variables, algebra)
+    poisson = None
+    if file.poisson is not None:
+        poisson = read_poisson(source, file.poisson, variables, parameters)
     check_routes(source, file, variables, algebra)
     formulas = _Formulas(source, file, variables, parameters)
     return Spec(
@@ -106,7 +116,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         license=file.license,
         routes=tuple(file.routes),
         algebra=algebra,
-        invariance=file.algebra.invariance,
+        poisson=poisson,
+        invariance=file.algebra.invariance if file.algebra is not None else "left",
         variables=variables,
         parameters=parameters,
         lagrangian=formulas.lagrangian(),
@@ -117,6 +128,21 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         path=Path(path),
         sha256=sha256(data).hexdigest(),
     )
+
+
+def _read_structure(
+    source: Source, file: SpecFile, name: str, scalars: Scalars
+) -> tuple[LieAlgebra | None, tuple[Variable, ...]]:
+    """The algebra, where there is one, and the variables over it."""
+    algebra, representations = None, dict[str, Representation]()
+    if file.algebra is not None:
+        algebra = read_algebra(source, file.algebra, name, scalars)
+        representations = read_representations(source, file.representations, algebra, scalars)
+    variables = tuple(
+        read_variable(source, variable, part, algebra, representations)
+        for variable, part in file.variables.items()
+    )
+    return algebra, variables
 
 
 class _Formulas:
@@ -131,6 +157,9 @@ class _Formulas:
     ) -> None:
         self.source, self.file = source, file
         self.quantities: tuple[Variable | Parameter, ...] = (*variables, *parameters)
+        without = file.poisson is not None  # an algebra
+        self.state = ("coordinate",) if without else ("momentum", "advected")
+        self.motion = self.state if without else ("velocity", *self.state)
 
     def lagrangian(self) -> Formula | None:
         if self.file.lagrangian is None:
@@ -141,12 +170,11 @@ class _Formulas:
     def hamiltonian(self) -> Formula | None:
         if self.file.hamiltonian is None:
             return None
-        scope = make_scope("a Hamiltonian", ("momentum", "advected"), self.quantities)
+        scope = make_scope("a Hamiltonian", self.state, self.quantities)
         return read_formula(self.source, ("hamiltonian", "h"), self.file.hamiltonian.h, scope)
 
     def observables(self) -> tuple[Observable, ...]:
-        roles = ("velocity", "momentum", "advected")
-        scope, found = make_scope("an observable", roles, self.quantities), []
+        scope, found = make_scope("an observable", self.motion, self.quantities), []
         for name, part in self.file.observables.items():
             key: KeyPath = ("observables", name)
             # An observable may be its expression alone.
@@ -157,13 +185,12 @@ class _Formulas:
         return tuple(found)
 
     def casimirs(self) -> tuple[Formula, ...]:
-        scope = make_scope("a Casimir", ("momentum", "advected"), self.quantities)
+        scope = make_scope("a Casimir", self.state, self.quantities)
         return self._claims("casimirs", self.file.claims.casimirs, scope)
 
     def conserved(self) -> tuple[Formula, ...]:
-        roles = ("velocity", "momentum", "advected")
         named = ("energy", *self.file.observables)
-        scope = make_scope("an integral", roles, self.quantities, named)
+        scope = make_scope("an integral", self.motion, self.quantities, named)
         return self._claims("conserved", self.file.claims.conserved, scope)
 
     def _claims(self, kind: str, texts: Sequence[str], scope: Scope) -> tuple[Formula, ...]:

@@ -7,82 +7,26 @@ Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-import re
-from fractions import Fraction
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    PlainValidator,
-    WithJsonSchema,
-    model_validator,
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from coadjoint.spec.values import (
+    BRACKET_PATTERN,
+    NAME_PATTERN,
+    POISSON_PATTERN,
+    Block,
+    Entry,
+    Length,
+    License,
+    Matrix,
+    Names,
+    Numbers,
+    Prose,
+    Title,
+    Unit,
+    is_unique,
 )
-
-from coadjoint.limits import STATE_COMPONENTS, TITLE_CHARACTERS, UNIT_CHARACTERS
-from coadjoint.spec.decimals import NUMBER_SCHEMA, read_number
-
-_NAME_PATTERN = "^[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*$"
-# Printed in comments of generated code: no text that opens or closes one.
-_UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.()-]+", re.ASCII)
-_LICENSE = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*", re.ASCII)
-_BRACKET_PATTERN = r"^\[ *[A-Za-z]\w* *, *[A-Za-z]\w* *\]$"
-
-
-def _is_printable(text: str) -> str:
-    if not text.isprintable():
-        raise ValueError("one line of printable text")
-    return text
-
-
-def _is_prose(text: str) -> str:
-    if not all(line.isprintable() for line in text.replace("\t", " ").split("\n")):
-        raise ValueError("printable text, in one line or several")
-    return text
-
-
-def _is_unit(text: str) -> str:
-    if not _UNIT.fullmatch(text):
-        raise ValueError("letters, digits, space and ^ / * . ( ) -, as in 'kg m^2/s'")
-    return text
-
-
-def _is_license(text: str) -> str:
-    if text and not _LICENSE.fullmatch(text):
-        raise ValueError("an SPDX expression such as 'BSD-3-Clause'")
-    return text
-
-
-def _is_unique(names: list[str]) -> list[str]:
-    if len(set(names)) != len(names):
-        raise ValueError("no entry twice")
-    return names
-
-
-def _number(value: object) -> Fraction:
-    try:
-        return read_number(value)
-    except ValueError as error:
-        raise ValueError(f"an exact number such as 2, 0.5 or '1/3'; this one {error}") from None
-
-
-def _numbers(value: object) -> Any:
-    """A number, or lists of numbers, nested at most twice."""
-    if isinstance(value, list):
-        return [
-            [_number(entry) for entry in part] if isinstance(part, list) else _number(part)
-            for part in value
-        ]
-    return _number(value)
-
-
-def _block(value: object) -> str | list[str]:
-    names = [value] if isinstance(value, str) else value
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names) or not names:
-        raise ValueError("the name of a block, or a list of names of the algebra's basis")
-    return value if isinstance(value, str) else list(names)
 
 
 def _no_titles(schema: dict[str, Any]) -> None:
@@ -91,35 +35,7 @@ def _no_titles(schema: dict[str, Any]) -> None:
         part.pop("title", None)
 
 
-_NUMBER_OR_LISTS: dict[str, Any] = {
-    "anyOf": [
-        *NUMBER_SCHEMA["anyOf"],
-        {
-            "type": "array",
-            "items": {
-                "anyOf": [
-                    *NUMBER_SCHEMA["anyOf"],
-                    {"type": "array", "items": NUMBER_SCHEMA},
-                ]
-            },
-        },
-    ]
-}
-_TEXTS: dict[str, Any] = {
-    "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]
-}
-
-Number = Annotated[Fraction, PlainValidator(_number), WithJsonSchema(NUMBER_SCHEMA)]
-Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_NUMBER_OR_LISTS)]
-Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]
-Matrix = list[list[Number]]
-Prose = Annotated[str, AfterValidator(_is_prose)]
-Unit = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_unit)]
-Names = Annotated[list[str], Field(min_length=1), AfterValidator(_is_unique)]
-Length = Annotated[int, Field(ge=1, le=STATE_COMPONENTS)]
-
-
-def _named(pattern: str = _NAME_PATTERN) -> dict[str, Any]:
+def _named(pattern: str = NAME_PATTERN) -> dict[str, Any]:
     """What a JSON Schema says about the keys of a table of names."""
     return {"propertyNames": {"pattern": pattern}}
 
@@ -132,35 +48,195 @@ class Part(BaseModel):
     )
 
 
-class AlgebraPart(Part):
-    """The Lie algebra of the velocities: by name, by brackets, or by matrices."""
+def _also_text(schema: dict[str, Any]) -> None:
+    """The table may be a text alone."""
+    _no_titles(schema)
+    table = dict(schema)
+    schema.clear()
+    schema["anyOf"] = [{"type": "string"}, table]
 
-    name: str | None = Field(None, description="an algebra by name, such as 'so(3)' or 'se(3)'")
+
+#: The ways to declare an algebra, of which each takes exactly one.
+WAYS = (
+    "name",
+    "brackets",
+    "matrices",
+    "direct_sum",
+    "semidirect",
+    "extension",
+    "leibniz",
+    "complexification",
+    "subalgebra",
+)
+
+
+class _Algebra(Part):
+    """The ways to declare a Lie algebra."""
+
+    name: str | None = Field(None, description="an algebra by name, such as 'so(3)' or 'sl(2,R)'")
     basis: Names | None = Field(None, description="names of the basis, in order")
     brackets: dict[str, str] | None = Field(
         None,
         description="brackets such as '[e1, e2]' = 'e3', each pair once; the others are 0",
-        json_schema_extra=_named(_BRACKET_PATTERN),
+        json_schema_extra=_named(BRACKET_PATTERN),
     )
     matrices: dict[str, Matrix] | None = Field(
         None, description="a matrix for each name of the basis", json_schema_extra=_named()
     )
-    invariance: Literal["left", "right"] = Field(
-        "left", description="'left' (body frame, the default) or 'right' (space frame)"
+    direct_sum: Annotated[list[OperandPart], Field(min_length=2)] | None = Field(
+        None, description="algebras that commute with each other, as ['so(3)', 'so(3)']"
+    )
+    semidirect: SemidirectPart | None = Field(
+        None, description="an algebra with the spaces, or the ideal, that it acts on"
+    )
+    extension: ExtensionPart | None = Field(None, description="a central extension by a 2-cocycle")
+    leibniz: LeibnizPart | None = Field(
+        None, description="an algebra with polynomials in eps, eps^order = 0, as coefficients"
+    )
+    complexification: OperandPart | None = Field(
+        None, description="an algebra with complex coefficients, as a real algebra"
+    )
+    subalgebra: SubalgebraPart | None = Field(
+        None, description="the span of some vectors of an algebra"
     )
     blocks: dict[str, Names] | None = Field(
         None, description="named parts of the basis", json_schema_extra=_named()
     )
 
     @model_validator(mode="after")
-    def _one_way(self) -> AlgebraPart:
-        ways = [w for w in ("name", "brackets", "matrices") if getattr(self, w) is not None]
+    def _one_way(self) -> _Algebra:
+        ways = [way for way in WAYS if getattr(self, way) is not None]
         if len(ways) != 1:
-            raise ValueError("exactly one of name, brackets and matrices")
+            raise ValueError(f"exactly one of {', '.join(WAYS)}")
         if self.brackets is not None and self.basis is None:
             raise ValueError("a basis beside the brackets, as basis = ['e1', 'e2', 'e3']")
         if self.name is not None and (self.basis is not None or self.blocks is not None):
             raise ValueError("no basis and no blocks beside a name, which has its own")
+        if self.basis is not None and ways[0] not in ("brackets", "matrices"):
+            raise ValueError(f"no basis beside {ways[0]}, which makes its own")
+        return self
+
+
+class AlgebraPart(_Algebra):
+    """The Lie algebra of the velocities."""
+
+    invariance: Literal["left", "right"] = Field(
+        "left", description="'left' (body frame, the default) or 'right' (space frame)"
+    )
+
+
+class OperandPart(_Algebra):
+    """An algebra that a larger one is made of: its name, or a table."""
+
+    model_config = ConfigDict(json_schema_extra=_also_text)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: object) -> object:
+        return {"name": value} if isinstance(value, str) else value
+
+
+class ActionPart(Part):
+    """A linear action: the name of a representation, or a table of matrices."""
+
+    model_config = ConfigDict(json_schema_extra=_also_text)
+
+    name: str | None = Field(None, description="a representation by name, such as 'vector'")
+    matrices: dict[str, Matrix] | None = Field(
+        None,
+        description="a matrix for each name of the basis; those left out act as zero",
+        json_schema_extra=_named(),
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: object) -> object:
+        return {"name": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ActionPart:
+        if (self.name is None) == (not self.matrices):
+            raise ValueError("the name of a representation, or matrices")
+        return self
+
+
+class SemidirectPart(Part):
+    """An algebra that acts on vector spaces, or on an ideal."""
+
+    algebra: OperandPart = Field(description="the algebra that acts")
+    representations: dict[str, ActionPart] | None = Field(
+        None,
+        description="how it acts on spaces, by the lead of their names, as p of p1 p2 p3",
+        json_schema_extra=_named(),
+    )
+    ideal: OperandPart | None = Field(None, description="the algebra that it acts on")
+    action: ActionPart | None = Field(None, description="how it acts on the ideal: derivations")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SemidirectPart:
+        if bool(self.representations) == (self.ideal is not None):
+            raise ValueError("either representations or an ideal")
+        if (self.ideal is None) != (self.action is None):
+            raise ValueError("ideal and action together")
+        return self
+
+
+class ExtensionPart(Part):
+    """A central extension: ``[e_i, e_j]`` gains ``cocycle(e_i, e_j)`` times the center."""
+
+    algebra: OperandPart = Field(description="the algebra that is extended")
+    center: str = Field("Z", description="name of the new vector of the basis")
+    cocycle: dict[str, Entry] = Field(
+        description="values such as '[K1, P1]' = 1, each pair once; the others are 0",
+        json_schema_extra=_named(BRACKET_PATTERN),
+    )
+
+
+class LeibnizPart(Part):
+    """The algebra with coefficients in R[eps] / eps^order."""
+
+    algebra: OperandPart = Field(description="the algebra of eps = 0")
+    order: Length = Field(description="the power of eps that is 0")
+
+
+class SubalgebraPart(Part):
+    """The span of some vectors, which must be closed under the bracket."""
+
+    algebra: OperandPart = Field(description="the algebra that holds it")
+    basis: dict[str, str] = Field(
+        min_length=1,
+        description="vectors by name, such as X1 = 'E12 + E34'",
+        json_schema_extra=_named(),
+    )
+
+
+class PoissonPart(Part):
+    """A Poisson bracket of coordinates, in the place of an algebra."""
+
+    nambu: Annotated[list[str], Field(min_length=1)] | None = Field(
+        None, description="the n - 2 distinguished functions of n coordinates"
+    )
+    brackets: dict[str, str] | None = Field(
+        None,
+        description="brackets such as '{X1, X2}' = '4*X3', each pair once; the others are 0",
+        json_schema_extra=_named(POISSON_PATTERN),
+    )
+    canonical: list[Annotated[list[str], Field(min_length=2, max_length=2)]] | None = Field(
+        None, description="pairs of a position and its momentum, as [['q', 'p']]"
+    )
+    magnetic: dict[str, str] | None = Field(
+        None,
+        description="brackets of canonical momenta, such as '{p1, p2}' = 'B*q3'",
+        json_schema_extra=_named(POISSON_PATTERN),
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> PoissonPart:
+        ways = [self.nambu, self.brackets, self.canonical]
+        if sum(way is not None for way in ways) != 1:
+            raise ValueError("exactly one of nambu, brackets and canonical")
+        if self.magnetic is not None and self.canonical is None:
+            raise ValueError("magnetic terms beside canonical alone")
         return self
 
 
@@ -175,10 +251,10 @@ class RepresentationPart(Part):
 
 
 class VariablePart(Part):
-    """A velocity, a momentum or an advected quantity."""
+    """A velocity, a momentum, an advected quantity or a coordinate."""
 
-    role: Literal["velocity", "momentum", "advected"] = Field(
-        description="'velocity', 'momentum' or 'advected'"
+    role: Literal["velocity", "momentum", "advected", "coordinate"] = Field(
+        description="'velocity', 'momentum', 'advected'; 'coordinate' beside [poisson]"
     )
     block: Block | None = Field(
         None, description="the block of the algebra that it spans; by default all of it"
@@ -186,7 +262,15 @@ class VariablePart(Part):
     representation: str | None = Field(
         None,
         description="how the algebra acts on an advected quantity: 'vector', 'adjoint', "
-        "'coadjoint' or a declared one",
+        "'coadjoint' and others, or a declared one",
+    )
+    shape: Annotated[list[Length], Field(max_length=1)] | None = Field(
+        None, description="of a coordinate: [] for a scalar (the default), [n] for n components"
+    )
+    form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
+        None,
+        description="the square matrix that it is in formulas: its components are the entries "
+        "above the diagonal, those with the diagonal, or all, row by row",
     )
     unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")
@@ -215,15 +299,7 @@ class LagrangianPart(Part):
 class HamiltonianPart(Part):
     """The reduced Hamiltonian."""
 
-    h: str = Field(description="h of momenta, advected quantities and parameters")
-
-
-def _also_text(schema: dict[str, Any]) -> None:
-    """An observable may be its expression alone."""
-    _no_titles(schema)
-    table = dict(schema)
-    schema.clear()
-    schema["anyOf"] = [{"type": "string"}, table]
+    h: str = Field(description="h of momenta, advected quantities or coordinates, and parameters")
 
 
 class ObservablePart(Part):
@@ -244,9 +320,7 @@ class ObservablePart(Part):
 class ClaimsPart(Part):
     """What is claimed of the motion and proved at every regeneration."""
 
-    casimirs: list[str] = Field(
-        [], description="Casimirs of the bracket: scalars of momenta and advected quantities"
-    )
+    casimirs: list[str] = Field([], description="Casimirs of the bracket: scalars of the state")
     conserved: list[str] = Field(
         [], description="integrals of the motion; 'energy' and observables have their names here"
     )
@@ -259,20 +333,21 @@ def _no_claims() -> ClaimsPart:
 class SpecFile(Part):
     """A declared system: its algebra, its variables and parameters, its energy."""
 
-    title: Annotated[str, Field(max_length=TITLE_CHARACTERS), AfterValidator(_is_printable)] = (
-        Field(description="the system's name as a book has it")
-    )
+    title: Title = Field(description="the system's name as a book has it")
     source: Prose = Field("", description="where the equations can be looked up")
     description: Prose = Field("", description="free text for documents")
-    license: Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_license)] = Field(
+    license: License = Field(
         "", description="SPDX expression of the licence of this file and of what is generated"
     )
     routes: Annotated[
-        list[Literal["euler-poincare", "lie-poisson"]],
+        list[Literal["euler-poincare", "lie-poisson", "nambu", "poisson"]],
         Field(min_length=1),
-        AfterValidator(_is_unique),
+        AfterValidator(is_unique),
     ] = Field(description="routes to derive by; the first is emitted, the others proved equal")
-    algebra: AlgebraPart = Field(description="the Lie algebra of the velocities")
+    algebra: AlgebraPart | None = Field(None, description="the Lie algebra of the velocities")
+    poisson: PoissonPart | None = Field(
+        None, description="a Poisson bracket of coordinates, where there is no algebra"
+    )
     representations: dict[str, RepresentationPart] = Field(
         {}, description="declared representations", json_schema_extra=_named()
     )

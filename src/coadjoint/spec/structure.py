@@ -1,252 +1,106 @@
-"""Structure: the algebra, its representations, and the variables and parameters over it.
+"""Structure: the variables and parameters of a spec, with their shapes.
 
-Comes in: the validated tables. Goes out: records of `coadjoint.spec.model` and the exact algebra
-that they refer to. Read next: `coadjoint.spec.formulas`.
+Comes in: the validated tables, and the algebra where there is one. Goes out: records of
+`coadjoint.spec.model`. Read next: `coadjoint.spec.poisson` and `coadjoint.spec.formulas`.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping
 from fractions import Fraction
+from math import prod
 
-from coadjoint.algebra.catalogue import algebra_by_name, representation_by_name
-from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, from_brackets, from_matrices
+from coadjoint.algebra.catalogue import REPRESENTATIONS
+from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
-from coadjoint.errors import AlgebraError, LimitError
-from coadjoint.limits import MATRIX_ENTRIES, STATE_COMPONENTS
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.formulas import read_combination
-from coadjoint.spec.model import Parameter, Shape, Variable
-from coadjoint.spec.names import NAME
+from coadjoint.spec.model import Parameter, Shape, Variable, matrix_size
 from coadjoint.spec.positions import KeyPath
-from coadjoint.spec.schema import AlgebraPart, ParameterPart, RepresentationPart, VariablePart
+from coadjoint.spec.representations import places_of, representation_of
+from coadjoint.spec.schema import ParameterPart, VariablePart
 from coadjoint.spec.source import Source
 
-_BRACKET = re.compile(r"\[ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\]", re.ASCII)
-_COMMON = ("vector", "adjoint", "coadjoint")
-
-
-@contextmanager
-def _located(source: Source, key: KeyPath) -> Iterator[None]:
-    """Tell where in the file an error about an algebra comes from."""
-    try:
-        yield
-    except AlgebraError as error:
-        raise source.fault(key, str(error), kind=AlgebraError, **error.parts) from None
-
-
-# -- the algebra ----------------------------------------------------------------------------------
-
-
-def read_algebra(source: Source, part: AlgebraPart, system: str) -> LieAlgebra:
-    """The algebra of a spec; one declared by brackets or matrices takes the system's name.
-
-    Raises:
-        AlgebraError: The brackets or matrices make no Lie algebra, or the name is unknown.
-        SpecError: A name of the basis is unknown, or a matrix has the wrong size.
-    """
-    if part.name is not None:
-        with _located(source, ("algebra", "name")):
-            return algebra_by_name(part.name)
-    basis = tuple(part.basis or part.matrices or ())
-    _check_basis(source, basis)
-    blocks = {
-        name: _places(source, ("algebra", "blocks", name), names, basis)
-        for name, names in (part.blocks or {}).items()
-    }
-    if part.brackets is not None:
-        key: KeyPath = ("algebra", "brackets")
-        brackets = {
-            _pair(source, (*key, pair), pair, basis): read_combination(
-                source, (*key, pair), text, basis
-            )
-            for pair, text in part.brackets.items()
-        }
-        with _located(source, key):
-            return from_brackets(system, basis, brackets, blocks)
-    key = ("algebra", "matrices")
-    matrices, _ = _matrices(source, key, part.matrices or {}, basis)
-    _check_complete(source, key, matrices, basis)
-    with _located(source, key):
-        return from_matrices(system, basis, [matrices[name] for name in basis], blocks)
-
-
-def _check_basis(source: Source, basis: Sequence[str]) -> None:
-    key: KeyPath = ("algebra", "basis")
-    if len(basis) > STATE_COMPONENTS:
-        raise source.fault(
-            key,
-            f"the basis has {len(basis)} vectors",
-            found=len(basis),
-            expected=f"at most {STATE_COMPONENTS} (STATE_COMPONENTS)",
-            kind=LimitError,
-            limit="STATE_COMPONENTS",
-        )
-    for place, name in enumerate(basis):
-        if not NAME.fullmatch(name):
-            raise source.fault(
-                (*key, place),
-                f"{name!a} is not a name",
-                found=name,
-                expected="a letter, then letters and digits, such as e1",
-            )
-
-
-def _places(
-    source: Source, key: KeyPath, names: Sequence[str], basis: Sequence[str]
-) -> tuple[int, ...]:
-    """Places of names in the basis."""
-    for place, name in enumerate(names):
-        if name not in basis:
-            raise source.fault(
-                (*key, place),
-                f"{name!a} is not in the basis",
-                found=name,
-                expected=f"names of the basis: {listed(basis)}",
-                hint=did_you_mean(name, basis),
-            )
-    return tuple(basis.index(name) for name in names)
-
-
-def _pair(source: Source, key: KeyPath, text: str, basis: Sequence[str]) -> tuple[int, int]:
-    """The places of e1 and e2 in a key ``[e1, e2]``."""
-    found = _BRACKET.fullmatch(text)
-    unknown = [name for name in found.groups() if name not in basis] if found else [text]
-    if found is None or unknown:
-        raise source.fault(
-            key,
-            f"{text!a} is no bracket of the basis",
-            found=unknown[0],
-            expected="a key such as '[e1, e2]' with names of the basis",
-            hint=did_you_mean(unknown[0], basis),
-            at=source.positions.key(key),
-        )
-    return basis.index(found[1]), basis.index(found[2])
-
-
-# -- matrices -------------------------------------------------------------------------------------
-
-
-def _matrices(
-    source: Source,
-    key: KeyPath,
-    tables: Mapping[str, list[list[Fraction]]],
-    basis: Sequence[str],
-) -> tuple[dict[str, SparseMatrix], int]:
-    """Sparse matrices by name of the basis, and their common size."""
-    size = len(next(iter(tables.values()), []))
-    entries = sum(len(row) for rows in tables.values() for row in rows)
-    if entries > MATRIX_ENTRIES:
-        raise source.fault(
-            key,
-            f"the matrices have {entries} numbers",
-            found=entries,
-            expected=f"at most {MATRIX_ENTRIES} (MATRIX_ENTRIES)",
-            hint="Declare the algebra by its brackets.",
-            kind=LimitError,
-            limit="MATRIX_ENTRIES",
-        )
-    for name, rows in tables.items():
-        if name not in basis:
-            raise source.fault(
-                (*key, name),
-                f"{name!a} is not in the basis",
-                found=name,
-                expected=f"names of the basis: {listed(basis)}",
-                hint=did_you_mean(name, basis),
-                at=source.positions.key((*key, name)),
-            )
-        lengths = [len(row) for row in rows]
-        if not size or lengths != [size] * size:
-            raise source.fault(
-                (*key, name),
-                f"the matrix of {name!r} has rows of {listed(map(str, lengths))} numbers",
-                found=listed(map(str, lengths)),
-                expected=f"{size or 1} rows of {size or 1} numbers, like the first matrix",
-            )
-    return {name: _sparse(rows) for name, rows in tables.items()}, size
-
-
-def _sparse(rows: list[list[Fraction]]) -> SparseMatrix:
-    return {(r, c): x for r, row in enumerate(rows) for c, x in enumerate(row) if x != 0}
-
-
-def _check_complete(
-    source: Source, key: KeyPath, matrices: Mapping[str, SparseMatrix], basis: Sequence[str]
-) -> None:
-    for name in basis:
-        if name not in matrices:
-            raise source.fault(
-                key,
-                f"the matrix of {name!r} is missing",
-                found=name,
-                expected=f"a matrix for each of {listed(basis)}",
-                hint=f"Write {name} = [[...], [...]] among the matrices.",
-            )
-
-
-def read_representations(
-    source: Source, parts: Mapping[str, RepresentationPart], algebra: LieAlgebra
-) -> dict[str, Representation]:
-    """The declared representations by name.
-
-    Raises:
-        AlgebraError: The matrices do not commute like the algebra.
-        SpecError: A name is taken or unknown, or a matrix has the wrong size.
-    """
-    found = {}
-    for name, part in parts.items():
-        key: KeyPath = ("representations", name)
-        if not NAME.fullmatch(name) or name in _COMMON:
-            raise source.fault(
-                key,
-                f"{name!a} cannot name a representation",
-                found=name,
-                expected=f"a name other than {', '.join(_COMMON)}, which every algebra has",
-                at=source.positions.key(key),
-            )
-        matrices, size = _matrices(source, (*key, "matrices"), part.matrices, algebra.basis)
-        with _located(source, key):
-            acting = tuple(matrices.get(b, {}) for b in algebra.basis)
-            found[name] = Representation(algebra, name, size, acting)
-    return found
-
-
-# -- variables and parameters ---------------------------------------------------------------------
+#: The key that says what a variable of each role is, and what it goes with, for messages.
+_OWN_KEYS = {"block": "velocities and momenta", "representation": "advected quantities"}
+_OWN_KEYS |= {"shape": "coordinates"}
+_KEY_OF = {"velocity": "block", "momentum": "block", "advected": "representation"}
+_KEY_OF |= {"coordinate": "shape"}
 
 
 def read_variable(
     source: Source,
     name: str,
     part: VariablePart,
-    algebra: LieAlgebra,
+    algebra: LieAlgebra | None,
     representations: Mapping[str, Representation],
 ) -> Variable:
-    """A variable with its place in the algebra.
+    """A variable with its place in the algebra, or its shape where there is none.
 
     Raises:
-        SpecError: The block or the representation is unknown, or does not go with the role.
+        SpecError: A key does not go with the role, the role not with the spec, the block or the
+            representation is unknown, or the components fill no matrix of the form.
     """
     key: KeyPath = ("variables", name)
-    alien = "block" if part.role == "advected" else "representation"
-    if getattr(part, alien) is not None:
-        rightful = "velocities and momenta" if alien == "block" else "advected quantities"
-        raise source.fault(
-            (*key, alien),
-            f"the {part.role} {name!r} has a {alien}",
-            found=str(getattr(part, alien)),
-            expected=f"{alien} for {rightful} alone",
-            hint=f"Remove {alien}.",
-        )
-    if part.role == "advected":
+    for alien in _OWN_KEYS.keys() - {_KEY_OF[part.role]}:
+        if getattr(part, alien) is not None:
+            raise _alien_key(source, (*key, alien), part)
+    block: tuple[int, ...] = ()
+    representation = None
+    if part.role == "coordinate" or algebra is None:
+        _check_role(source, key, part, algebra)
+        count = prod(part.shape or [1])
+        flat = bool(part.shape)
+    elif part.role == "advected":
         representation = _representation(source, key, part, algebra, representations)
-        shape: Shape = () if representation.dimension == 1 else (representation.dimension,)
-        return Variable(name, part.role, shape, (), representation, part.unit, part.doc)
-    block = _block(source, (*key, "block"), part, algebra)
-    shape = () if len(block) == 1 else (len(block),)
-    return Variable(name, part.role, shape, block, None, part.unit, part.doc)
+        count = representation.dimension
+        flat = count > 1
+    else:
+        block = _block(source, (*key, "block"), part, algebra)
+        count, flat = len(block), len(block) > 1
+    form = part.form or ""
+    if form and matrix_size(count, form) is None:
+        raise _misfit(source, (*key, "form"), count, form)
+    shape: Shape = (count,) if flat or form else ()
+    return Variable(name, part.role, shape, block, representation, part.unit, part.doc, form)
+
+
+def _alien_key(source: Source, key: KeyPath, part: VariablePart) -> CoadjointError:
+    *_, name, alien = key
+    return source.fault(
+        key,
+        f"the {part.role} {name!r} has a {alien}",
+        found=str(getattr(part, str(alien))),
+        expected=f"{alien} for {_OWN_KEYS[str(alien)]} alone",
+        hint=f"Remove {alien}.",
+    )
+
+
+def _check_role(
+    source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
+) -> None:
+    """Coordinates go with [poisson], the other roles with [algebra]."""
+    if (part.role == "coordinate") != (algebra is None):
+        table, roles = ("[poisson]", "the role 'coordinate'")
+        if algebra is not None:
+            table, roles = "[algebra]", "the roles 'velocity', 'momentum' and 'advected'"
+        raise source.fault(
+            (*key, "role"),
+            f"{key[-1]!r} has the role {part.role!r} beside {table}",
+            found=part.role,
+            expected=f"{roles} beside {table}",
+        )
+
+
+def _misfit(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
+    counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
+    return source.fault(
+        key,
+        f"{count} components fill no matrix of the form {form!r}",
+        found=count,
+        expected=f"{counts[form]} components for an n by n matrix",
+        hint="Remove form, or choose another block, representation or shape.",
+    )
 
 
 def _representation(
@@ -257,28 +111,16 @@ def _representation(
     declared: Mapping[str, Representation],
 ) -> Representation:
     """The action on an advected quantity."""
-    known = (*_COMMON, *declared)
-    name = part.representation
-    if name is None:
+    if part.representation is None:
         raise source.fault(
             key,
             f"the advected quantity {key[-1]!r} has no representation",
             found=str(key[-1]),
-            expected=f"representation = one of {listed(known)}",
+            expected=f"representation = one of {listed((*REPRESENTATIONS, *declared))}",
             hint='Write representation = "vector".',
         )
-    if name not in known:
-        raise source.fault(
-            (*key, "representation"),
-            f"there is no representation {name!a}",
-            found=name,
-            expected=f"one of {listed(known)}",
-            hint=did_you_mean(name, known, f"Declare it under [representations.{name}]."),
-        )
-    if name in declared:
-        return declared[name]
-    with _located(source, (*key, "representation")):
-        return representation_by_name(algebra, name)
+    inner = (*key, "representation")
+    return representation_of(source, inner, algebra, part.representation, declared)
 
 
 def _block(
@@ -288,7 +130,7 @@ def _block(
     if part.block is None:
         return tuple(range(algebra.dimension))
     if isinstance(part.block, list):
-        places = _places(source, key, part.block, algebra.basis)
+        places = places_of(source, key, part.block, algebra.basis)
         if len(set(places)) < len(places):
             raise source.fault(
                 key,

@@ -10,8 +10,8 @@ import re
 import tomllib
 from collections.abc import Mapping
 from difflib import get_close_matches
-from types import MappingProxyType
-from typing import Any
+from types import MappingProxyType, NoneType
+from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -22,32 +22,9 @@ from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.decimals import read_float
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.positions import KeyPath, Span
-from coadjoint.spec.schema import (
-    AlgebraPart,
-    ClaimsPart,
-    HamiltonianPart,
-    LagrangianPart,
-    ObservablePart,
-    ParameterPart,
-    Part,
-    RepresentationPart,
-    SpecFile,
-    VariablePart,
-)
+from coadjoint.spec.schema import Part, SpecFile
 from coadjoint.spec.source import Source, joined, shown
 
-_TABLES: Mapping[str | int, type[Part]] = MappingProxyType(
-    {
-        "algebra": AlgebraPart,
-        "representations": RepresentationPart,
-        "variables": VariablePart,
-        "parameters": ParameterPart,
-        "lagrangian": LagrangianPart,
-        "hamiltonian": HamiltonianPart,
-        "observables": ObservablePart,
-        "claims": ClaimsPart,
-    }
-)
 #: Faults that one message shows at the most.
 MOST_FAULTS = 20
 _KINDS = MappingProxyType(
@@ -64,7 +41,7 @@ _HOW_TO_WRITE: Mapping[str | int, str] = MappingProxyType(
     {
         "title": 'Write title = "..." at the top.',
         "routes": 'Write routes = ["euler-poincare", "lie-poisson"] at the top.',
-        "algebra": 'Write [algebra] and below it name = "so(3)".',
+        "algebra": 'Write algebra = "so(3)".',
         "variables": 'Write [variables] and below it Pi = { role = "momentum" }.',
         "role": 'Write { role = "momentum" }.',
         "l": 'Write l = "dot(Omega, diag(I)*Omega)/2".',
@@ -210,7 +187,20 @@ def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
 
 def _keys(path: KeyPath) -> Mapping[str, FieldInfo]:
     """The keys of the table that a path leads into."""
-    return (_TABLES[path[0]] if len(path) > 1 else SpecFile).model_fields
+    kind: Any = SpecFile
+    for key in path[:-1]:
+        is_table = isinstance(kind, type) and issubclass(kind, Part)
+        # A table leads to its key, a list of tables or a table of named ones to its entries.
+        kind = _plain_kind(kind.model_fields[key].annotation if is_table else get_args(kind)[-1])
+    fields: Mapping[str, FieldInfo] = kind.model_fields
+    return fields
+
+
+def _plain_kind(annotation: Any) -> Any:
+    """An annotation without None and without what `Annotated` adds."""
+    if NoneType in get_args(annotation):
+        annotation = get_args(annotation)[0]
+    return get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
 
 
 def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:

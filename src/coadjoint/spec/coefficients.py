@@ -1,0 +1,188 @@
+"""Coefficients: structure constants and matrix entries, numbers or polynomials of parameters.
+
+Comes in: texts such as ``-2*e1 + a*e3/2`` of a bracket and ``a^2/2`` of a matrix. Goes out: exact
+coefficients: fractions, and where a parameter occurs elements of the field of all parameters, which
+decide the Jacobi identity for every value of them at once. SymPy is loaded then and not before.
+Read next: `coadjoint.spec.algebras`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from coadjoint.spec.expressions import read_expression
+from coadjoint.spec.faults import ExpressionError
+from coadjoint.spec.model import Parameter, Shape
+from coadjoint.spec.positions import KeyPath
+from coadjoint.spec.shapes import shape_of
+from coadjoint.spec.sizes import check_size
+from coadjoint.spec.source import Source
+from coadjoint.spec.tree import Binary, Index, Name, Negate, Node, Number, Power, walk_up
+
+if TYPE_CHECKING:
+    from coadjoint.exact import Field
+
+#: A fraction, or an element of the field of the parameters.
+Coefficient = Any
+_Linear = dict[int | None, Coefficient]  # of each basis vector; None for the part without one
+
+_COMBINATION = (
+    "a linear combination of the basis",
+    ("sums of basis names times numbers or polynomials of parameters, such as -2*e1 + e3/2, or 0"),
+)
+_POLYNOMIAL = "a polynomial of parameters", "numbers and parameters with + - * and powers"
+
+
+class Scalars:
+    """The components of the parameters, as exact values from the first use on.
+
+    Args:
+        parameters: All of the spec, with names that differ.
+    """
+
+    def __init__(self, parameters: Sequence[Parameter] = ()) -> None:
+        self.shapes: dict[str, Shape] = {}
+        self._components: dict[tuple[str, tuple[int, ...]], str] = {}
+        self._positive: list[str] = []
+        for parameter in parameters:
+            self.shapes |= {parameter.name: parameter.shape}
+            places = product(*(range(1, length + 1) for length in parameter.shape))
+            for indices, name in zip(places, parameter.components, strict=True):
+                self.shapes[name] = ()
+                self._components[parameter.name, indices] = self._components[name, ()] = name
+            self._positive += parameter.components if parameter.positive else ()
+
+    def value(self, name: str, indices: tuple[int, ...] = ()) -> Coefficient | None:
+        """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
+        component = self._components.get((name, indices))
+        return None if component is None else self._field[component]
+
+    @cached_property
+    def _field(self) -> Field:
+        from coadjoint.exact import Field  # loads SymPy, which specs with plain numbers never need
+
+        return Field(list(dict.fromkeys(self._components.values())), positive=self._positive)
+
+
+def read_combination(
+    source: Source, key: KeyPath, text: str, basis: Sequence[str], scalars: Scalars
+) -> dict[int, Coefficient]:
+    """A linear combination of basis names, such as ``-2*e1 + a*e3/2``, by place in the basis.
+
+    Raises:
+        SpecError: A syntax error, an unknown name, or no linear combination.
+    """
+    try:
+        total = _Reading(basis, scalars, _COMBINATION).read(text)
+    except ExpressionError as error:
+        raise source.expression_fault(key, error) from None
+    return {place: value for place, value in total.items() if place is not None}
+
+
+def read_coefficient(
+    source: Source, key: KeyPath, entry: Fraction | str, scalars: Scalars
+) -> Coefficient:
+    """A number as it is, or the value of a text such as ``a^2/2``.
+
+    Raises:
+        SpecError: A syntax error, an unknown name, or no polynomial of the parameters.
+    """
+    if isinstance(entry, Fraction):
+        return entry
+    try:
+        return _Reading((), scalars, _POLYNOMIAL).read(entry).get(None, Fraction(0))
+    except ExpressionError as error:
+        raise source.expression_fault(key, error) from None
+
+
+class _Reading:
+    """The reading of one text as a combination of basis vectors, or as a coefficient."""
+
+    def __init__(self, basis: Sequence[str], scalars: Scalars, wanted: tuple[str, str]) -> None:
+        self.places = {name: place for place, name in enumerate(basis)}
+        self.scalars, self.wanted = scalars, wanted
+
+    def read(self, text: str) -> _Linear:
+        """The coefficients of the vectors, or of 1 where the basis is empty."""
+        tree = read_expression(text)
+        scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
+        shape_of(tree, scope)
+        check_size(tree, scope)
+        found: dict[int, _Linear] = {}
+        for node in walk_up(tree):
+            result = self._value(node, found)
+            found[id(node)] = {place: value for place, value in result.items() if value != 0}
+        total = found[id(tree)]
+        if self.places and None in total:
+            raise self._refusal(tree)
+        return total
+
+    def _value(self, node: Node, found: Mapping[int, _Linear]) -> _Linear:
+        match node:
+            case Number(value=value):
+                return {None: value}
+            case Name(name=name) if name in self.places:
+                return {self.places[self._single(node, name)]: Fraction(1)}
+            case Name(name=name):
+                return self._scalar(node, name)
+            case Index(name=name, indices=indices):
+                return self._scalar(node, name, indices)
+            case Negate(operand=operand):
+                return _times(found[id(operand)], Fraction(-1))
+            case Power(base=base, exponent=exponent) if exponent >= 0:
+                self._check_constant(node, found[id(base)])
+                return {None: found[id(base)].get(None, Fraction(0)) ** exponent}
+            case Binary(operator=operator, left=left, right=right):
+                return self._joined(node, operator, found[id(left)], found[id(right)])
+        raise self._refusal(node)
+
+    def _single(self, node: Node, name: str) -> str:
+        """The name of a basis vector that is not also that of a parameter."""
+        if name in self.scalars.shapes:
+            raise ExpressionError(
+                f"{name!r} is both a parameter and in the basis",
+                node.start,
+                node.end,
+                found=name,
+                expected="names that differ",
+                hint="Rename the parameter.",
+            )
+        return name
+
+    def _scalar(self, node: Node, name: str, indices: tuple[int, ...] = ()) -> _Linear:
+        value = self.scalars.value(name, indices)
+        if value is None:
+            raise self._refusal(node)
+        return {None: value}
+
+    def _joined(self, node: Node, operator: str, a: _Linear, b: _Linear) -> _Linear:
+        if operator in "+-":
+            sign = 1 if operator == "+" else -1
+            return {p: a.get(p, Fraction(0)) + sign * b.get(p, Fraction(0)) for p in a | b}
+        if operator == "*" and not b.keys() <= {None}:
+            a, b = b, a
+        self._check_constant(node, b)
+        factor = b.get(None, Fraction(0))
+        if operator == "*":
+            return _times(a, factor)
+        if not isinstance(factor, Fraction) or factor == 0:
+            raise self._refusal(node)  # a quotient of parameters, which may be 0
+        return _times(a, 1 / factor)
+
+    def _check_constant(self, node: Node, value: _Linear) -> None:
+        if not value.keys() <= {None}:
+            raise self._refusal(node)
+
+    def _refusal(self, node: Node) -> ExpressionError:
+        what, expected = self.wanted
+        return ExpressionError(
+            f"this is no {what.removeprefix('a ')}", node.start, node.end, expected=expected
+        )
+
+
+def _times(a: _Linear, factor: Coefficient) -> _Linear:
+    return {place: value * factor for place, value in a.items()}
