@@ -6,23 +6,11 @@ from itertools import combinations
 
 import pytest
 
-from coadjoint.algebra import CATALOGUE, algebra_by_name, from_brackets, from_matrices
+from coadjoint.algebra import algebra_by_name, from_brackets, from_matrices
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import GENERATORS
+from tests.algebra.laws import vector
 from tests.sources.textbook import cross
-
-ALGEBRAS = [name for name in CATALOGUE if not algebra_by_name(name).is_abelian]
-
-
-def vector(n, seed):
-    """A random rational vector."""
-    source = random.Random(seed)
-    return [Fraction(source.randint(-20, 20), source.randint(1, 9)) for _ in range(n)]
-
-
-def pairing(mu, xi):
-    """``<mu, xi>`` in dual bases."""
-    return sum(m * x for m, x in zip(mu, xi, strict=True))
 
 
 def test_so3_bracket_is_the_cross_product():
@@ -53,31 +41,6 @@ def test_se3_ad_star_is_the_one_of_the_book():
     x, m = vector(6, 7), vector(6, 8)
     turned = [a + b for a, b in zip(cross(m[:3], x[:3]), cross(m[3:], x[3:]), strict=True)]
     assert list(se3.ad_star(x, m)) == turned + cross(m[3:], x[:3])
-
-
-@pytest.mark.parametrize("name", ALGEBRAS)
-def test_ad_star_is_dual_to_ad(name):
-    """<ad*_xi mu, eta> = <mu, [xi, eta]>, and ad(xi) is the matrix of the bracket."""
-    algebra = algebra_by_name(name)
-    n = algebra.dimension
-    xi, eta, mu = vector(n, 9), vector(n, 10), vector(n, 11)
-    bracket = algebra.bracket(xi, eta)
-    assert any(bracket), "a zero bracket satisfies everything"
-    assert pairing(algebra.ad_star(xi, mu), eta) == pairing(mu, bracket)
-    assert tuple(pairing(row, eta) for row in algebra.ad(xi)) == bracket
-
-
-@pytest.mark.parametrize("name", ALGEBRAS)
-def test_lie_poisson_tensor_is_minus_the_pairing_with_the_bracket(name):
-    """{mu_i, mu_j} = -<mu, [e_i, e_j]> for every pair of basis vectors."""
-    algebra = algebra_by_name(name)
-    n = algebra.dimension
-    mu = vector(n, 12)
-    unit = [[Fraction(i == j) for j in range(n)] for i in range(n)]
-    tensor = algebra.lie_poisson_tensor(mu)
-    for i in range(n):
-        for j in range(n):
-            assert tensor[i][j] == -pairing(mu, algebra.bracket(unit[i], unit[j]))
 
 
 def test_every_changed_constant_of_se3_violates_jacobi():

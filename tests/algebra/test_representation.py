@@ -1,25 +1,12 @@
 """Representations: the homomorphism law, duals, diamond, semidirect products."""
 
-import random
-from fractions import Fraction
-
 import pytest
 
 from coadjoint.algebra import Representation, algebra_by_name, semidirect_product
 from coadjoint.algebra.catalogue import representation_by_name
 from coadjoint.errors import AlgebraError
+from tests.algebra.laws import vector
 from tests.sources.textbook import cross
-
-
-def vector(n, seed):
-    """A random rational vector."""
-    source = random.Random(seed)
-    return [Fraction(source.randint(-20, 20), source.randint(1, 9)) for _ in range(n)]
-
-
-def pairing(b, a):
-    """``<b, a>`` in dual bases."""
-    return sum(x * y for x, y in zip(b, a, strict=True))
 
 
 def test_vector_representation_of_so3_is_the_cross_product():
@@ -34,19 +21,6 @@ def test_diamond_of_so3_is_the_torque_of_the_book():
     vectors = representation_by_name(algebra_by_name("so(3)"), "vector")
     b, a = vector(3, 3), vector(3, 4)
     assert list(vectors.diamond(b, a)) == cross(b, a)
-
-
-@pytest.mark.parametrize("name", ["vector", "adjoint", "coadjoint"])
-@pytest.mark.parametrize("algebra", ["so(3)", "se(3)"])
-def test_diamond_is_defined_by_its_pairing(algebra, name):
-    """<b <> a, eta> = -<b, rho(eta) a>, and the dual action is minus the transpose."""
-    acting = representation_by_name(algebra_by_name(algebra), name)
-    n, eta = acting.dimension, vector(acting.algebra.dimension, 5)
-    b, a = vector(n, 6), vector(n, 7)
-    moved = acting.act(eta, a)
-    assert any(moved), "a zero action satisfies everything"
-    assert pairing(acting.diamond(b, a), eta) == -pairing(b, moved)
-    assert pairing(acting.dual().act(eta, b), a) == -pairing(b, moved)
 
 
 def test_coadjoint_representation_is_minus_ad_star():
