@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 from fractions import Fraction
+from itertools import combinations
 from pathlib import Path
 from time import perf_counter, process_time
 
@@ -15,27 +16,112 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from coadjoint.derive.interpret import interpret
 from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.exact import Field
 from coadjoint.resources import derivations_folder
-from coadjoint.spec import read_spec, read_spec_text
+from coadjoint.spec import read_spec, read_spec_text, unpacked
 from tests.sources.textbook import PARAMETERS, STATES
 from tests.specs import RIGID_BODY, shipped
 
 # -- the shipped specs --------------------------------------------------------------------------
 
 
+def upper(size):
+    """The places above the diagonal of a matrix, row by row."""
+    return [f"{i}{j}" for i, j in combinations(range(1, size + 1), 2)]
+
+
+def body(size):
+    """State, parameters and routes of a rigid body in some dimension."""
+    state, moments = (f"M{place}" for place in upper(size)), (f"a{n + 1}" for n in range(size))
+    return " ".join(state), " ".join(moments), ("lie-poisson",)
+
+
+TWO, ONE = ("euler-poincare", "lie-poisson"), ("lie-poisson",)
+GALILEI = "J1 J2 J3 K1 K2 K3 P1 P2 P3 E"
+INERTIA = "I1 I2 I3 A1 A2 A3 B1 B2 B3 c"
+#: State, parameters and routes of each system.
+SHIPPED = {
+    **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
+    "heisenberg": ("mu1 mu2 mu3", "", ONE),
+    "se2_pendulum": ("m b1 b2", "", ONE),
+    "affine_line": ("mu1 mu2", "", TWO),
+    "sl2_r2": ("h x y p1 p2", "I1 I2 I3 m", ONE),
+    "so4_body": ("M1 M2 M3 N1 N2 N3", "I1 I2 I3 L1 L2 L3", TWO),
+    "galilei": (GALILEI, INERTIA, ONE),
+    "bargmann": (f"{GALILEI} M", INERTIA, ONE),
+    "nambu_body": ("x1 x2 x3", "I1 I2 I3", ("nambu", "poisson")),
+    "nambu_pendulum": ("x1 x2 x3", "I1 I2 I3", ("nambu", "poisson")),
+    "sp2_momentum": ("X1 X2 X3", "m k b", ("poisson",)),
+    **{f"so{size}_body": body(size) for size in (5, 6, 8)},
+}
+
+
 def test_shipped_specs_have_the_state_and_parameters_of_the_books(system):
     """Order and names of components are a contract with every user."""
-    spec = shipped(system)
+    spec, (state, parameters, routes) = shipped(system), SHIPPED[system]
     assert spec.name == system
-    assert tuple(c for variable in spec.state for c in variable.components) == STATES[system]
-    assert tuple(c for p in spec.parameters for c in p.components) == PARAMETERS[system]
-    assert spec.routes == ("euler-poincare", "lie-poisson")
+    assert [c for variable in spec.state for c in variable.components] == state.split()
+    assert [c for p in spec.parameters for c in p.components] == parameters.split()
+    assert spec.routes == routes
+    assert spec.license == "BSD-3-Clause"
     assert all(p.default is not None and p.doc and p.unit for p in spec.parameters)
     assert all(v.doc and v.unit for v in spec.variables)
-    assert spec.casimirs
-    assert [c.text for c in spec.conserved] == ["energy"]
+    assert spec.casimirs or system == "affine_line"
+    assert spec.conserved[0].text == "energy"
     assert "Holm" in spec.source
+
+
+def check_casimirs(spec):
+    """Every claimed Casimir of a Lie-Poisson bracket commutes with every component of the state."""
+    names = [c for quantity in (*spec.state, *spec.parameters) for c in quantity.components]
+    field = Field(names)
+    values = {name: field[name] for name in names}
+    for quantity in (*spec.state, *spec.parameters):
+        parts = field.vector(field[c] for c in quantity.components)
+        values[quantity.name] = parts if quantity.shape else parts[0]
+        if getattr(quantity, "form", ""):
+            values[quantity.name] = unpacked(parts, quantity.form)
+    places = [place for variable in spec.state for place in variable.block]
+    components = [c for variable in spec.state for c in variable.components]
+    named = dict(zip(places, components, strict=True))
+    assert spec.casimirs
+    for casimir in spec.casimirs:
+        value = interpret(casimir.tree, values, field)
+        gradient = [field.derivative(value, named[place]) for place in range(len(places))]
+        mu = [field[named[place]] for place in range(len(places))]
+        assert any(slope != 0 for slope in gradient)
+        for rate in spec.algebra.ad_star(gradient, mu):
+            assert rate == 0, casimir.text
+
+
+CLAIMING = ["heisenberg", "se2_pendulum", "sl2_r2", "so4_body", "galilei", "bargmann"]
+
+
+@pytest.mark.parametrize("name", [*CLAIMING, "so5_body", "so6_body", "so8_body"])
+def test_claimed_casimirs_commute_with_everything(name):
+    """By hand from the brackets, the quartic of the Bargmann algebra and the Pfaffian included."""
+    check_casimirs(shipped(name))
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("sl2_r2", ("x*p2^2", "2*x*p2^2")),
+        ("so4_body", ("dot(N, N)", "2*dot(N, N)")),
+        ("bargmann", ("M*J - cross", "M*J + cross")),
+        ("bargmann", ('"[K3, P3]" = 1', '"[P3, K3]" = 1')),
+        ("galilei", ("cross(K, P), cross", "cross(K, J), cross")),
+        ("so6_body", ("- M12*M35*M46", "+ M12*M35*M46")),
+    ],
+)
+def test_check_of_casimirs_sees_one_wrong_sign_or_factor(name, change):
+    """The check above can fail."""
+    text = (derivations_folder() / f"{name}.toml").read_text(encoding="utf-8")
+    assert change[0] in text
+    with pytest.raises((AssertionError, CoadjointError)):
+        check_casimirs(read_spec_text(text.replace(*change), Path(f"{name}.toml")))
 
 
 def test_defaults_are_exact():

@@ -201,12 +201,12 @@ class _Algebras:
             action = self._action(acting, part.action, inner, "action")
             with located(self.source, inner):
                 return semidirect_sum(acting, ideal, action)
-        spaces = []
+        spaces: list[tuple[str, Representation]] = []
         for prefix, space in (part.representations or {}).items():
             inner = (*key, "representations", prefix)
             check_basis_names(self.source, inner, (prefix,))
             spaces.append((prefix, self._action(acting, space, inner, prefix)))
-        self._check_dimension(acting.dimension + sum(s.dimension for _, s in spaces), key)
+            self._check_dimension(acting.dimension + sum(s.dimension for _, s in spaces), key)
         with located(self.source, key):
             return semidirect_product(acting, spaces)
 

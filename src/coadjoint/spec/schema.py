@@ -384,3 +384,8 @@ def _without_null(schema: Any) -> Any:
     if len(kept.get("anyOf", "  ")) == 1:
         kept |= kept.pop("anyOf")[0]
     return kept
+
+
+# Algebras are made of algebras: names that came later are looked up now, for `model_fields`.
+for _part in (AlgebraPart, OperandPart, SemidirectPart, ExtensionPart, LeibnizPart, SubalgebraPart):
+    _part.model_rebuild(force=True)
