@@ -21,11 +21,18 @@ from coadjoint.spec.representations import places_of, representation_of
 from coadjoint.spec.schema import ParameterPart, VariablePart
 from coadjoint.spec.source import Source
 
-#: The key that says what a variable of each role is, and what it goes with, for messages.
-_OWN_KEYS = {"block": "velocities and momenta", "representation": "advected quantities"}
-_OWN_KEYS |= {"shape": "coordinates"}
-_KEY_OF = {"velocity": "block", "momentum": "block", "advected": "representation"}
-_KEY_OF |= {"coordinate": "shape"}
+#: Keys that say how large a variable is, and the variables that each is for.
+_OWN_KEYS = {
+    "block": "velocities and momenta",
+    "representation": "advected quantities",
+    "shape": "coordinates",
+}
+_KEY_OF = {
+    "velocity": "block",
+    "momentum": "block",
+    "advected": "representation",
+    "coordinate": "shape",
+}
 
 
 def read_variable(
@@ -42,8 +49,8 @@ def read_variable(
             representation is unknown, or the components fill no matrix of the form.
     """
     key: KeyPath = ("variables", name)
-    for alien in _OWN_KEYS.keys() - {_KEY_OF[part.role]}:
-        if getattr(part, alien) is not None:
+    for alien in _OWN_KEYS:
+        if alien != _KEY_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
     block: tuple[int, ...] = ()
     representation = None
@@ -81,7 +88,7 @@ def _check_role(
 ) -> None:
     """Coordinates go with [poisson], the other roles with [algebra]."""
     if (part.role == "coordinate") != (algebra is None):
-        table, roles = ("[poisson]", "the role 'coordinate'")
+        table, roles = "[poisson]", "the role 'coordinate'"
         if algebra is not None:
             table, roles = "[algebra]", "the roles 'velocity', 'momentum' and 'advected'"
         raise source.fault(
