@@ -94,7 +94,12 @@ def _gl(n: int) -> Parts:
 
 
 def _se(n: int) -> Parts:
-    return _isometries(algebra_by_name(f"se({n})"), n * (n - 1) // 2, identity(n + 1))
+    return _turning(algebra_by_name(f"se({n})"), n * (n - 1) // 2)
+
+
+def _turning(algebra: LieAlgebra, count: int = 3) -> Parts:
+    """Rotations, which come first in the basis, beside nilpotent generators."""
+    return _isometries(algebra, count, identity(size(algebra.matrices)), special=True)
 
 
 def _unipotent(algebra: LieAlgebra) -> Parts:
@@ -134,8 +139,8 @@ CATALOGUE: tuple[tuple[str, str, Callable[..., Parts]], ...] = (
     (r"SE\((\d+)\)", "SE(3)", _se),
     (r"H\((\d+)\)", "H(1)", lambda n: _unipotent(algebra_by_name(f"h({n})"))),
     (r"R\^(\d+)", "R^3", lambda n: _unipotent(algebra_by_name(f"R^{n}"))),
-    (r"G\(3\)", "G(3)", lambda: _isometries(algebra_by_name("g(3)"), 3, identity(5))),
-    (r"Bargmann", "Bargmann", lambda: _isometries(algebra_by_name("bargmann"), 3, identity(6))),
+    (r"G\(3\)", "G(3)", lambda: _turning(algebra_by_name("g(3)"))),
+    (r"Bargmann", "Bargmann", lambda: _turning(algebra_by_name("bargmann"))),
     (r"Aff\(1\)", "Aff(1)", _aff1),
     (r"SL\(2,R\)\(s\)R\^2", "SL(2,R)(s)R^2", _sl2_r2),
     (r"unitquaternions", "unit quaternions", _unit_quaternions),

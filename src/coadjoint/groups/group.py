@@ -22,6 +22,7 @@ from coadjoint.groups.matrix import (
     combination,
     coordinate_readers,
     exponential,
+    identity,
     product,
     subtract,
     transpose,
@@ -113,10 +114,13 @@ class MatrixGroup:
     # -- the group ------------------------------------------------------------------------
 
     def inverse(self, g: Matrix) -> Matrix:
-        """``g^-1 = L^-1 u^-1`` with ``g = u L``, by the linear part's own inverse."""
+        """``g^-1 = L^-1 u^-1`` with ``g = u L``, by the linear part's own inverse.
+
+        Raises:
+            AlgebraError: g is not in the group, where that inverse would be something else.
+        """
+        self.check_element(g)
         L_inverse = self.linear.inverse(self._linear_part(g))
-        if not self.nilpotent:
-            return L_inverse
         return product(L_inverse, unipotent_inverse(product(g, L_inverse)))
 
     def _linear_part(self, g: Matrix) -> Matrix:
@@ -135,7 +139,7 @@ class MatrixGroup:
         """``Ad_g eta = g eta g^-1``.
 
         Raises:
-            AlgebraError: The result leaves the algebra, so g is not in the group.
+            AlgebraError: g is not in the group.
         """
         return self.coordinates(product(g, self.matrix(eta), self.inverse(g)))
 
@@ -210,7 +214,7 @@ class MatrixGroup:
                 the entry and what stands there.
         """
         self._check_size(g)
-        L = self._linear_part(g) if self.nilpotent else g
+        L = self._linear_part(g)
         for statement, defect in self.linear.conditions(L):
             self._check_zero(f"is not in {self.name}", statement, defect)
         try:
@@ -226,11 +230,26 @@ class MatrixGroup:
 
     def _check_unipotent(self, u: Matrix) -> None:
         """Refuse ``u`` of ``g = u L`` unless its logarithm is in the span of the nilpotent part."""
-        n = self.coordinates(unipotent_logarithm(u))
-        outside = [value for i, value in enumerate(n) if i not in self.nilpotent]
-        self._check_zero(
-            f"is not in {self.name}", "log(g L^-1) along the linear part", (tuple(outside),)
+        reached = self._nilpotent_places
+        rest = subtract(u, identity(self.size))
+        outside = tuple(
+            tuple(0 if (r, c) in reached else x for c, x in enumerate(row))
+            for r, row in enumerate(rest)
         )
+        self._check_zero(f"is not in {self.name}", "g L^-1 - 1, L its diagonal blocks,", outside)
+        n = self.coordinates(unipotent_logarithm(u))
+        along = tuple(x for i, x in enumerate(n) if i not in self.nilpotent)
+        self._check_zero(f"is not in {self.name}", "log(g L^-1) along the linear part", (along,))
+
+    @cached_property
+    def _nilpotent_places(self) -> frozenset[tuple[int, int]]:
+        """Where products of nilpotent generators may have entries."""
+        places = {place for i in self.nilpotent for place in self.algebra.matrices[i]}
+        while True:
+            more = {(r, d) for r, c in places for b, d in places if b == c} - places
+            if not more:
+                return frozenset(places)
+            places |= more
 
     def _check_zero(self, verdict: str, statement: str, defect: Matrix) -> None:
         """Refuse a matrix that should be zero, naming its first entry that is not."""

@@ -113,11 +113,19 @@ class Isometries:
         return product(transpose(self.form), transpose(g), self.form)
 
     def conditions(self, g: Matrix) -> Iterator[Condition]:
-        """``g^T K g = K``, what g commutes with, and its determinant."""
+        """``g^T K g = K``, what g commutes with, axes that stay, and its determinant."""
         for J in (self.structure, *self.commuting):
             if J is not None:
                 yield "g J - J g, J what the group commutes with", commutator(g, J)
         yield "g^T K g - K", subtract(product(transpose(g), self.form, g), self.form)
+        still = set(range(self.size)) - {n for matrix in self.generators for n in sum(matrix, ())}
+        yield (
+            "g - 1 on the axes that stay",
+            tuple(
+                tuple(x - int(r == c) if {r, c} & still else 0 for c, x in enumerate(row))
+                for r, row in enumerate(g)
+            ),
+        )
         if self.special:
             real, imaginary = determinant(g, self.structure)
             yield "det g - 1", ((real - 1,),)
