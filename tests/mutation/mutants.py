@@ -32,34 +32,37 @@ class Mutant:
 
 
 ALGEBRA = "src/coadjoint/algebra/"
+FAMILIES = ALGEBRA + "families.py"
 DERIVE = "src/coadjoint/derive/"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 
 MUTANTS = (
     # structure constants
+    Mutant(FAMILIES, "return {(k, j): 1, (j, k): -1}", "return {(k, j): -1, (j, k): 1}"),
+    Mutant(FAMILIES, "return {(k, j): 1, (j, k): -1}", "return {(k, j): 1, (j, k): 1}"),
+    Mutant(FAMILIES, "unit(i, column)) for i", "unit(i, column, -1)) for i"),
+    Mutant(FAMILIES, "= (axis + 1) % 3, (axis + 2) % 3", "= (axis + 2) % 3, (axis + 1) % 3"),
+    Mutant(FAMILIES, "{(i, j): 1, (j, i): -1 if", "{(i, j): 1, (j, i): 1 if"),
+    Mutant(FAMILIES, '[("J", {(0, 1): -1, (1, 0): 1})]', '[("J", {(0, 1): 1, (1, 0): -1})]'),
+    Mutant(FAMILIES, '("E", unit(3, 4))', '("E", unit(3, 4, -1))'),
+    Mutant(FAMILIES, "{(i, 3): 1, (4, i): 1}", "{(i, 3): 1, (4, i): -1}"),
+    Mutant(FAMILIES, "(n + j, n + i): -1}", "(n + j, n + i): 1}"),
+    Mutant(FAMILIES, "{(0, 1): -half, (1, 0): half}, {})", "{(0, 1): half, (1, 0): -half}, {})"),
+    Mutant(FAMILIES, "i: Matrix = {(0, 1): -1, (1, 0): 1}", "i: Matrix = {(0, 1): 1, (1, 0): -1}"),
+    Mutant(ALGEBRA + "invariants.py", "yield j, i, k, -c", "yield j, i, k, c"),
     Mutant(
-        ALGEBRA + "catalogue.py",
-        "{(k, j): Fraction(1), (j, k): Fraction(-1)}",
-        "{(k, j): Fraction(-1), (j, k): Fraction(1)}",
+        ALGEBRA + "matrices.py",
+        "add_multiple(result, -1, product(b, a))",
+        "add_multiple(result, 1, product(b, a))",
     ),
-    Mutant(ALGEBRA + "catalogue.py", "(j, k): Fraction(-1)}", "(j, k): Fraction(1)}"),
     Mutant(
-        ALGEBRA + "catalogue.py",
-        "{(axis, 3): Fraction(1)}",
-        "{(axis, 3): Fraction(-1)}",
-        equivalent="P -> -P is an automorphism of se(3): the same constants",
-    ),
-    Mutant(
-        ALGEBRA + "catalogue.py", "(axis + 1) % 3, (axis + 2) % 3", "(axis + 2) % 3, (axis + 1) % 3"
-    ),
-    Mutant(ALGEBRA + "lie_algebra.py", "yield j, i, k, -c", "yield j, i, k, c"),
-    Mutant(
-        ALGEBRA + "lie_algebra.py",
-        "for left, right, sign in ((a, b, 1), (b, a, -1)):",
-        "for left, right, sign in ((a, b, -1), (b, a, 1)):",
+        ALGEBRA + "matrices.py",
+        "product(a, b)\n    add_multiple(result, -1, product(b, a))",
+        "product(b, a)\n    add_multiple(result, -1, product(a, b))",
     ),
     Mutant(ALGEBRA + "lie_algebra.py", "if i < j else ((j, i), -1)", "if i < j else ((j, i), 1)"),
+    Mutant(ALGEBRA + "lie_algebra.py", "term = (b, a, c, n), -inner", "term = (b, a, c, n), inner"),
     # ad*, brackets, tensors
     Mutant(
         ALGEBRA + "lie_algebra.py",
@@ -72,22 +75,31 @@ MUTANTS = (
         "result[k] + scaled(xi[i] * eta[j], c)",
         "result[k] - scaled(xi[i] * eta[j], c)",
     ),
-    Mutant(
-        ALGEBRA + "lie_algebra.py",
-        "matrix[i][j] - scaled(mu[k], c)",
-        "matrix[i][j] + scaled(mu[k], c)",
-    ),
+    Mutant(ALGEBRA + "lie_algebra.py", "scaled(mu[k], sign * c)", "scaled(mu[k], -sign * c)"),
+    Mutant(ALGEBRA + "lie_algebra.py", "sign: int = -1", "sign: int = 1"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
         "matrix[k][j] + scaled(xi[i], c)",
         "matrix[k][j] - scaled(xi[i], c)",
     ),
-    # representations
+    # representations, products, extensions
     Mutant(ALGEBRA + "representation.py", "result[row] + scaled(", "result[row] - scaled("),
     Mutant(ALGEBRA + "representation.py", "result[i] - scaled(", "result[i] + scaled("),
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(c, r): v for"),
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(r, c): -v for"),
-    Mutant(ALGEBRA + "products.py", "[start + row] = value", "[start + row] = -value"),
+    Mutant(
+        ALGEBRA + "products.py",
+        "[start + row] = value\n    extra",
+        "[start + row] = -value\n    extra",
+    ),
+    Mutant(
+        ALGEBRA + "products.py",
+        "[start + row] = value\n    title",
+        "[start + row] = -value\n    title",
+    ),
+    Mutant(ALGEBRA + "extensions.py", "[k] = -c", "[k] = c"),
+    Mutant(ALGEBRA + "extensions.py", "value if i < j else -value", "value"),
+    Mutant(ALGEBRA + "extensions.py", "[(a + b) * d + k] = c", "[(a + b) * d + k] = -c"),
     # derivation
     Mutant(
         DERIVE + "euler_poincare.py",
