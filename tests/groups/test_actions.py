@@ -101,7 +101,7 @@ def operators(name):
     ("invariant", "sign"), [(left_invariant_field, 1), (right_invariant_field, -1)]
 )
 def test_B_5_brackets_of_invariant_fields(name, invariant, sign):
-    """[X_xi, X_eta] = X_[xi, eta] as operators for left-invariant fields, - for right-invariant."""
+    """As operators, [X_xi, X_eta] is X_[xi, eta] for left-invariant fields, else minus that."""
     group, x = operators(name)
     xi, eta = group.vector("xi"), group.vector("eta")
     X, Y = (derivation(group.field, x, invariant(group, v)(x)) for v in (xi, eta))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from coadjoint.errors import AlgebraError
+from coadjoint.errors import AlgebraError, CoadjointError
 from coadjoint.groups import matrix_group
 from coadjoint.groups.catalogue import CATALOGUE
 
@@ -18,8 +18,10 @@ def test_each_example_is_a_group(example):
 
 @pytest.mark.parametrize(
     ("name", "dimension"),
-    [("SO(4)", 6), ("SO(3,1)", 6), ("SU(3)", 8), ("U(3)", 9), ("SL(3)", 8), ("GL(3,R)", 9)]
-    + [("Sp(4,R)", 10), ("SE(4)", 10), ("H(2)", 5), ("G(3)", 10), ("Bargmann", 11)],
+    [
+        *(("SO(4)", 6), ("SO(3,1)", 6), ("SU(3)", 8), ("U(3)", 9), ("SL(3)", 8), ("GL(3,R)", 9)),
+        *(("Sp(4,R)", 10), ("SE(4)", 10), ("H(2)", 5), ("G(3)", 10), ("Bargmann", 11)),
+    ],
 )
 def test_dimensions(name, dimension):
     """Dimensions as books state them."""
@@ -43,7 +45,21 @@ def test_an_unknown_group_is_refused_with_the_nearest(name, near):
     assert refused.value.found == name
 
 
-def test_a_group_without_matrices_is_refused():
-    """E8 is in no list."""
+def test_an_unknown_group_without_neighbours_is_refused():
+    """Where no name is near, the message lists what there is."""
     with pytest.raises(AlgebraError, match=r"no group is called 'E8'; expected one like SO\(3\)"):
         matrix_group("E8")
+
+
+@pytest.mark.parametrize("name", ["Sp(3)", "SO(1)", "SO(1,0)", "GL(0)", "SL(1)"])
+def test_a_size_that_does_not_exist_is_refused(name):
+    """The algebra's own refusal comes through, with its name."""
+    with pytest.raises(AlgebraError, match=name.lower().split("(")[0]):
+        matrix_group(name)
+
+
+@pytest.mark.parametrize("name", ["SO(999999)", "SO(99999,99999)", "SU(99999)", "U(99999)"])
+def test_an_exploding_size_is_refused_before_anything_is_built(name):
+    """The bound on generators is checked first."""
+    with pytest.raises(CoadjointError, match="generators"):
+        matrix_group(name)

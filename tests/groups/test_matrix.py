@@ -20,7 +20,7 @@ def exact(matrix):
 def complex_matrix(real, imaginary):
     """``A + i B`` as ``[[A, -B], [B, A]]``."""
     top = [(*a, *(-x for x in b)) for a, b in zip(real, imaginary, strict=True)]
-    return tuple([*top, *((*b, *a) for a, b in zip(real, imaginary, strict=True))])
+    return (*top, *((*b, *a) for a, b in zip(real, imaginary, strict=True)))
 
 
 def test_determinant_and_inverse_are_those_of_sympy():

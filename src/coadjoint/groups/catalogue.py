@@ -60,8 +60,8 @@ def _so(n: int) -> Parts:
 
 
 def _so_pq(p: int, q: int) -> Parts:
-    form = _diagonal(*[1] * p, *[-1] * q)
-    return _whole(algebra_by_name(f"so({p},{q})"), form, special=True)
+    algebra = algebra_by_name(f"so({p},{q})")  # first: it refuses sizes that would explode
+    return _whole(algebra, _diagonal(*[1] * p, *[-1] * q), special=True)
 
 
 def _sp(n: int) -> Parts:
@@ -73,9 +73,10 @@ def _u(n: int) -> Parts:
 
 
 def _su(n: int) -> Parts:
+    algebra = algebra_by_name(f"su({n})")
     first = _diagonal(*[int(k % n == 0) for k in range(2 * n)])
     return _whole(
-        algebra_by_name(f"su({n})"),
+        algebra,
         identity(2 * n),
         structure=_complex_structure(n),
         special=True,
