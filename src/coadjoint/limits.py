@@ -57,6 +57,10 @@ PARAMETER_COMPONENTS = 256
 MATRIX_ENTRIES = 4096
 #: Generators of an algebra given by name or as a product; constants are sparse.
 GENERATORS = 5000
+#: Monomials among which Casimirs are searched; 3 000 take half a second, so(8) to degree 4 has 35 959.
+MONOMIALS = 20_000
+#: Products of terms of one invariant of matrices; the largest one of so(8) takes 6300.
+INVARIANT_TERMS = 25_000
 #: Operations of one function after lowering.
 OPERATIONS = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.

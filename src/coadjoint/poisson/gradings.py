@@ -1,0 +1,82 @@
+"""Gradings of a polynomial Poisson bracket, which split a search into many small ones.
+
+Comes in: the entries of a tensor as polynomials. Goes out: the weight of each coordinate in every
+grading by integers and by parity. With weights w and a shift s such that every term of
+``{x_i, x_j}`` has the weight ``w_i + w_j + s``, the parts of a Casimir of different weight are
+Casimirs by themselves. For so(n) these are the reflections of axes, for the Galilei algebra also
+its scalings of length and time, and for a linear bracket the degree is one of them.
+Read next: `coadjoint.poisson.casimirs`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import lcm
+
+from coadjoint.algebra.linear import nullspace
+from coadjoint.poisson.polynomials import Polynomial
+
+#: The nonzero entries ``{x_i, x_j}``, both orders of i and j.
+Entries = Mapping[tuple[int, int], Polynomial]
+#: Weights of a coordinate or a monomial: integers, then parities as the bits of one integer.
+Weight = tuple[tuple[int, ...], int]
+
+
+class Gradings:
+    """All gradings of a bracket.
+
+    Args:
+        entries: The tensor.
+        size: Number of coordinates.
+    """
+
+    def __init__(self, entries: Entries, size: int) -> None:
+        relations = _relations(entries, size)
+        integral = [_integers(vector, size) for vector in nullspace(relations, size + 1)]
+        parities = _parities(relations, size + 1)
+        self._integral = [tuple(vector[i] for vector in integral) for i in range(size)]
+        self._parity = [
+            sum(1 << n for n, vector in enumerate(parities) if vector >> i & 1) for i in range(size)
+        ]
+
+    def weight(self, factors: Sequence[int]) -> Weight:
+        """The weight of a product of coordinates, given by their places."""
+        parity = 0
+        for i in factors:
+            parity ^= self._parity[i]
+        return tuple(map(sum, zip(*(self._integral[i] for i in factors), strict=True))), parity
+
+
+def _relations(entries: Entries, size: int) -> list[dict[int, int]]:
+    """``w_i + w_j + s - sum_k e_k w_k = 0`` for each term of each entry; s is the last unknown."""
+    found = set()
+    for (i, j), entry in entries.items():
+        for exponents in entry.terms:
+            row = [-e for e in exponents] + [1]
+            row[i] += 1
+            row[j] += 1
+            found.add(tuple(row))
+    return [{k: value for k, value in enumerate(row) if value} for row in sorted(found)]
+
+
+def _integers(vector: Mapping[int, object], size: int) -> list[int]:
+    """A rational grading scaled to integers, without its shift."""
+    scale = lcm(*(value.denominator for value in vector.values()))  # type: ignore[attr-defined]
+    return [int(vector.get(i, 0) * scale) for i in range(size)]  # type: ignore[operator]
+
+
+def _parities(relations: Sequence[Mapping[int, int]], unknowns: int) -> list[int]:
+    """A basis of the solutions modulo 2, each as the bits of an integer."""
+    pivots: dict[int, int] = {}  # by leading bit, fully reduced
+    for relation in relations:
+        row = sum(1 << k for k, value in relation.items() if value % 2)
+        for bit, pivot in pivots.items():
+            if row >> bit & 1:
+                row ^= pivot
+        if row:
+            lead = row.bit_length() - 1
+            pivots = {b: p ^ row if p >> lead & 1 else p for b, p in pivots.items()} | {lead: row}
+    free = [k for k in range(unknowns) if k not in pivots]
+    return [
+        1 << k | sum(1 << lead for lead, pivot in pivots.items() if pivot >> k & 1) for k in free
+    ]

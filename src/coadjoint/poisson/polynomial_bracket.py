@@ -1,0 +1,114 @@
+"""A Poisson bracket whose entries are polynomials over the rationals, made ready for searches.
+
+Comes in: a Poisson structure. Goes out: a `PolynomialBracket`: the entries as plain polynomials,
+``{x_i, p}`` of a polynomial, the coordinates that scale all others, and the few coordinates that
+generate the others, which are the only ones a Casimir must be asked by: ``{x_i, C} = {x_j, C} = 0``
+gives ``{{x_i, x_j}, C} = 0`` by the Jacobi identity. Read next: `coadjoint.poisson.gradings`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+from coadjoint.poisson.polynomials import (
+    Exponents,
+    Number,
+    Polynomial,
+    coordinate,
+    read_polynomial,
+)
+from coadjoint.poisson.structure import PoissonStructure
+
+
+class PolynomialBracket:
+    """A bracket as a table of polynomials.
+
+    Args:
+        structure: Its entries must be polynomials over the rationals.
+
+    Attributes:
+        size: Number of coordinates.
+        entries: The entries ``{x_i, x_j}`` that are not zero, both orders of i and j.
+
+    Raises:
+        AlgebraError: An entry is not such a polynomial, or the Jacobi identity fails.
+    """
+
+    def __init__(self, structure: PoissonStructure) -> None:
+        structure.check_jacobi()
+        self.size = structure.dimension
+        self.entries = {
+            (i, j): read_polynomial(structure.field, entry, structure.names)
+            for i, row in enumerate(structure.tensor)
+            for j, entry in enumerate(row)
+            if entry
+        }
+        self._acting = [
+            [(j, self.entries[i, j].terms) for j in range(self.size) if (i, j) in self.entries]
+            for i in range(self.size)
+        ]
+
+    def along(self, i: int, monomial: Exponents) -> dict[Exponents, Number]:
+        """``{x_i, m}`` of a monomial: ``sum_j {x_i, x_j} dm/dx_j``."""
+        result: dict[Exponents, Number] = {}
+        for j, terms in self._acting[i]:
+            power = monomial[j]
+            if power:
+                lowered = (*monomial[:j], power - 1, *monomial[j + 1 :])
+                for term, value in terms.items():
+                    product = tuple(map(int.__add__, lowered, term))
+                    result[product] = result.get(product, 0) + value * power
+        return result
+
+    def is_casimir(self, p: Polynomial) -> bool:
+        """Whether a polynomial commutes with the generating coordinates, hence with all."""
+        for i in self.generating:
+            total: dict[Exponents, Number] = {}
+            for monomial, factor in p.terms.items():
+                for product, value in self.along(i, monomial).items():
+                    total[product] = total.get(product, 0) + factor * value
+            if any(total.values()):
+                return False
+        return True
+
+    @cached_property
+    def generating(self) -> list[int]:
+        """Coordinates whose brackets give, one by one, all others; found by leaving out."""
+        products: dict[tuple[int, int], int] = {}
+        for pair, entry in self.entries.items():
+            if len(entry.terms) == 1 and entry.degree == 1:
+                products[pair] = next(iter(entry.terms)).index(1)
+        kept = list(range(self.size))
+        for i in reversed(range(self.size)):
+            rest = [j for j in kept if j != i]
+            if i in _closure(rest, products):
+                kept = rest
+        return kept
+
+    @cached_property
+    def scalings(self) -> dict[int, dict[int, Number]]:
+        """The coordinates with ``{x_i, x_j} = a_ij x_j`` for every j, and their factors."""
+        found = {}
+        for i, entries in enumerate(self._acting):
+            single = all(set(terms) == set(coordinate(j, self.size).terms) for j, terms in entries)
+            if entries and single:
+                found[i] = {j: value for j, terms in entries for value in terms.values()}
+        return found
+
+    def character(self, monomial: Exponents) -> tuple[Number, ...]:
+        """``chi_i`` with ``{x_i, m} = chi_i m``, for each coordinate that scales all others."""
+        return tuple(
+            sum(factor * monomial[j] for j, factor in factors.items())
+            for factors in self.scalings.values()
+        )
+
+
+def _closure(members: Sequence[int], products: dict[tuple[int, int], int]) -> set[int]:
+    """What some coordinates generate under brackets that give a single coordinate."""
+    reached = set(members)
+    while True:
+        new = {k for (i, j), k in products.items() if i in reached and j in reached} - reached
+        if not new:
+            return reached
+        reached |= new
