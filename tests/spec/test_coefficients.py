@@ -6,7 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.errors import SpecError
+from coadjoint.errors import LimitError, SpecError
+from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.model import Parameter
 from coadjoint.spec.positions import scan
@@ -115,3 +116,15 @@ def test_name_of_a_parameter_and_of_the_basis_is_refused():
     assert combination("e2", known) == {1: 1}
     with pytest.raises(SpecError, match="'e1' is both a parameter and in the basis"):
         combination("e1*e2", known)
+
+
+def test_too_many_parametric_terms_are_refused():
+    """The limit is over all coefficients of a spec, and numbers are not counted."""
+    known = scalars()
+    for _ in range(PARAMETRIC_TERMS // 2):
+        combination("a*e1 + 2*I2*e2", known)
+        combination("e1 + e2 + e3", known)
+    with pytest.raises(LimitError) as caught:
+        combination("e1 + a*e2", known)
+    assert caught.value.limit == "PARAMETRIC_TERMS"
+    assert caught.value.found == str(PARAMETRIC_TERMS + 2)

@@ -14,6 +14,7 @@ from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError
 from coadjoint.spec.model import Parameter, Shape
@@ -21,7 +22,7 @@ from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.shapes import shape_of
 from coadjoint.spec.sizes import check_size
 from coadjoint.spec.source import Source
-from coadjoint.spec.tree import Binary, Index, Name, Negate, Node, Number, Power, walk_up
+from coadjoint.spec.tree import Binary, Index, Name, Negate, Node, Number, Power, walk, walk_up
 
 if TYPE_CHECKING:
     from coadjoint.exact import Field
@@ -48,6 +49,7 @@ class Scalars:
         self.shapes: dict[str, Shape] = {}
         self._components: dict[tuple[str, tuple[int, ...]], str] = {}
         self._positive: list[str] = []
+        self._terms = 0  # in the coefficients read so far
         for parameter in parameters:
             self.shapes |= {parameter.name: parameter.shape}
             places = product(*(range(1, length + 1) for length in parameter.shape))
@@ -60,6 +62,26 @@ class Scalars:
         """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
         component = self._components.get((name, indices))
         return None if component is None else self._field[component]
+
+    def check_terms(self, tree: Node, terms: int) -> None:
+        """Count the terms of a coefficient with parameters: elimination among many takes for ever.
+
+        Raises:
+            ExpressionError: There are too many in the spec.
+        """
+        if not any(isinstance(n, (Name, Index)) and n.name in self.shapes for n in walk(tree)):
+            return
+        self._terms += terms
+        if self._terms > PARAMETRIC_TERMS:
+            raise ExpressionError(
+                f"with this one, coefficients have {self._terms} terms that hold parameters",
+                tree.start,
+                tree.end,
+                found=str(self._terms),
+                expected=f"at most {PARAMETRIC_TERMS} (PARAMETRIC_TERMS)",
+                hint="Put numbers for some of the parameters.",
+                limit="PARAMETRIC_TERMS",
+            )
 
     @cached_property
     def _field(self) -> Field:
@@ -111,7 +133,7 @@ class _Reading:
         tree = read_expression(text)
         scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
         shape_of(tree, scope)
-        check_size(tree, scope)
+        self.scalars.check_terms(tree, check_size(tree, scope))
         found: dict[int, _Linear] = {}
         for node in walk_up(tree):
             result = self._value(node, found)

@@ -44,8 +44,11 @@ class Size:
     fixed: bool = False
 
 
-def check_size(tree: Node, scope: Mapping[str, Shape]) -> None:
+def check_size(tree: Node, scope: Mapping[str, Shape]) -> int:
     """Refuse an expression that would grow beyond the limits.
+
+    Returns:
+        The terms that it has after multiplying out, estimated.
 
     Raises:
         ExpressionError: A limit is passed, a constant is divided by zero, or a function is applied
@@ -53,6 +56,7 @@ def check_size(tree: Node, scope: Mapping[str, Shape]) -> None:
 
     >>> from coadjoint.spec.expressions import read_expression
     >>> check_size(read_expression("(x + 1)^32"), {"x": ()})
+    33
     """
     shape, size = shapes(tree, scope), dict[int, Size]()
     for node in walk_up(tree):
@@ -60,6 +64,7 @@ def check_size(tree: Node, scope: Mapping[str, Shape]) -> None:
         found = _size(node, [size[id(c)] for c in below], [shape[id(c)] for c in below])
         _check(node, found)
         size[id(node)] = found
+    return size[id(tree)].terms
 
 
 def _check(node: Node, size: Size) -> None:
