@@ -156,7 +156,7 @@ def test_center_derived_series_and_kinds():
     assert [name for name in kinds if algebra_by_name(name).is_abelian] == ["R^3"]
     assert algebra_by_name("h(2)").lower_central_series() == (5, 1, 0)
     assert algebra_by_name("se(2)").lower_central_series() == (3, 2)
-    assert [n for n in CATALOGUE if not algebra_by_name(n).is_unimodular()] == ["aff(1)"]
+    assert [n for n in CATALOGUE if not algebra_by_name(n).is_unimodular] == ["aff(1)"]
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,7 @@ def test_constants_may_be_parameters():
     assert algebra.bracket((0, 1, 0), (0, 0, 1))[0] == a
     assert algebra.killing_form()[0][0] == -2 * b * c
     assert algebra.is_semisimple
-    assert algebra.is_unimodular()
+    assert algebra.is_unimodular
     assert (algebra.generic_rank(), algebra.center(), algebra.derived_series()) == (2, (), (3,))
     assert algebra.ad_star((1, 0, 0), (0, 0, 1))[1] == c
 

@@ -124,6 +124,13 @@ def test_an_action_of_another_algebra_is_refused():
         semidirect_sum(se3, algebra_by_name("h(2)"), vectors)
 
 
+def test_a_product_with_a_representation_of_another_algebra_is_refused():
+    """se(3) acts on vectors, but so(3) was to act."""
+    so3, se3 = algebra_by_name("so(3)"), algebra_by_name("se(3)")
+    with pytest.raises(AlgebraError, match=r"one of se\(3\) on R\^3; expected one of so\(3\)\."):
+        semidirect_product(so3, [("a", representation_by_name(se3, "vector"))])
+
+
 def test_a_sum_that_explodes_is_refused_before_it_is_built():
     """The message has the number of generators."""
     large = algebra_by_name("R^2600")

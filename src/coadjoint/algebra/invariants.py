@@ -181,6 +181,7 @@ class Invariants:
         rows = ({j: x for j, x in enumerate(row) if x != 0} for row in self.killing_form())
         return self.dimension > 0 and Span(rows).rank == self.dimension
 
+    @property
     def is_unimodular(self) -> bool:
         """``tr ad_xi = 0`` for every xi: the flow of a Lie-Poisson system keeps volume."""
         traces: list[Any] = [0] * self.dimension

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from coadjoint.algebra.linear import add_multiple
+from coadjoint.algebra.linear import add_multiple, exact
 
 #: A matrix as nonzero entries {(row, column): value}.
 SparseMatrix = Mapping[tuple[int, int], Any]
@@ -33,10 +33,14 @@ def combination(terms: Iterable[tuple[Any, SparseMatrix]]) -> Matrix:
 
 def product(a: SparseMatrix, b: SparseMatrix) -> Matrix:
     """``a b``."""
+    rows: dict[int, list[tuple[int, Any]]] = {}
+    for (r, c), y in b.items():
+        rows.setdefault(r, []).append((c, y))
     result: Matrix = {}
     for (row, middle), x in a.items():
-        add_multiple(result, x, {(row, c): y for (r, c), y in b.items() if r == middle})
-    return result
+        for column, y in rows.get(middle, ()):
+            result[row, column] = result.get((row, column), 0) + x * y
+    return {place: exact(value) for place, value in result.items() if value != 0}
 
 
 def commutator(a: SparseMatrix, b: SparseMatrix) -> Matrix:

@@ -60,7 +60,12 @@ def semidirect_product(
 
     The matrices are affine, ``[[rho(xi), u], [0, 0]]``, with those of g beside them if rho alone
     does not tell all of g apart.
+
+    Raises:
+        AlgebraError: A representation is one of another algebra.
     """
+    for _, representation in representations:
+        _check_action(representation, algebra)
     basis, blocks = list(algebra.basis), dict(algebra.blocks)
     brackets: Brackets = {pair: dict(row) for pair, row in algebra.constants.items()}
     for prefix, representation in representations:
@@ -96,7 +101,7 @@ def semidirect_sum(
         AlgebraError: The action is not one of g1 on g2, or not by derivations:
             ``X.[u, v] = [X.u, v] + [u, X.v]`` fails for the triple that the message names.
     """
-    _check_action(acting, ideal, action)
+    _check_action(action, acting, ideal)
     check_size(name or "the semidirect sum", acting.dimension + ideal.dimension)
     start = acting.dimension
     basis, blocks = _joined([acting, ideal])
@@ -125,15 +130,20 @@ def semidirect_sum(
     return with_matrices(whole, first_faithful([adjoint(whole).matrices, own]))
 
 
-def _check_action(acting: LieAlgebra, ideal: LieAlgebra, action: Representation) -> None:
-    found = (action.algebra.name, action.dimension)
-    if action.algebra != acting or action.dimension != ideal.dimension:
-        raise AlgebraError(
-            f"the representation {action.name!r} is one of {found[0]} on R^{found[1]}; expected "
-            f"one of {acting.name} on {ideal.name}, which has {ideal.dimension} dimensions. "
-            "Give the action of the first algebra on the second.",
-            found=list(found),
-        )
+def _check_action(
+    action: Representation, acting: LieAlgebra, space: LieAlgebra | None = None
+) -> None:
+    """The action must be one of the acting algebra, on the space if that is an algebra too."""
+    fits = space is None or action.dimension == space.dimension
+    if action.algebra == acting and fits:
+        return
+    wanted = f" on {space.name}, which has {space.dimension} dimensions" if space else ""
+    raise AlgebraError(
+        f"the representation {action.name!r} is one of {action.algebra.name} on "
+        f"R^{action.dimension}; expected one of {acting.name}{wanted}. "
+        "Give an action of the first algebra.",
+        found=[action.algebra.name, action.dimension],
+    )
 
 
 # -- shared ---------------------------------------------------------------------------------------

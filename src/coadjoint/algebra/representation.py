@@ -88,10 +88,11 @@ class Representation:
         acting = algebra or self.algebra.over(convert)
         return Representation(acting, self.name, self.dimension, matrices)
 
-    def dual(self) -> Representation:
+    def dual(self, name: str = "") -> Representation:
         """The contragredient action on W*: ``rho*(xi) = -rho(xi)^T``."""
         turned = tuple({(c, r): -v for (r, c), v in matrix.items()} for matrix in self.matrices)
-        return Representation(self.algebra, f"dual of {self.name}", self.dimension, turned)
+        title = name or f"dual of {self.name}"
+        return Representation(self.algebra, title, self.dimension, turned)
 
 
 def adjoint(algebra: LieAlgebra) -> Representation:
@@ -104,8 +105,7 @@ def adjoint(algebra: LieAlgebra) -> Representation:
 
 def coadjoint(algebra: LieAlgebra) -> Representation:
     """``rho(xi) = -ad*_xi`` on the dual, the left action that Ad*_{g^-1} generates."""
-    dual = adjoint(algebra).dual()
-    return Representation(algebra, "coadjoint", dual.dimension, dual.matrices)
+    return adjoint(algebra).dual("coadjoint")
 
 
 def trivial(algebra: LieAlgebra) -> Representation:
