@@ -136,3 +136,8 @@ def test_a_sum_that_explodes_is_refused_before_it_is_built():
     large = algebra_by_name("R^2600")
     with pytest.raises(LimitError, match="the direct sum has 5200 generators"):
         direct_sum([large, large])
+
+
+def test_the_sum_of_nothing_is_the_zero_algebra():
+    """No parts, no generators."""
+    assert direct_sum([]).dimension == 0

@@ -39,7 +39,7 @@ def direct_sum(algebras: Sequence[LieAlgebra], name: str = "") -> LieAlgebra:
         after = dimension - start - algebra.dimension
         parts.append((*_zeros(start), *algebra.matrices, *_zeros(after)))
         start += algebra.dimension
-    carried = all(algebra.matrices for algebra in algebras)
+    carried = bool(parts) and all(algebra.matrices for algebra in algebras)
     matrices = block_diagonal(parts) if carried else ()
     title = name or " + ".join(algebra.name for algebra in algebras)
     return from_brackets(title, basis, brackets, blocks, matrices)
