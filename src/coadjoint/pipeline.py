@@ -113,13 +113,25 @@ def kernel_context(equations: Equations, programs: dict[str, Program]) -> Kernel
         spec=f"derivations/{spec.name}.toml",
         spec_sha256=spec.sha256,
         license=spec.license,
-        routes=(f"Route {first} on {spec.algebra.name}, {spec.invariance} invariant.", *proved),
+        routes=(f"Route {first} {_origin(spec)}.", *proved),
         equations=equation_lines(equations),
         state=tuple(map(_quantity, spec.state)),
         parameters=tuple(map(_quantity, spec.parameters)),
         observables=_observables(spec),
         programs=tuple(programs.values()),
     )
+
+
+def _origin(spec: Spec) -> str:
+    """Where the bracket of a system comes from, for the head of its files."""
+    if spec.algebra is not None:
+        return f"on {spec.algebra.name}, {spec.invariance} invariant"
+    assert spec.poisson is not None, "the reader asks for an algebra or a bracket"
+    return {
+        "nambu": "with the Nambu bracket of its distinguished functions",
+        "brackets": "with the declared brackets",
+        "canonical": "with the canonical bracket",
+    }[spec.poisson.kind]
 
 
 def _quantity(declared: Variable | Parameter) -> Quantity:

@@ -31,6 +31,7 @@ COMMANDS: Final = (
     "regenerate",
     "list",
     "show",
+    "algebra",
     "prove",
     "crosscheck",
     "simulate",

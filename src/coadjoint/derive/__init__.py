@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from coadjoint.callable_module import make_callable
-from coadjoint.derive import euler_poincare, lie_poisson
+from coadjoint.derive import euler_poincare, lie_poisson, nambu, poisson
 from coadjoint.derive.equations import Equations, Exact, Step
 from coadjoint.derive.setting import Setting, make_setting
 from coadjoint.errors import DerivationError
@@ -18,7 +18,12 @@ __all__ = ["ROUTES", "Equations", "Exact", "Setting", "Step", "derive", "make_se
 
 #: Every route by the name that specs use.
 ROUTES: Mapping[str, Callable[[Setting], Equations]] = MappingProxyType(
-    {"euler-poincare": euler_poincare.derive, "lie-poisson": lie_poisson.derive}
+    {
+        "euler-poincare": euler_poincare.derive,
+        "lie-poisson": lie_poisson.derive,
+        "nambu": nambu.derive,
+        "poisson": poisson.derive,
+    }
 )
 
 

@@ -13,7 +13,7 @@ import sympy
 from sympy.printing.mathml import mathml
 
 from coadjoint.derive.equations import Equations, Left, Step
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import Element, Field, element_text
 
 
 @dataclass(frozen=True)
@@ -27,30 +27,29 @@ class Line:
 
 @dataclass(frozen=True)
 class Section:
-    """One step: its title, the general law, and what it gives for this system."""
+    """One step: its title, the general law, what it gives for this system, and plain words."""
 
     title: str
     law: str
     law_latex: str
     lines: tuple[Line, ...]
+    words: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
 class Document:
-    """A derivation.
+    """A derivation, or what was found out about an algebra.
 
     Attributes:
-        name: Name of the system.
         title: Free text of the spec, as are ``source`` and ``description``.
-        route: The route followed.
+        about: What the document shows, in one sentence.
         sections: The steps in order.
     """
 
-    name: str
     title: str
+    about: str
     source: str
     description: str
-    route: str
     sections: tuple[Section, ...]
 
 
@@ -58,18 +57,18 @@ def document(equations: Equations) -> Document:
     """The document of a derivation, ending with the closed equations of motion."""
     spec = equations.spec
     sections = [_section(equations, step) for step in equations.steps]
-    return Document(
-        spec.name, spec.title, spec.source, spec.description, equations.route, tuple(sections)
-    )
+    about = f"System {spec.name}, route {equations.route}."
+    return Document(spec.title, about, spec.source, spec.description, tuple(sections))
 
 
 def _section(equations: Equations, step: Step) -> Section:
-    lines = tuple(_line(equations, left, right) for left, right in step.lines)
+    field = equations.setting.field
+    lines = tuple(formula_line(field, left, right) for left, right in step.lines)
     return Section(step.title, step.text, step.latex, lines)
 
 
-def _line(equations: Equations, left: Left, right: Element) -> Line:
-    field = equations.setting.field
+def formula_line(field: Field, left: Left, right: Element) -> Line:
+    """``left = right`` in every format."""
     expression = sympy.Add(*(field.to_sympy(part) for part in field.partial_fractions(right)))
     return Line(
         f"{left.text} = {element_text(field, right)}",

@@ -58,6 +58,13 @@ def bracket(a: str, b: str) -> Left:
     return Left(f"{{{a}, {b}}}", rf"\{{{x.latex}, {y.latex}\}}", braced)
 
 
+def algebra_bracket(a: str, b: str) -> Left:
+    """A bracket of a Lie algebra: ``[J1, J2]``."""
+    x, y = symbol(a), symbol(b)
+    braced = f"<mo>[</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>]</mo>"
+    return Left(f"[{a}, {b}]", rf"[{x.latex}, {y.latex}]", braced)
+
+
 @dataclass(frozen=True)
 class Step:
     """One step of a derivation, for the document.

@@ -20,7 +20,7 @@ from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, sy
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_tensor
+from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 
 
@@ -37,7 +37,8 @@ def derive(setting: Setting) -> Equations:
     rates = _rates(setting, lagrangian)
     definitions = tuple(zip(setting.velocities, transform.velocities, strict=True))
     energy = setting.field.substitute(transform.energy, dict(definitions))
-    exact = Exact(definitions, rates, energy, observables(setting, energy), poisson_tensor(setting))
+    tensor = poisson_structure(setting).tensor
+    exact = Exact(definitions, rates, energy, observables(setting, energy), tensor)
     return Equations(
         setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
     )
@@ -47,15 +48,15 @@ def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     """Right-hand sides in state, velocities and parameters, in the order of the state."""
     sign, xi = setting.sign, setting.elements(setting.velocities)
     mu = setting.elements(setting.momenta)
-    momentum = list(setting.spec.algebra.ad_star(xi, mu))
+    momentum = list(setting.algebra.ad_star(xi, mu))
     advected = {}
     for variable in setting.advected:
-        assert variable.representation is not None
+        action = setting.actions[variable.name]
         a = setting.elements(variable.components)
         dl_da = setting.field.gradient(lagrangian, variable.components)
-        torque = variable.representation.diamond(dl_da, a)
+        torque = action.diamond(dl_da, a)
         momentum = [m + t for m, t in zip(momentum, torque, strict=True)]
-        advected[variable.name] = [-sign * x for x in variable.representation.act(xi, a)]
+        advected[variable.name] = [-sign * x for x in action.act(xi, a)]
     return setting.in_state_order([sign * m for m in momentum], advected)
 
 

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
 
+from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.derive.interpret import Quantity, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Formula, Spec, tree
-from coadjoint.spec.model import Parameter, Variable
+from coadjoint.spec.model import Parameter, Variable, unpacked
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ class Setting:
 
     @cached_property
     def state(self) -> tuple[str, ...]:
-        """Component names of the state: momenta, then advected quantities."""
+        """Component names of the state: momenta and advected quantities, or coordinates."""
         return tuple(name for variable in self.spec.state for name in variable.components)
 
     @cached_property
@@ -60,6 +62,37 @@ class Setting:
     def advected(self) -> tuple[Variable, ...]:
         """The advected quantities."""
         return self.spec.having_role("advected")
+
+    @cached_property
+    def algebra(self) -> LieAlgebra:
+        """The Lie algebra of the velocities, its constants in this field.
+
+        Only routes that start from an algebra ask; the reader gives those no other spec.
+        """
+        algebra = self.spec.algebra
+        assert algebra is not None, f"{self.spec.name} has a declared bracket and no algebra"
+        return algebra.over(self.taken)
+
+    @cached_property
+    def actions(self) -> Mapping[str, Representation]:
+        """How the algebra acts on each advected quantity, in this field."""
+        return {
+            variable.name: self._action(variable.representation)
+            for variable in self.advected
+            if variable.representation is not None
+        }
+
+    def _action(self, declared: Representation) -> Representation:
+        """A declared action, its entries in this field."""
+        matrices = tuple(
+            {place: self.taken(value) for place, value in matrix.items()}
+            for matrix in declared.matrices
+        )
+        return Representation(self.algebra, declared.name, declared.dimension, matrices)
+
+    def taken(self, constant: Fraction | int | Element) -> Fraction | int | Element:
+        """A constant of the algebra as it can be reckoned with here."""
+        return self.field.adopt(constant) if isinstance(constant, Element) else constant
 
     @property
     def sign(self) -> int:
@@ -133,6 +166,8 @@ def make_setting(spec: Spec) -> Setting:
 def formulas(spec: Spec) -> tuple[Formula, ...]:
     """Every formula of a spec."""
     stated = [formula for formula in (spec.lagrangian, spec.hamiltonian) if formula is not None]
+    if spec.poisson is not None:
+        stated += [*spec.poisson.functions, *(formula for *_, formula in spec.poisson.entries)]
     declared = [observable.formula for observable in spec.observables]
     return (*stated, *declared, *spec.casimirs, *spec.conserved)
 
@@ -146,6 +181,8 @@ def _function_calls(spec: Spec) -> int:
 def _shaped(quantity: Variable | Parameter, field: Field) -> Quantity:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(field[name] for name in quantity.components)
+    if isinstance(quantity, Variable) and quantity.form:
+        return unpacked(parts, quantity.form)
     match quantity.shape:
         case ():
             return parts[0]

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import isqrt
-from operator import add, mul, truediv
+from operator import mul, truediv
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import sympy
@@ -26,6 +27,14 @@ from coadjoint.exact.element import Element, Factors, Quotient
 Value = TypeVar("Value")
 
 _SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")}
+
+
+def _paired(addends: list[Any]) -> Any:
+    """The sum of a nonempty list, neighbours first."""
+    while len(addends) > 1:
+        pairs = [a + b for a, b in zip(addends[::2], addends[1::2], strict=False)]
+        addends = pairs + addends[2 * len(pairs) :]
+    return addends[0]
 
 
 @dataclass(frozen=True)
@@ -112,37 +121,42 @@ class Field:
         """A rational number as an element."""
         return self.zero + Fraction(value)
 
-    def adopt(self, element: Element) -> Element:
-        """An element of another field, of symbols that this one has too.
+    def adopt(self, element: Element, names: Mapping[str, str] = MappingProxyType({})) -> Element:
+        """A function-free element of another field, of symbols that this one has too.
+
+        Args:
+            element: What to take over.
+            names: What some of its symbols are called here.
 
         Raises:
-            KeyError: A symbol is not known here.
+            KeyError: A symbol that occurs is not known here.
         """
-        names = [str(symbol) for symbol in element.factors.ring.symbols]
+        own = [names.get(str(s), str(s)) for s in element.factors.ring.symbols]
 
         def moved(p: PolyElement) -> Element:
-            total = self.zero
+            terms = {}
             for exponents, number in p.terms():
-                powers = (
-                    self[name] ** e for name, e in zip(names, exponents, strict=True) if e
-                )
-                total += reduce(mul, powers, self._element(self._ring.ground_new(number)))
-            return total
+                powers = [0] * len(self._names)
+                for name, exponent in zip(own, exponents, strict=True):
+                    if exponent:
+                        powers[self._position[name]] = exponent
+                terms[tuple(powers)] = number
+            return self._element(self._ring.from_dict(terms))
 
-        return sum(
-            (
-                reduce(
-                    truediv,
-                    (
-                        moved(element.factors.known[factor]) ** exponent
-                        for factor, exponent in quotient.powers.items()
-                    ),
-                    moved(quotient.numer),
-                )
-                for quotient in element.parts
-            ),
-            self.zero,
-        )
+        def divided(quotient: Quotient) -> Element:
+            factors = element.factors.known
+            return reduce(
+                truediv,
+                (moved(factors[n]) ** exponent for n, exponent in quotient.powers.items()),
+                moved(quotient.numer),
+            )
+
+        return self.sum(map(divided, element.parts))
+
+    def sum(self, elements: Iterable[Element]) -> Element:
+        """The sum of elements, added in pairs: a long sum takes no quadratic time."""
+        addends = list(elements)
+        return _paired(addends) if addends else self.zero
 
     def vector(self, values: Iterable[Element | int]) -> tuple[Element, ...]:
         """Values that may still be plain numbers, as elements."""
@@ -296,7 +310,7 @@ class Field:
             inner = self.evaluate(argument, known, number, call)
             known[generator] = call(self.adjoined[generator].function, inner)
         quotients = [self._quotient(quotient, known, number) for quotient in element.parts]
-        return reduce(add, quotients) if quotients else number(Fraction(0))
+        return _paired(quotients) if quotients else number(Fraction(0))
 
     def _quotient(
         self, quotient: Quotient, values: Mapping[str, Value], number: Callable[[Fraction], Value]
@@ -321,14 +335,13 @@ class Field:
         self, p: PolyElement, values: Mapping[str, Value], number: Callable[[Fraction], Value]
     ) -> Value:
         """Sum of coefficient times powers, in the order of the ring."""
-        total: Any = None
+        terms: list[Any] = []
         for monomial in self._written(p):
             factors = [values[name] for name, power in monomial.powers for _ in range(power)]
             if monomial.number != 1 or not factors:
                 factors.insert(0, number(monomial.number))
-            term = reduce(mul, factors)
-            total = term if total is None else total + term
-        return number(Fraction(0)) if total is None else total
+            terms.append(reduce(mul, factors))
+        return _paired(terms) if terms else number(Fraction(0))
 
     def _written(self, p: PolyElement) -> tuple[Monomial, ...]:
         """The addends of a polynomial by name, remembered: oracles evaluate at many points."""
@@ -398,11 +411,11 @@ class Field:
         Returns:
             Single quotients in the order of the field; zero alone for zero.
         """
-        groups: dict[tuple[tuple[int, int], ...], Element] = {}
+        groups: dict[tuple[tuple[int, int], ...], list[Element]] = {}
         for term in self.terms(element):
             key = tuple(sorted(term.parts[0].powers.items()))
-            groups[key] = groups[key] + term if key in groups else term
-        return list(groups.values()) or [element]
+            groups.setdefault(key, []).append(term)
+        return [self.sum(terms) for terms in groups.values()] or [element]
 
     def to_sympy(self, element: Element) -> sympy.Expr:
         """The element as a SymPy expression of plain symbols, for people to read and use."""

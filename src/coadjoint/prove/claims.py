@@ -16,15 +16,15 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.completeness import METHOD, bracket_of, completeness, described
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.identities import (
     antisymmetry_defects,
     casimir_defects,
     drift,
     hamiltonian_defects,
-    jacobi_defects,
 )
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero
 from coadjoint.spec import Formula, Spec
 
 #: (statement, kind, what must be zero or a decision already made)
@@ -81,9 +81,14 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 def _about_structure(first: Equations) -> Iterator[Examined]:
     """The algebra and the bracket."""
-    setting = first.setting
-    algebra, tensor = momentum_algebra(setting), first.exact.poisson_tensor
-    yield f"{algebra.name} satisfies the Jacobi identity", "algebra", lambda: _constants(algebra)
+    setting, tensor = first.setting, first.exact.poisson_tensor
+    if setting.spec.algebra is not None:
+        algebra = momentum_algebra(setting)
+        yield (
+            f"{algebra.name} satisfies the Jacobi identity",
+            "algebra",
+            lambda: _constants(algebra),
+        )
     yield (
         "the Poisson tensor is antisymmetric",
         "jacobi",
@@ -92,15 +97,14 @@ def _about_structure(first: Equations) -> Iterator[Examined]:
     yield (
         "the Poisson bracket satisfies the Jacobi identity",
         "jacobi",
-        lambda: jacobi_defects(tensor, setting.state, setting.field),
+        lambda: list(bracket_of(first).jacobi_defects().values()),
     )
 
 
 def _constants(algebra: LieAlgebra) -> Decision:
     """Jacobi identity of the structure constants; they were refused if it failed."""
-    violation = algebra.jacobi_violation()
-    assert violation is None, violation
-    return Decision(Verdict.PROVED, "rational arithmetic on the structure constants")
+    algebra.check_jacobi()
+    return Decision(Verdict.PROVED, CONSTANTS)
 
 
 def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
@@ -168,12 +172,25 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
             "casimir",
             partial(casimir_defects, first, setting.formula(casimir)),
         )
+    yield from _about_completeness(first)
     for integral in spec.conserved:
         yield (
             f"{integral.text} is conserved",
             "conserved",
             partial(drift, first, _with_observables(first, integral)),
         )
+
+
+def _about_completeness(first: Equations) -> Iterator[Examined]:
+    """Casimirs that the spec does not name, and whether these are all."""
+    known = completeness(first)
+    for casimir in known.found:
+        yield (
+            f"{described(first.setting.field, casimir)} is a Casimir",
+            "casimir",
+            partial(casimir_defects, first, casimir),
+        )
+    yield known.statement, "casimir", lambda: Decision(Verdict.PROVED, METHOD)
 
 
 def _with_observables(first: Equations, formula: Formula) -> Element:

@@ -25,6 +25,7 @@ POINTS = 20
 #: Relative size below which a 50-digit value counts as zero; cancellation may cost 20 digits.
 NEGLIGIBLE = mpmath.mpf(10) ** -(DIGITS - 20)
 NORMAL_FORM = "normal form in the field of rational functions"
+CONSTANTS = "exact arithmetic on the structure constants"
 NORMAL_FORM_WITH_FUNCTIONS = "normal form modulo the relations of the elementary functions"
 
 

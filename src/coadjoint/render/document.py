@@ -43,12 +43,12 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
         document: The fields of a `coadjoint.derive.document.Document`.
         form: ``"text"``, ``"latex"`` or ``"html"``.
 
-    >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": "", "lines": ()}
-    >>> top = {"name": "top", "title": "A top", "source": "", "description": "", "route": "r"}
+    >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": "", "lines": (), "words": ()}
+    >>> top = {"title": "A top", "about": "System top.", "source": "", "description": ""}
     >>> print(render_document({**top, "sections": [section]}))
     A top
     =====
-    System top, route r.
+    System top.
     <BLANKLINE>
     1. Momenta
        mu = dl/dxi
@@ -77,6 +77,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
     )
     made.filters["aligned"] = aligned
+    made.filters["described"] = described
     return made
 
 
@@ -109,15 +110,28 @@ def aligned(lines: Sequence[Mapping[str, str]]) -> list[str]:
     >>> aligned([{"text": "a = 1"}, {"text": "long = 2"}])
     ['a    = 1', 'long = 2']
     """
-    sides = [line["text"].split(" = ", 1) for line in lines]
+    return _columns([line["text"].split(" = ", 1) for line in lines], " = ")
+
+
+def described(words: Sequence[Sequence[str]]) -> list[str]:
+    """Names with what is said of them in a second column, long texts continued.
+
+    >>> described([("rank", "2"), ("Killing form", "3 minus")])
+    ['rank          2', 'Killing form  3 minus']
+    """
+    return _columns(words, "  ")
+
+
+def _columns(sides: Sequence[Sequence[str]], joint: str) -> list[str]:
+    """Two columns, the second one wrapped."""
     width = max((len(left) for left, _ in sides), default=0)
     return [
         piece
         for left, right in sides
         for piece in textwrap.wrap(
-            f"{left:<{width}} = {right}",
+            f"{left:<{width}}{joint}{right}",
             WIDTH - 6,
-            subsequent_indent=" " * (width + 3),
+            subsequent_indent=" " * (width + len(joint)),
             break_long_words=False,
             break_on_hyphens=False,
         )
