@@ -35,9 +35,17 @@ def test_the_rotor_stabilises_the_middle_axis(example):
     assert all(fall < 0.01 for L, fall in strayed.items() if L > 1 / 3)
 
 
+def test_the_rigid_body_moves_as_a_pendulum(example, tmp_path):
+    """The angle on the elliptic cylinder follows the pendulum's equation; the picture is drawn."""
+    difference, span = example("rigid_body_as_pendulum")["main"](str(tmp_path / "body.png"))
+    assert difference < 1e-7  # the body is integrated with a relative tolerance of about 1e-9
+    assert span > 1.0
+    assert (tmp_path / "body.png").stat().st_size > 10_000
+
+
 def test_every_example_has_its_test():
     """No script of the folder is left out here."""
     tested = Path(__file__).read_text(encoding="utf-8")
     scripts = sorted(path.stem for path in EXAMPLES.glob("*.py"))
-    assert len(scripts) == 3
+    assert len(scripts) == 4
     assert all(f'example("{name}")' in tested for name in scripts)

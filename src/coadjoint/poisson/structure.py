@@ -116,7 +116,7 @@ class PoissonStructure:
         except AlgebraError:
             pass  # the identity fails; the expansion below names every triple
         defects = schouten_bracket(self.tensor, slopes_by(self.field, self.names))
-        normal = {triple: self.field.normal(-value) for triple, value in defects.items()}
+        normal = {triple: self.field.normal(value) for triple, value in defects.items()}
         return {triple: value for triple, value in normal.items() if value != 0}
 
     def check_jacobi(self) -> None:

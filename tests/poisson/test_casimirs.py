@@ -1,0 +1,285 @@
+"""Casimirs are found: as many as the rank predicts, each one proved, none by luck."""
+
+import time
+from fractions import Fraction
+
+import pytest
+
+from coadjoint.algebra import algebra_by_name, from_brackets, semidirect_product
+from coadjoint.algebra.representation import defining
+from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.exact import Field, element_text
+from coadjoint.limits import MONOMIALS
+from coadjoint.poisson import PoissonStructure, declared, lie_poisson, nambu
+from coadjoint.poisson.casimirs import casimirs, lie_poisson_dual
+from coadjoint.poisson.gradings import Gradings
+from coadjoint.poisson.invariants import dual_matrix, has_trace_form, matrix_invariants
+from coadjoint.poisson.polynomial_bracket import PolynomialBracket
+from coadjoint.poisson.polynomials import Polynomial, read_polynomial
+from coadjoint.poisson.ranks import generic_rank
+
+#: Algebras of dimension at most 11, with the degrees of their Casimirs.
+DEGREES = {
+    "so(3)": [2],
+    "so(4)": [2, 2],
+    "so(5)": [2, 4],
+    "so(2,1)": [2],
+    "so(3,1)": [2, 2],
+    "so(2,2)": [2, 2],
+    "so(3,2)": [2, 4],
+    "se(2)": [2],
+    "se(3)": [2, 2],
+    "se(4)": [2, 4],
+    "sl(2,R)": [2],
+    "sl(3,R)": [2, 3],
+    "gl(2)": [1, 2],
+    "gl(3)": [1, 2, 3],
+    "su(2)": [2],
+    "su(3)": [2, 3],
+    "u(2)": [1, 2],
+    "u(3)": [1, 2, 3],
+    "sp(2)": [2],
+    "sp(4)": [2, 4],
+    "h(1)": [1],
+    "h(5)": [1],
+    "g(3)": [2, 4],
+    "bargmann": [1, 2, 4],
+    "aff(1)": [],
+    "quaternions": [2],
+    "coquaternions": [2],
+    "R^3": [1, 1, 1],
+}
+
+
+def degree(structure, element):
+    """The degree of a polynomial element."""
+    return read_polynomial(structure.field, element, structure.names).degree
+
+
+def check_casimirs(structure, generators):
+    """Each generator commutes with every coordinate, and their gradients are independent."""
+    for element in generators:
+        defects = structure.casimir_defects(element)
+        assert not any(defects), element_text(structure.field, element)
+    slopes = [structure.gradient(element) for element in generators]
+    assert generic_rank(structure.field, slopes) == len(generators)
+
+
+@pytest.mark.parametrize("name", DEGREES)
+def test_every_casimir_of_the_catalogue_is_found(name):
+    """As many independent Casimirs as dimension - rank, of the degrees that books give."""
+    algebra = algebra_by_name(name)
+    assert algebra.dimension <= 11
+    start = time.process_time()
+    search = casimirs(algebra, 4)
+    assert time.process_time() - start < 2.0, "the stated bound"
+    assert len(search.generators) == search.expected == len(DEGREES[name])
+    assert search.missing == ""
+    check_casimirs(search.structure, search.generators)
+    assert [degree(search.structure, c) for c in search.generators] == DEGREES[name]
+
+
+def test_casimir_check_sees_one_wrong_sign_and_a_repetition():
+    """The check above can fail: for a function that is none, and for a dependent one."""
+    search = casimirs(algebra_by_name("se(3)"), 2)
+    structure, (first, second) = search.structure, search.generators
+    with pytest.raises(AssertionError):
+        check_casimirs(structure, [first - 2 * structure.field["J1"] * structure.field["P1"]])
+    with pytest.raises(AssertionError):
+        check_casimirs(structure, [first, second, first * second])
+
+
+def test_casimirs_have_a_readable_normal_form():
+    """Small coprime integers, the leading coefficient positive."""
+    search = casimirs(algebra_by_name("bargmann"), 2)
+    field = search.structure.field
+    assert [element_text(field, c) for c in search.generators] == [
+        "M",
+        "P1^2 + P2^2 + P3^2 - 2*E*M",
+    ]
+
+
+def test_a_degree_too_small_is_said():
+    """g(3) has a Casimir of degree 4; a search up to 3 names one missing and why."""
+    search = casimirs(algebra_by_name("g(3)"), 3)
+    assert (len(search.generators), search.expected) == (1, 2)
+    assert search.missing.startswith("1 not found: no more polynomials up to degree 3")
+
+
+@pytest.mark.parametrize(
+    ("weights", "casimir"), [((1, 1), "e2/e3"), ((1, Fraction(3, 2)), "e2^3/e3^2")]
+)
+def test_rational_casimirs_are_quotients_of_semi_invariants(weights, casimir):
+    """[e1, e2] = a e2, [e1, e3] = b e3 has no polynomial Casimir but e2^b/e3^a."""
+    rows = {(0, 1): {1: weights[0]}, (0, 2): {2: weights[1]}}
+    search = casimirs(from_brackets("scaling", ("e1", "e2", "e3"), rows))
+    assert [element_text(search.structure.field, c) for c in search.generators] == [casimir]
+    assert search.missing == ""
+    assert search.method == "quotients of semi-invariants"
+    check_casimirs(search.structure, search.generators)
+
+
+def test_a_casimir_that_is_not_rational_is_missing():
+    """A Jordan block has the Casimir e2 exp(-e3/e2) or the like, which is not found, and said."""
+    rows = {(0, 1): {1: 1, 2: 1}, (0, 2): {2: 1}}
+    search = casimirs(from_brackets("spiral", ("e1", "e2", "e3"), rows))
+    assert (search.generators, search.expected) == ((), 1)
+    assert "1 not found" in search.missing
+
+
+def test_the_cubic_casimir_of_sl2_with_vectors():
+    """sl(2,R) (s) R^2 has one Casimir, of degree 3 (Holm 2011, section 6.5)."""
+    sl2 = algebra_by_name("sl(2,R)")
+    search = casimirs(semidirect_product(sl2, [("p", defining(sl2))]))
+    assert [degree(search.structure, c) for c in search.generators] == [3]
+    assert search.expected == 1
+
+
+def test_casimirs_of_a_bracket_that_is_not_linear():
+    """The Nambu bracket of a quartic c has just c, found by inhomogeneous monomials."""
+    field = Field(["x", "y", "z"])
+    x, y, z = (field[name] for name in field.names)
+    c = x**4 + x * y + z**2 - 3 * z
+    structure = nambu(field, field.names, [c])
+    (found,) = structure.casimirs(4).generators
+    assert found == c
+
+
+@pytest.mark.parametrize(
+    ("name", "degrees"),
+    [
+        ("so(6)", [2, 3, 4]),
+        ("so(8)", [2, 4, 4, 6]),
+        ("so(4,4)", [2, 4, 4, 6]),
+        ("sp(6)", [2, 4, 6]),
+    ],
+)
+def test_larger_algebras_are_completed_by_matrix_invariants(name, degrees):
+    """so(6), so(8) and sp(6) have all their Casimirs, counted by independent gradients."""
+    search = casimirs(algebra_by_name(name), 4)
+    assert sorted(degree(search.structure, c) for c in search.generators) == degrees
+    assert search.missing == ""
+    slopes = [search.structure.gradient(c) for c in search.generators]
+    assert generic_rank(search.structure.field, slopes) == len(degrees)
+    check_casimirs(search.structure, search.generators[:2])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["so(4)", "so(5)", "so(3,1)", "so(4,2)", "su(2)", "su(3)", "u(2)", "gl(2)", "sl(3,R)", "sp(4)"],
+)
+def test_matrix_invariants_are_as_many_as_the_search_finds(name):
+    """Traces, sums of Pfaffians and the Pfaffian alone give every Casimir of these algebras."""
+    algebra = algebra_by_name(name)
+    structure = lie_poisson_dual(algebra)
+    found = matrix_invariants(algebra, PolynomialBracket(structure))
+    elements = [p.element(structure.field, structure.names) for p in found]
+    assert all(map(structure.is_casimir, elements))
+    slopes = [structure.gradient(element) for element in elements]
+    assert generic_rank(structure.field, slopes) == algebra.casimir_count() > 0
+
+
+def test_the_polynomial_test_of_casimirs_can_fail():
+    """A wrong coefficient in a matrix invariant is caught by the proof beside it."""
+    algebra = algebra_by_name("so(4)")
+    bracket = PolynomialBracket(lie_poisson_dual(algebra))
+    good = matrix_invariants(algebra, bracket)[0]
+    lead = max(good.terms)
+    assert bracket.is_casimir(good)
+    assert not bracket.is_casimir(Polynomial({**good.terms, lead: -good.terms[lead]}))
+
+
+def test_the_dual_matrix_pairs_with_the_basis():
+    """tr(M e_i) = mu_i for the generators of sp(4)."""
+    algebra = algebra_by_name("sp(4)")
+    dual = dual_matrix(algebra)
+    for i, matrix in enumerate(algebra.matrices):
+        total = Polynomial({})
+        for (r, c), value in matrix.items():
+            if (c, r) in dual:
+                total = total + Polynomial({e: v * value for e, v in dual[c, r].terms.items()})
+        assert total.terms == {tuple(int(n == i) for n in range(10)): 1}
+
+
+def test_a_degenerate_trace_form_is_refused_with_a_vector():
+    """In se(3) the translations are orthogonal to everything."""
+    algebra = algebra_by_name("se(3)")
+    assert not has_trace_form(algebra)
+    with pytest.raises(AlgebraError, match=r"trace form is degenerate: .*P1") as caught:
+        dual_matrix(algebra)
+    assert caught.value.vector == {"P1": "1"}
+
+
+def test_a_search_beyond_the_limit_is_refused_with_its_cost():
+    """se(8) has 36 generators: 91389 monomials up to degree 4."""
+    with pytest.raises(LimitError, match="91389 monomials") as caught:
+        casimirs(algebra_by_name("se(8)"), 4)
+    assert caught.value.limit == MONOMIALS
+
+
+def test_a_search_refuses_parameters_and_quotients_and_functions():
+    """Coefficients must be numbers; what is in the way is named."""
+    field = Field(["x", "y", "z", "a"], slots=1)
+    x, z, a = (field[name] for name in "xza")
+    root = field.call("sqrt", x)
+    for entry, found in ((a * z, "'a'"), (1 / z, "quotient"), (root, "'sqrt'")):
+        structure = declared(field, ("x", "y", "z"), {(0, 1): entry})
+        with pytest.raises(AlgebraError, match=found):
+            structure.casimirs(2)
+
+
+def test_a_search_refuses_a_bracket_that_is_not_poisson():
+    """Asking only generating coordinates rests on the Jacobi identity."""
+    field = Field(["x", "y", "z"])
+    x, y, zero = field["x"], field["y"], field.zero
+    tensor = ((zero, x, y), (-x, zero, zero), (-y, zero, zero))
+    with pytest.raises(AlgebraError, match="Jacobi"):
+        PoissonStructure(field, field.names, tensor).casimirs(2)
+
+
+def test_few_coordinates_generate_all_others():
+    """so(5) is generated by four of its ten coordinates, g(3) by three rotations, boosts, E."""
+    so5 = PolynomialBracket(lie_poisson_dual(algebra_by_name("so(5)")))
+    assert len(so5.generating) == 4
+    g3 = PolynomialBracket(lie_poisson_dual(algebra_by_name("g(3)")))
+    assert len(g3.generating) < 6
+
+
+def check_graded(entries, size):
+    """Terms of {x_i, x_j} have the weight of x_i x_j, up to one shift."""
+    gradings = Gradings(entries, size)
+    shifts = set()
+    for (i, j), entry in entries.items():
+        for exponents in entry.terms:
+            term = gradings.weight([k for k, e in enumerate(exponents) for _ in range(e)])
+            pair = gradings.weight([i, j])
+            difference = tuple(a - b for a, b in zip(term[0], pair[0], strict=True))
+            shifts.add((difference, term[1] ^ pair[1]))
+    return shifts
+
+
+@pytest.mark.parametrize("name", ["so(4)", "g(3)", "su(3)"])
+def test_gradings_are_gradings(name):
+    """One shift for all entries of the bracket; a changed entry is of another weight."""
+    bracket = PolynomialBracket(lie_poisson_dual(algebra_by_name(name)))
+    assert len(check_graded(bracket.entries, bracket.size)) == 1
+
+
+def test_gradings_split_the_monomials():
+    """so(4) is graded by the degree and by three reflections."""
+    bracket = PolynomialBracket(lie_poisson_dual(algebra_by_name("so(4)")))
+    gradings = Gradings(bracket.entries, bracket.size)
+    assert len({gradings.weight([i]) for i in range(6)}) == 6
+    assert gradings.weight([0, 5]) == gradings.weight([1, 4]) == gradings.weight([2, 3])
+    assert gradings.weight([0, 0]) == gradings.weight([3, 3]) != gradings.weight([0, 5])
+
+
+def test_both_signs_of_the_bracket_have_the_same_casimirs():
+    """The plus bracket of se(3)* has the Casimirs of the minus bracket."""
+    algebra = algebra_by_name("se(3)")
+    field = Field(algebra.basis)
+    texts = [
+        [element_text(field, c) for c in casimirs(structure, 2).generators]
+        for structure in (lie_poisson(algebra, field, algebra.basis, s) for s in (-1, 1))
+    ]
+    assert texts[0] == texts[1] != []
