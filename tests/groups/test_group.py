@@ -144,6 +144,24 @@ def test_AD_and_Ad_agree(name):
     assert same(group.field, subtract(group.AD(g, near), one), group.matrix(group.Ad(g, xi)))
 
 
+@pytest.mark.parametrize(
+    ("name", "places"),
+    [
+        ("H(1)", {"A1": (0, 1), "B1": (1, 2), "C": (0, 2)}),
+        ("SE(3)", {"P1": (0, 3), "P2": (1, 3), "P3": (2, 3)}),
+        ("G(3)", {"K1": (0, 3), "P1": (0, 4), "P3": (2, 4), "E": (3, 4)}),
+        ("Aff(1)", {"1_1": (0, 0), "e2": (0, 1)}),
+        ("SL(2,R)(s)R^2", {"1_1": (0, 0), "P1": (0, 2), "P2": (1, 2)}),
+    ],
+)
+def test_symbols_stand_where_the_book_puts_them(name, places):
+    """(a, b, c), (R, v), (R, v, r, tau), (A, v) are entries of the generic matrix."""
+    group = matrix_group(name, "g")
+    g = group.element("g")
+    for symbol, (r, c) in places.items():
+        assert g[r][c] == group.field[f"g_{symbol}"]
+
+
 @pytest.mark.parametrize("name", ["SE(3)", "G(3)"])
 def test_generic_coadjoint_action_is_fast(name):
     """Ad* of a generic element takes well under a second."""
@@ -217,7 +235,7 @@ def test_what_is_not_in_the_algebra_is_refused():
 
 def test_Ad_refuses_what_is_not_in_the_group():
     """A conjugation that leaves the algebra is noticed, not projected."""
-    with pytest.raises(AlgebraError, match="is not in"):
+    with pytest.raises(AlgebraError, match=r"SO\(3\).*entry \(1, 1\) of g\^T K g - K is 3"):
         matrix_group("SO(3)").Ad(((2, 0, 0), (0, 1, 0), (0, 0, 1)), (1, 2, 3))
 
 

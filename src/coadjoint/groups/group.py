@@ -121,6 +121,8 @@ class MatrixGroup:
         """
         self.check_element(g)
         L_inverse = self.linear.inverse(self._linear_part(g))
+        if not self.nilpotent:
+            return L_inverse
         return product(L_inverse, unipotent_inverse(product(g, L_inverse)))
 
     def _linear_part(self, g: Matrix) -> Matrix:
