@@ -1,16 +1,15 @@
 """A Poisson bracket whose entries are polynomials over the rationals, made ready for searches.
 
 Comes in: a Poisson structure. Goes out: a `PolynomialBracket`: the entries as plain polynomials,
-``{x_i, p}`` of a polynomial, the coordinates that scale all others, and the few coordinates that
-generate the others, which are the only ones a Casimir must be asked by: ``{x_i, C} = {x_j, C} = 0``
-gives ``{{x_i, x_j}, C} = 0`` by the Jacobi identity. Read next: `coadjoint.poisson.gradings`.
+``{x_i, m}`` of a monomial, the coordinates that scale all others, and the few that generate the
+others. Read next: `coadjoint.poisson.gradings`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 
+from coadjoint.poisson.generating import generating
 from coadjoint.poisson.polynomials import (
     Exponents,
     Number,
@@ -74,17 +73,13 @@ class PolynomialBracket:
 
     @cached_property
     def generating(self) -> list[int]:
-        """Coordinates whose brackets give, one by one, all others; found by leaving out."""
-        products: dict[tuple[int, int], int] = {}
-        for pair, entry in self.entries.items():
-            if len(entry.terms) == 1 and entry.degree == 1:
-                products[pair] = next(iter(entry.terms)).index(1)
-        kept = list(range(self.size))
-        for i in reversed(range(self.size)):
-            rest = [j for j in kept if j != i]
-            if i in _closure(rest, products):
-                kept = rest
-        return kept
+        """Coordinates that generate the others."""
+        single = {
+            pair: next(iter(entry.terms)).index(1)
+            for pair, entry in self.entries.items()
+            if len(entry.terms) == 1 and entry.degree == 1
+        }
+        return generating(single, self.size)
 
     @cached_property
     def scalings(self) -> dict[int, dict[int, Number]]:
@@ -102,13 +97,3 @@ class PolynomialBracket:
             sum(factor * monomial[j] for j, factor in factors.items())
             for factors in self.scalings.values()
         )
-
-
-def _closure(members: Sequence[int], products: dict[tuple[int, int], int]) -> set[int]:
-    """What some coordinates generate under brackets that give a single coordinate."""
-    reached = set(members)
-    while True:
-        new = {k for (i, j), k in products.items() if i in reached and j in reached} - reached
-        if not new:
-            return reached
-        reached |= new

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.poisson.generating import generating
 from coadjoint.poisson.jacobi import Triple, schouten_bracket, slopes_by
 from coadjoint.poisson.ranks import generic_rank
 
@@ -142,7 +143,21 @@ class PoissonStructure:
 
     def is_casimir(self, f: Element) -> bool:
         """Whether f commutes with every function: ``J grad f = 0``, by normal form."""
-        return not any(defect != 0 for defect in self.casimir_defects(f))
+        slopes = self.gradient(f)
+        return all(self.field.is_zero(self._along(i, slopes)) for i in self._asked)
+
+    @cached_property
+    def _asked(self) -> Sequence[int]:
+        """Coordinates that generate the others where Jacobi is proved by constants; else all."""
+        try:
+            algebra = self.lie_algebra()
+        except AlgebraError:
+            algebra = None
+        if algebra is None or algebra.dimension > self.dimension:
+            return range(self.dimension)
+        rows = algebra.constants.items()
+        single = {pair: next(iter(row)) for pair, row in rows if len(row) == 1}
+        return generating(single, self.dimension)
 
     def generic_rank(self) -> int:
         """Rank of the tensor at almost every point: even, and the dimension of the leaves."""
@@ -165,6 +180,11 @@ class PoissonStructure:
         Raises:
             AlgebraError: The tensor is affine and violates the Jacobi identity.
         """
+        return self._algebra
+
+    @cached_property
+    def _algebra(self) -> LieAlgebra | None:
+        """`lie_algebra`, remembered."""
         constants: dict[tuple[int, int], dict[int, Fraction | Element]] = {}
         read: dict[int, dict[int, Fraction | Element] | None] = {}  # by object: most are repeated
         for i, row in enumerate(self._rows):
