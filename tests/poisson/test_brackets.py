@@ -6,7 +6,6 @@ from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
 from coadjoint.poisson import canonical, declared, frozen, lie_poisson, magnetic, nambu
-from coadjoint.poisson.ranks import generic_rank
 
 PAIRS = [(f"r{n}", f"v{n}") for n in (1, 2, 3)]
 
@@ -128,20 +127,3 @@ def test_the_sign_of_a_lie_poisson_bracket_is_a_sign():
     algebra = algebra_by_name("so(3)")
     with pytest.raises(AlgebraError, match="bracket is 2; expected -1"):
         lie_poisson(algebra, Field(algebra.basis), algebra.basis, 2)
-
-
-def test_ranks_refuse_functions_that_cannot_be_sampled():
-    """A sine in a tensor is named."""
-    field = Field(["x"], slots=1)
-    with pytest.raises(AlgebraError, match="'sin'"):
-        generic_rank(field, [{0: field.call("sin", field["x"])}])
-
-
-def test_ranks_pass_over_poles_and_missing_roots():
-    """sqrt(x)/(x - y) has rank one; a matrix of equal columns too; the zero matrix has none."""
-    field = Field(["x", "y"], slots=1)
-    x, y = field["x"], field["y"]
-    entry = field.call("sqrt", x) / (x - y)
-    assert generic_rank(field, [{0: entry, 1: entry}, {0: y * entry, 1: y * entry}]) == 1
-    assert generic_rank(field, [{0: entry}, {1: y}]) == 2
-    assert generic_rank(field, [{}, {}]) == 0

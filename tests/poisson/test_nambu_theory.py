@@ -46,14 +46,6 @@ def test_the_proof_for_undetermined_functions_can_fail():
         assert any(defect != 0 for defect in defects.values())
 
 
-def test_total_derivatives_obey_the_chain_rule():
-    """D_1 (c_2 c) = c_12 c + c_2 c_1, and mixed derivatives do not depend on their order."""
-    jet = Jet(["c"], 2)
-    slopes = dict(jet.slopes(jet["c_2"] * jet["c"]))
-    assert slopes[0] == jet["c_12"] * jet["c"] + jet["c_2"] * jet["c_1"]
-    assert dict(jet.slopes(jet["c_1"]))[1] == dict(jet.slopes(jet["c_2"]))[0] == jet["c_12"]
-
-
 def test_functions_of_the_casimir_are_casimirs():
     """{f, Phi(c)} = 0 with undetermined f, Phi and c: gradients along grad c move nothing."""
     jet = Jet(["c", "f", "Phi"], 3)
