@@ -8,8 +8,9 @@ import sympy
 from coadjoint.derive import derive, make_setting
 from coadjoint.errors import ClaimError
 from coadjoint.exact import Field
+from coadjoint.poisson.jacobi import jacobi_defects
 from coadjoint.prove import Verdict, prove
-from coadjoint.prove.identities import antisymmetry_defects, casimir_defects, jacobi_defects
+from coadjoint.prove.identities import antisymmetry_defects, casimir_defects
 from coadjoint.prove.zero import decide_zero
 from tests.specs import RIGID_BODY, shipped, spec
 
