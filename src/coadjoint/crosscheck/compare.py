@@ -102,7 +102,7 @@ class Subject:
         """Whether functions beyond sqrt are called, so that bits are not promised."""
         return bool(elementary_functions(self.programs.values()))
 
-    @property
+    @cached_property
     def threshold(self) -> float:
         """The largest k allowed.
 

@@ -141,13 +141,14 @@ class Quotient:
 class Element:
     """An exact rational function; make one through a `Field`, then use ``+ - * / **``."""
 
-    __slots__ = ("_parts", "factors")
+    __slots__ = ("_parts", "_sorted", "factors")
 
     def __init__(
         self, factors: Factors, quotients: Iterable[tuple[PolyElement, Mapping[int, int]]]
     ) -> None:
         self.factors = factors
         self._parts: dict[Support, Quotient] = {}
+        self._sorted: tuple[Quotient, ...] | None = None
         for numer, powers in quotients:
             self._insert(numer, powers)
 
@@ -190,9 +191,11 @@ class Element:
     @property
     def parts(self) -> tuple[Quotient, ...]:
         """The quotients whose sum the element is, in the order of the ring."""
-        if len(self._parts) < 2:
-            return tuple(self._parts.values())
-        return tuple(sorted(self._parts.values(), key=Quotient.order))
+        if self._sorted is None:
+            several = len(self._parts) > 1
+            parts = self._parts.values()
+            self._sorted = tuple(sorted(parts, key=Quotient.order) if several else parts)
+        return self._sorted
 
     def combined(self) -> Element:
         """The same element as a single quotient, or zero."""
