@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from coadjoint.crosscheck.ladder import Report, crosscheck
+from coadjoint.crosscheck.ladder import Report, available_targets, crosscheck
 from coadjoint.crosscheck.reference import Reference
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
@@ -98,6 +98,7 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Repor
         for name, text in rendered.texts.items():
             (Path(folder) / name).write_text(text, encoding="utf-8")
         system = load_folder(Path(folder))
+        system.prepare(available_targets())
         progress("cross-check")
         reference = Reference(rendered.equations)
         return crosscheck(rendered.programs, rendered.texts, reference, system)

@@ -23,18 +23,19 @@ from coadjoint.crosscheck.compare import Figures, Subject, against_oracle, equal
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_c, check_python
 from coadjoint.errors import CompilerError
-from coadjoint.lower.program import Program
+from coadjoint.lower.program import LEVELS, Program
 
 TARGETS: Final = ("numpy", "c", "c-fast")
 NO_COMPILER: Final = "not run: no compiler"
 #: Points against 50 digits for a whole system: about a second of a processor for a small one.
 ORACLE_POINTS: Final = 2000
-#: Outputs that are compared for one function, all points together: a large function, of which every
+#: Operations and outputs of one function, all its points together: a large function, of which every
 #: point tries many formulas, gets fewer points, and never less than the other number.
-ORACLE_OUTPUTS: Final = 20_000
+ORACLE_OPERATIONS: Final = 60_000
 FEWEST_POINTS: Final = 50
-#: Points of bitwise comparison for each function.
+#: Points of bitwise comparison for each function, and how many outputs these may be together.
 BIT_POINTS: Final = 200_000
+BIT_OUTPUTS: Final = 20_000_000
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,9 @@ def crosscheck(
         name: against_oracle(subject, name, _share(share, program))
         for name, program in programs.items()
     }
-    equal = equal_bits(subject, bit_points) if "c" in chosen else {}
+    largest = max(len(program.outputs) for program in programs.values())
+    points = min(bit_points, BIT_OUTPUTS // largest)
+    equal = equal_bits(subject, points) if "c" in chosen else {}
     complete = set(TARGETS) <= set(chosen)
     rungs = {
         3: "passed",
@@ -123,8 +126,10 @@ def crosscheck(
 
 def _share(share: int, program: Program) -> int:
     """Points for one function."""
-    affordable = max(FEWEST_POINTS, ORACLE_OUTPUTS // len(program.outputs))
-    return min(share, affordable)
+    size = len(program.outputs) + sum(
+        count for level in LEVELS for count in program.operation_counts(level).values()
+    )
+    return min(share, max(FEWEST_POINTS, ORACLE_OPERATIONS // size))
 
 
 def available_targets() -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import zip_longest
+from operator import itemgetter
 
 from coadjoint.crosscheck.body import Body, failure
 from coadjoint.crosscheck.read_c import read_c
@@ -71,7 +72,7 @@ def _check_same(program: Program, body: Body, file: str) -> None:
     outputs = [(row, as_printed(each.value)) for row, each in enumerate(program.outputs)]
     for found, expected in (
         *zip_longest(body.statements, statements),
-        *zip_longest(body.outputs, outputs),
+        *zip_longest(sorted(body.outputs, key=itemgetter(0)), outputs),
     ):
         if found != expected:
             what = str((expected or found)[0])

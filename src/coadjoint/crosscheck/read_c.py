@@ -18,6 +18,12 @@ _TOKEN = re.compile(
     r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/()\[\]])",
     re.DOTALL,
 )
+_ZEROS = re.compile(
+    r"static const unsigned short _zeros\[\] = \{([\d,\s]*)\};\s*"
+    r"for \(size_t _z = 0; _z < sizeof _zeros / sizeof \*_zeros; \+\+_z\)\s*"
+    r"for \(size_t _n = 0; _n < count; \+\+_n\)\s*"
+    r"out\[_zeros\[_z\] \* out_stride \+ _n\] = 0\.0;"
+)
 _LOOP = "for (size_t _n = 0; _n < count; ++_n) {"
 
 
@@ -27,6 +33,7 @@ def read_c(text: str, name: str) -> list[Body]:
     if not found:
         raise failure(f"kernel.c has no function {name!r}", name)
     body = re.sub(r"/\*.*?\*/", "", found[1], flags=re.DOTALL)
+    zeros, body = _take_zeros(body)
     branches = re.fullmatch(
         r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
         body,
@@ -34,19 +41,27 @@ def read_c(text: str, name: str) -> list[Body]:
     )
     assert branches, "the last alternative matches anything"
     if branches[3] is not None:
-        return [_read_branch(branches[3], "", name)]
+        return [_read_branch(branches[3], "", zeros, name)]
     return [
-        _read_branch(branches[1], "", name),
-        _read_branch(branches[2], " * parameters_stride + _n", name),
+        _read_branch(branches[1], "", zeros, name),
+        _read_branch(branches[2], " * parameters_stride + _n", zeros, name),
     ]
 
 
-def _read_branch(text: str, member: str, name: str) -> Body:
+def _take_zeros(text: str) -> tuple[list[int], str]:
+    """The rows that a table sets to zero, and the text without the table and its loop."""
+    found = _ZEROS.search(text)
+    if not found:
+        return [], text
+    return [int(row) for row in found[1].split(",") if row.strip()], _ZEROS.sub("", text, count=1)
+
+
+def _read_branch(text: str, member: str, zeros: list[int], name: str) -> Body:
     """The statements of one branch; ``member`` is what a parameter's index ends with."""
     before, loop, inside = text.partition(_LOOP)
     if not loop or not inside.rstrip().endswith("}"):
         raise failure(f"kernel.c: no loop over the members in {text.strip()[:60]!r}", name)
-    body = Body()
+    body = Body(outputs=[(row, Number(Fraction(0))) for row in zeros])
     for line in (*_lines(before), *_lines(inside.rstrip()[:-1])):
         _read_line(line, member, body, name)
     return body

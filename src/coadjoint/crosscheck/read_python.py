@@ -76,12 +76,23 @@ def _read_assignment(target: ast.expr, value: ast.expr, body: Body, name: str) -
             _read_names(names, array, first, body, name)
         case (ast.Name(), ast.Subscript(ast.Name(array), ast.Constant(row))):
             _read_names([target], array, row, body, name)
+        case (ast.Name(id="zeros"), ast.Tuple(elts=rows)):
+            body.outputs += [(_row(row, name), Number(Fraction(0))) for row in rows]
+        case (ast.Subscript(ast.Name("out"), ast.Tuple([ast.Name("zeros")])), ast.Constant(0.0)):
+            pass  # the rows were noted where they are listed
         case (ast.Name(id=assigned), _):
             body.statements.append((assigned, _node(value, name)))
         case (ast.Subscript(ast.Name("out"), ast.Constant(int(row))), _):
             body.outputs.append((row, _node(value, name)))
         case _:
             raise failure(f"kernel.py: {ast.unparse(target)!r} is assigned", name)
+
+
+def _row(tree: ast.expr, name: str) -> int:
+    """A row of the table of zeros."""
+    if isinstance(tree, ast.Constant) and type(tree.value) is int:
+        return tree.value
+    raise failure(f"kernel.py: {ast.unparse(tree)!r} is no row", name)
 
 
 def _read_names(

@@ -44,10 +44,10 @@ class Reference:
             call: Applies an elementary function by name.
         """
         field, exact = self.equations.setting.field, self.equations.exact
-        known = dict(inputs)
+        known, factors = dict(inputs), dict[int, Value]()
 
         def value(element: Element) -> Value:
-            return field.evaluate(element, known, number, call)
+            return field.evaluate(element, known, number, call, factors)
 
         for name, definition in exact.definitions:
             known[name] = value(definition)

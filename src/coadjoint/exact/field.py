@@ -134,14 +134,7 @@ class Field:
         own = [names.get(str(s), str(s)) for s in element.factors.ring.symbols]
 
         def moved(p: PolyElement) -> Element:
-            terms = {}
-            for exponents, number in p.terms():
-                powers = [0] * len(self._names)
-                for name, exponent in zip(own, exponents, strict=True):
-                    if exponent:
-                        powers[self._position[name]] = exponent
-                terms[tuple(powers)] = number
-            return self._element(self._ring.from_dict(terms))
+            return self._element(self._ring.from_dict(self._placed(own, dict(p))))
 
         def divided(quotient: Quotient) -> Element:
             factors = element.factors.known
@@ -152,6 +145,25 @@ class Field:
             )
 
         return self.sum(map(divided, element.parts))
+
+    def polynomial(
+        self, names: Sequence[str], terms: Mapping[tuple[int, ...], Fraction | int]
+    ) -> Element:
+        """A polynomial in some symbols, by the exponents of its terms in their order."""
+        numbers = {e: QQ(value.numerator, value.denominator) for e, value in terms.items()}
+        return self._element(self._ring.from_dict(self._placed(names, numbers)))
+
+    def _placed(self, names: Sequence[str], terms: Mapping[Any, Any]) -> dict[Any, Any]:
+        """Terms in some symbols as terms of the ring; only symbols that occur must be known."""
+        used = [n for n in range(len(names)) if any(exponents[n] for exponents in terms)]
+        places = [self._position[names[n]] for n in used]
+        result = {}
+        for exponents, number in terms.items():
+            powers = [0] * len(self._names)
+            for place, n in zip(places, used, strict=True):
+                powers[place] = exponents[n]
+            result[tuple(powers)] = number
+        return result
 
     def sum(self, elements: Iterable[Element]) -> Element:
         """The sum of elements, added in pairs: a long sum takes no quadratic time."""
@@ -295,6 +307,7 @@ class Field:
         values: Mapping[str, Value],
         number: Callable[[Fraction], Value],
         call: Callable[[str, Value], Value],
+        factors: dict[int, Value] | None = None,
     ) -> Value:
         """The value of an element in any arithmetic with ``+ * /``: term by term, as it is written.
 
@@ -303,27 +316,32 @@ class Field:
             values: Values of the symbols that occur.
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function by name.
+            factors: Remembers the factors of denominators, for many elements at the same values.
         """
+        factors = {} if factors is None else factors
         known = dict(values)
         for generator in self._needed(element):
             argument = self.adjoined[generator].argument
-            inner = self.evaluate(argument, known, number, call)
+            inner = self.evaluate(argument, known, number, call, factors)
             known[generator] = call(self.adjoined[generator].function, inner)
-        quotients = [self._quotient(quotient, known, number) for quotient in element.parts]
+        quotients = [self._quotient(q, known, number, factors) for q in element.parts]
         return _paired(quotients) if quotients else number(Fraction(0))
 
     def _quotient(
-        self, quotient: Quotient, values: Mapping[str, Value], number: Callable[[Fraction], Value]
+        self,
+        quotient: Quotient,
+        values: Mapping[str, Value],
+        number: Callable[[Fraction], Value],
+        factors: dict[int, Value],
     ) -> Value:
         """Numerator over the product of the factors."""
         top = self._polynomial(quotient.numer, values, number)
         if not quotient.powers:
             return top
-        bottom = [
-            self._polynomial(self._factors.known[factor], values, number)
-            for factor, exponent in quotient.powers.items()
-            for _ in range(exponent)
-        ]
+        for factor in quotient.powers:
+            if factor not in factors:
+                factors[factor] = self._polynomial(self._factors.known[factor], values, number)
+        bottom = [factors[n] for n, exponent in quotient.powers.items() for _ in range(exponent)]
         return top / reduce(mul, bottom)  # type: ignore[operator, no-any-return]
 
     def _needed(self, element: Element) -> list[str]:

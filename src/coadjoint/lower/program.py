@@ -76,6 +76,7 @@ class Call:
 
 
 Node = Number | Symbol | Negate | Add | Multiply | Divide | Call
+ZERO = Number(Fraction(0))
 
 
 @dataclass(frozen=True, slots=True)

@@ -87,15 +87,7 @@ class Polynomial:
 
     def element(self, field: Field, names: Sequence[str]) -> Element:
         """The polynomial in named symbols of a field."""
-        symbols = [field[name] for name in names]
-        parts = [field.number(value) for value in self.terms.values()]
-        for n, exponents in enumerate(self.terms):
-            for symbol, e in zip(symbols, exponents, strict=True):
-                if e:
-                    parts[n] = parts[n] * (symbol if e == 1 else symbol**e)
-        while len(parts) > 1:  # in pairs: one after the other would copy the sum each time
-            parts = [sum(parts[n : n + 2], field.zero) for n in range(0, len(parts), 2)]
-        return parts[0] if parts else field.zero
+        return field.polynomial(names, self.terms)
 
 
 def monomial_order(exponents: Exponents) -> tuple[int, Exponents]:

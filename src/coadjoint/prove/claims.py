@@ -188,7 +188,7 @@ def _about_completeness(first: Equations) -> Iterator[Examined]:
         yield (
             f"{described(first.setting.field, casimir)} is a Casimir",
             "casimir",
-            partial(casimir_defects, first, casimir),
+            partial(casimir_defects, first, casimir, known.generating),
         )
     yield known.statement, "casimir", lambda: Decision(Verdict.PROVED, METHOD)
 

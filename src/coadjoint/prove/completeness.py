@@ -16,6 +16,7 @@ from coadjoint.errors import CoadjointError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, casimirs
+from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.ranks import generic_rank
 
 #: Casimirs are looked for up to this degree unless told otherwise: every algebra of dimension 11 or
@@ -34,12 +35,14 @@ class Completeness:
         known: How many independent ones are known, claimed or found.
         expected: How many there are near almost every point: dimension - rank.
         missing: Why some are missing; empty if none is.
+        generating: Places of coordinates whose brackets give all others.
     """
 
     found: tuple[Element, ...]
     known: int
     expected: int
     missing: str
+    generating: tuple[int, ...] = ()
 
     @property
     def statement(self) -> str:
@@ -78,7 +81,9 @@ def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
         results, missing = _search(equations, structure, degree)
         found = independent(structure, [*known, *results])[len(known) :]
     whole = len(known) + len(found)
-    return Completeness(tuple(found), whole, expected, missing if whole < expected else "")
+    generating = PolynomialBracket(structure).generating if found else []
+    missing = missing if whole < expected else ""
+    return Completeness(tuple(found), whole, expected, missing, tuple(generating))
 
 
 def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:

@@ -16,11 +16,22 @@ def antisymmetry_defects(tensor: Sequence[Sequence[Element]]) -> list[Element]:
     return [tensor[i][j] + tensor[j][i] for i in range(len(tensor)) for j in range(i + 1)]
 
 
-def casimir_defects(equations: Equations, function: Element) -> list[Element]:
-    """``{x_i, C}`` for every state component: J grad C."""
+def casimir_defects(
+    equations: Equations, function: Element, coordinates: Sequence[int] | None = None
+) -> list[Element]:
+    """``{x_i, C}`` for every state component: J grad C.
+
+    Args:
+        equations: The motion with its tensor J.
+        function: C.
+        coordinates: Places of components whose brackets give all others; by default all. By the
+            Jacobi identity C commutes with ``{x_i, x_j}`` where it commutes with both.
+    """
     field = equations.setting.field
     gradient = field.gradient(equations.closed(function), equations.setting.state)
-    return [_dot(field, row, gradient) for row in equations.exact.poisson_tensor]
+    tensor = equations.exact.poisson_tensor
+    places = range(len(tensor)) if coordinates is None else coordinates
+    return [_dot(field, tensor[i], gradient) for i in places]
 
 
 def drift(equations: Equations, function: Element) -> list[Element]:

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from coadjoint.lower.program import FUNCTIONS, Output, Program, Statement, operation, walk
+from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement, operation, walk
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
 
@@ -126,7 +126,9 @@ class Function:
         python_inputs: The lines that take these from the arrays in Python.
         of_parameters: Statements that depend on parameters alone.
         of_member: The other statements.
-        outputs: One per row of the result.
+        outputs: Row and value of the results, those left out that are zero everywhere.
+        zeros: Their rows, as lines of numbers with commas. Large Jacobians and Poisson tensors are
+            mostly zero, and compilers take twice the time where each zero is a statement.
     """
 
     name: str
@@ -138,7 +140,8 @@ class Function:
     python_inputs: tuple[str, ...]
     of_parameters: tuple[Statement, ...]
     of_member: tuple[Statement, ...]
-    outputs: tuple[Output, ...]
+    outputs: tuple[tuple[int, Output], ...]
+    zeros: tuple[str, ...]
 
 
 def render_system(context: KernelContext, extra: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -239,7 +242,7 @@ def _rows(quantities: Iterable[Quantity]) -> list[Row]:
 
 def _function(program: Program) -> Function:
     """A Program as the templates read it."""
-    used = program.used()
+    used, rows = program.used(), list(enumerate(program.outputs))
     return Function(
         name=program.name,
         summary=_summary(program),
@@ -253,8 +256,14 @@ def _function(program: Program) -> Function:
         ),
         of_parameters=program.at_level("parameters"),
         of_member=program.at_level("member"),
-        outputs=program.outputs,
+        outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
+        zeros=_zeros(row for row, output in rows if output.value == ZERO),
     )
+
+
+def _zeros(rows: Iterable[int]) -> tuple[str, ...]:
+    """Rows as lines of numbers, each with its comma."""
+    return tuple(textwrap.wrap(" ".join(f"{row}," for row in rows), WIDTH - 8))
 
 
 def _read(names: Sequence[str], used: frozenset[str]) -> tuple[Row, ...]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from importlib.util import module_from_spec, spec_from_file_location
 from typing import TYPE_CHECKING, Any
@@ -89,6 +90,14 @@ class Kernels:
             yield piece
 
     # -- loading ----------------------------------------------------------------------------------
+
+    def prepare(self, targets: Sequence[str]) -> None:
+        """Compile and load what targets need, side by side: compilers are programs of their own."""
+        if "numpy" not in self._loaded:
+            self._loaded["numpy"] = self._numpy_module()
+        with ThreadPoolExecutor() as pool:
+            for done in [pool.submit(self._stand_in, target) for target in targets]:
+                done.result()
 
     def _stand_in(self, target: str) -> bool:
         """Whether the NumPy kernel answers for a target.

@@ -236,6 +236,17 @@ class System:
 
     # -- what is known about it -------------------------------------------------------------------
 
+    def prepare(self, targets: Sequence[str] = ("c",)) -> None:
+        """Compile and load what targets need now instead of at their first call.
+
+        Args:
+            targets: ``"c"``, ``"c-fast"``, ``"numpy"``; several are compiled side by side.
+
+        Raises:
+            KernelArgumentError: No such target.
+        """
+        self._kernels.prepare(targets)
+
     @cached_property
     def _kernels(self) -> Kernels:
         from coadjoint.solve.kernels import Kernels
