@@ -10,7 +10,7 @@ from coadjoint.algebra import algebra_by_name, from_brackets, from_matrices
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import GENERATORS
 from tests.algebra.laws import vector
-from tests.sources.textbook import cross
+from tests.sources.components import cross
 
 
 def test_so3_bracket_is_the_cross_product():

@@ -6,7 +6,7 @@ from coadjoint.algebra import Representation, algebra_by_name, semidirect_produc
 from coadjoint.algebra.catalogue import representation_by_name
 from coadjoint.errors import AlgebraError
 from tests.algebra.laws import vector
-from tests.sources.textbook import cross
+from tests.sources.components import cross
 
 
 def test_vector_representation_of_so3_is_the_cross_product():

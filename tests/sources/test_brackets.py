@@ -12,7 +12,8 @@ from coadjoint.exact import Field
 from coadjoint.poisson import PoissonStructure, canonical, declared, lie_poisson, magnetic, nambu
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.poisson.structure import antisymmetric
-from tests.sources.textbook import cross, dot, hat, plus, rigid_body_rates
+from tests.sources.bodies import rigid_body_rates
+from tests.sources.components import cross, dot, hat, plus
 
 CYCLIC = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
 

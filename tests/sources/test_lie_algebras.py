@@ -24,7 +24,7 @@ from coadjoint.algebra import (
     subalgebra,
 )
 from tests.algebra.laws import pairing, vector
-from tests.sources.textbook import cross
+from tests.sources.components import cross
 
 
 def minus(a, b):

@@ -1,153 +1,151 @@
-"""Equations of motion typed by hand from books, in any arithmetic, for comparison with ours.
+"""Equations of motion typed by hand from books, in any arithmetic, by system.
 
-This is the only place where the cross products of these systems are written out. Each function
-takes the components of state and parameters as flat sequences and returns a flat list.
+The formulas are in `tests.sources.bodies` and `tests.sources.motions`; cross products and matrix
+commutators of the shipped systems are written out there and nowhere else. Where the book states
+``ad*``, the tensor of the minus bracket is read off it by units.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from itertools import combinations
 from typing import Any
 
-Vector = Sequence[Any]
+from tests.sources.bodies import (
+    heavy_top_observables,
+    heavy_top_rates,
+    kirchhoff_observables,
+    kirchhoff_rates,
+    nambu_body_observables,
+    nambu_pendulum_observables,
+    nambu_pendulum_tensor,
+    rigid_body_observables,
+    rigid_body_rates,
+    rigid_body_tensor,
+    se3_tensor,
+    so4_ad_star,
+    so4_body_observables,
+    so4_body_rates,
+    so_n_ad_star,
+    so_n_observables,
+    so_n_rates,
+)
+from tests.sources.components import Vector, minus_bracket
+from tests.sources.motions import (
+    affine_line_observables,
+    affine_line_rates,
+    bargmann_ad_star,
+    bargmann_observables,
+    bargmann_rates,
+    galilei_ad_star,
+    galilei_observables,
+    galilei_rates,
+    heisenberg_ad_star,
+    heisenberg_observables,
+    heisenberg_rates,
+    se2_pendulum_observables,
+    se2_pendulum_rates,
+    se2_tensor,
+    sl2_r2_ad_star,
+    sl2_r2_observables,
+    sl2_r2_rates,
+    sp2_momentum_observables,
+    sp2_momentum_rates,
+    sp2_tensor,
+)
 
 
-def cross(a: Vector, b: Vector) -> list[Any]:
-    """``a x b`` in components."""
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+def numbered(name: str, count: int) -> tuple[str, ...]:
+    """``Pi1, Pi2, ...``."""
+    return tuple(f"{name}{n + 1}" for n in range(count))
 
 
-def dot(a: Vector, b: Vector) -> Any:
-    """``a . b`` in components."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+def upper(name: str, size: int) -> tuple[str, ...]:
+    """``M12, M13, ..., M23, ...``: the entries above the diagonal, row by row."""
+    return tuple(f"{name}{i}{j}" for i, j in combinations(range(1, size + 1), 2))
 
 
-def plus(a: Vector, b: Vector) -> list[Any]:
-    """``a + b`` in components."""
-    return [x + y for x, y in zip(a, b, strict=True)]
-
-
-def hat(a: Vector) -> list[list[Any]]:
-    """``hat(a) b = a x b``."""
-    return [[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]]
-
-
-# -- rigid body: Holm (2011), sections 2.4.1 and 2.5.2; Landau and Lifshitz, Mechanics, sec. 36 ---
-
-
-def rigid_body_rates(state: Vector, parameters: Vector) -> list[Any]:
-    """``dPi_1/dt = (1/I3 - 1/I2) Pi2 Pi3`` and cyclic."""
-    i1, i2, i3 = parameters
-    p1, p2, p3 = state
-    return [
-        (1 / i3 - 1 / i2) * p2 * p3,
-        (1 / i1 - 1 / i3) * p3 * p1,
-        (1 / i2 - 1 / i1) * p1 * p2,
-    ]
-
-
-def rigid_body_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """Energy, square of the momentum, angular velocity."""
-    omega = [p / i for p, i in zip(state, parameters, strict=True)]
-    return {
-        "energy": dot(state, omega) / 2,
-        "casimir1": dot(state, state),
-        **{f"Omega{n + 1}": value for n, value in enumerate(omega)},
-    }
-
-
-def rigid_body_tensor(state: Vector) -> list[list[Any]]:
-    """``{Pi_i, Pi_j} = -epsilon_ijk Pi_k`` (Holm 2011, section 2.5.2)."""
-    return hat(state)
-
-
-# -- heavy top: Holm (2011), sections 8.2 and 8.3.2 ----------------------------------------------
-
-
-def heavy_top_rates(state: Vector, parameters: Vector) -> list[Any]:
-    """``dPi/dt = Pi x Omega + m g Gamma x chi``, ``dGamma/dt = Gamma x Omega``."""
-    momentum, gamma = state[:3], state[3:]
-    inertia, (m, g), chi = parameters[:3], parameters[3:5], parameters[5:]
-    omega = [p / i for p, i in zip(momentum, inertia, strict=True)]
-    torque = [m * g * x for x in cross(gamma, chi)]
-    return plus(cross(momentum, omega), torque) + cross(gamma, omega)
-
-
-def heavy_top_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """Kinetic and potential energy, the Casimirs, angular velocity."""
-    momentum, gamma = state[:3], state[3:]
-    inertia, (m, g), chi = parameters[:3], parameters[3:5], parameters[5:]
-    omega = [p / i for p, i in zip(momentum, inertia, strict=True)]
-    return {
-        "energy": dot(momentum, omega) / 2 + m * g * dot(gamma, chi),
-        "casimir1": dot(gamma, gamma),
-        "casimir2": dot(momentum, gamma),
-        **{f"Omega{n + 1}": value for n, value in enumerate(omega)},
-    }
-
-
-def se3_tensor(state: Vector) -> list[list[Any]]:
-    """``[[hat mu, hat beta], [hat beta, 0]]`` (Holm 2011, sections 7.1.2 and 8.3.2)."""
-    mu, beta = hat(state[:3]), hat(state[3:])
-    top = [a + b for a, b in zip(mu, beta, strict=True)]
-    return top + [[*row, 0, 0, 0] for row in beta]
-
-
-# -- Kirchhoff: Holm (2011), section 7.2; Lamb, Hydrodynamics, 6th ed., sec. 124 -----------------
-
-
-def kirchhoff_velocities(state: Vector, parameters: Vector) -> tuple[list[Any], list[Any]]:
-    """``Pi = I Omega + D v``, ``P = D Omega + M v`` solved axis by axis by Cramer's rule."""
-    omega, v = [], []
-    for n in range(3):
-        i, m, d = parameters[n], parameters[3 + n], parameters[6 + n]
-        determinant = i * m - d * d
-        omega.append((m * state[n] - d * state[3 + n]) / determinant)
-        v.append((i * state[3 + n] - d * state[n]) / determinant)
-    return omega, v
-
-
-def kirchhoff_rates(state: Vector, parameters: Vector) -> list[Any]:
-    """``dPi/dt = Pi x Omega + P x v``, ``dP/dt = P x Omega``."""
-    omega, v = kirchhoff_velocities(state, parameters)
-    impulse = state[3:]
-    return plus(cross(state[:3], omega), cross(impulse, v)) + cross(impulse, omega)
-
-
-def kirchhoff_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """Kinetic energy, the Casimirs of se(3)*, velocities."""
-    omega, v = kirchhoff_velocities(state, parameters)
-    return {
-        "energy": (dot(state[:3], omega) + dot(state[3:], v)) / 2,
-        "casimir1": dot(state[3:], state[3:]),
-        "casimir2": dot(state[:3], state[3:]),
-        **{f"Omega{n + 1}": value for n, value in enumerate(omega)},
-        **{f"v{n + 1}": value for n, value in enumerate(v)},
-    }
-
-
+BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 RATES = {
     "rigid_body": rigid_body_rates,
     "heavy_top": heavy_top_rates,
     "kirchhoff": kirchhoff_rates,
+    "heisenberg": heisenberg_rates,
+    "se2_pendulum": se2_pendulum_rates,
+    "sl2_r2": sl2_r2_rates,
+    "so4_body": so4_body_rates,
+    "galilei": galilei_rates,
+    "bargmann": bargmann_rates,
+    "nambu_body": rigid_body_rates,
+    "nambu_pendulum": rigid_body_rates,
+    "affine_line": affine_line_rates,
+    "sp2_momentum": sp2_momentum_rates,
+    **dict.fromkeys(BODIES, so_n_rates),
 }
 OBSERVABLES = {
     "rigid_body": rigid_body_observables,
     "heavy_top": heavy_top_observables,
     "kirchhoff": kirchhoff_observables,
+    "heisenberg": heisenberg_observables,
+    "se2_pendulum": se2_pendulum_observables,
+    "sl2_r2": sl2_r2_observables,
+    "so4_body": so4_body_observables,
+    "galilei": galilei_observables,
+    "bargmann": bargmann_observables,
+    "nambu_body": nambu_body_observables,
+    "nambu_pendulum": nambu_pendulum_observables,
+    "affine_line": affine_line_observables,
+    "sp2_momentum": sp2_momentum_observables,
+    **dict.fromkeys(BODIES, so_n_observables),
 }
-TENSORS = {
-    "rigid_body": rigid_body_tensor,
-    "heavy_top": se3_tensor,
-    "kirchhoff": se3_tensor,
+#: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
+TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
+    "rigid_body": lambda x, p: rigid_body_tensor(x),
+    "heavy_top": lambda x, p: se3_tensor(x),
+    "kirchhoff": lambda x, p: se3_tensor(x),
+    "heisenberg": lambda x, p: minus_bracket(heisenberg_ad_star, x),
+    "se2_pendulum": lambda x, p: se2_tensor(x),
+    "sl2_r2": lambda x, p: minus_bracket(sl2_r2_ad_star, x),
+    "so4_body": lambda x, p: minus_bracket(so4_ad_star, x),
+    "galilei": lambda x, p: minus_bracket(galilei_ad_star, x),
+    "bargmann": lambda x, p: minus_bracket(bargmann_ad_star, x),
+    "nambu_body": lambda x, p: rigid_body_tensor(x),
+    "nambu_pendulum": nambu_pendulum_tensor,
+    "affine_line": lambda x, p: [[0, -x[1]], [x[1], 0]],
+    "sp2_momentum": lambda x, p: sp2_tensor(x),
+    **dict.fromkeys(BODIES, lambda x, p: minus_bracket(so_n_ad_star(len(p)), x)),
 }
+GALILEI = (*numbered("J", 3), *numbered("K", 3), *numbered("P", 3), "E")
 STATES = {
-    "rigid_body": ("Pi1", "Pi2", "Pi3"),
-    "heavy_top": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
-    "kirchhoff": ("Pi1", "Pi2", "Pi3", "P1", "P2", "P3"),
+    "rigid_body": numbered("Pi", 3),
+    "heavy_top": (*numbered("Pi", 3), *numbered("Gamma", 3)),
+    "kirchhoff": (*numbered("Pi", 3), *numbered("P", 3)),
+    "heisenberg": ("mu1", "mu2", "mu3"),
+    "se2_pendulum": ("m", "b1", "b2"),
+    "sl2_r2": ("h", "x", "y", "p1", "p2"),
+    "so4_body": ("M1", "M2", "M3", "N1", "N2", "N3"),
+    "galilei": GALILEI,
+    "bargmann": (*GALILEI, "M"),
+    "nambu_body": ("x1", "x2", "x3"),
+    "nambu_pendulum": ("x1", "x2", "x3"),
+    "affine_line": ("mu1", "mu2"),
+    "sp2_momentum": ("X1", "X2", "X3"),
+    **{name: upper("M", n) for name, n in BODIES.items()},
 }
+INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
 PARAMETERS = {
-    "rigid_body": ("I1", "I2", "I3"),
-    "heavy_top": ("I1", "I2", "I3", "m", "g", "chi1", "chi2", "chi3"),
-    "kirchhoff": ("I1", "I2", "I3", "M1", "M2", "M3", "D1", "D2", "D3"),
+    "rigid_body": numbered("I", 3),
+    "heavy_top": (*numbered("I", 3), "m", "g", *numbered("chi", 3)),
+    "kirchhoff": (*numbered("I", 3), *numbered("M", 3), *numbered("D", 3)),
+    "heisenberg": (),
+    "se2_pendulum": (),
+    "sl2_r2": (*numbered("I", 3), "m"),
+    "so4_body": (*numbered("I", 3), *numbered("L", 3)),
+    "galilei": INERTIAS,
+    "bargmann": INERTIAS,
+    "nambu_body": numbered("I", 3),
+    "nambu_pendulum": numbered("I", 3),
+    "affine_line": (),
+    "sp2_momentum": ("m", "k", "b"),
+    **{name: numbered("a", n) for name, n in BODIES.items()},
 }
