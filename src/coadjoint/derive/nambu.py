@@ -7,7 +7,7 @@ Theorem (Holm 2011, section 2.5.4, for n = 3; Nambu 1973): with
     \dot x = \nabla c \times \nabla h
 
 the motion runs along the intersections of the level sets of :math:`c` and :math:`h`. In n
-dimensions the cross product is the determinant of n - 1 gradients below the unit vectors.
+dimensions it is :math:`\dot x_i = -\det(e_i, \nabla h, \nabla c_1, \ldots, \nabla c_{n-2})`.
 Comes in: a Setting with a Hamiltonian and such functions. Goes out: Equations whose rates are these
 determinants, without the bracket; `coadjoint.derive.poisson` takes the other road.
 """
@@ -34,7 +34,8 @@ def derive(setting: Setting) -> Equations:
     h = setting.formula(spec.hamiltonian)
     functions = [setting.formula(c) for c in spec.poisson.functions]
     gradients = [field.gradient(function, names) for function in (*functions, h)]
-    rates = tuple(generalised_cross_product(gradients))
+    # h stands before the functions, as in the bracket: behind them, even n would change the sign
+    rates = tuple(-rate for rate in generalised_cross_product([gradients[-1], *gradients[:-1]]))
     tensor = poisson_structure(setting).tensor
     exact = Exact((), rates, h, observables(setting, h), tensor)
     return Equations(setting, "nambu", exact, _steps(setting, functions, exact, gradients))
@@ -61,8 +62,9 @@ def _steps(
         for label, gradient in zip((*labels, "h"), gradients, strict=True)
         for name, slope in zip(setting.state, gradient, strict=True)
     ]
-    wedge = " x ".join(f"grad {label}" for label in (*labels, "h"))
-    wedge_latex = r" \times ".join(rf"\nabla {symbol(label).latex}" for label in (*labels, "h"))
+    factors, sign = ((*labels, "h"), "") if len(labels) == 1 else (("h", *labels), "-")
+    wedge = sign + " x ".join(f"grad {label}" for label in factors)
+    wedge_latex = sign + r" \times ".join(rf"\nabla {symbol(label).latex}" for label in factors)
     return (
         Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), exact.energy),)),
         Step("Distinguished functions", "c(x)", "c(x)", tuple(named)),

@@ -57,12 +57,12 @@ def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
         return _reordered(magnetic(field, pairs, fields), names)
     except AlgebraError as error:
         formula = (*bracket.functions, *(formula for *_, formula in bracket.entries))[0]
-        path = setting.spec.path
+        path, key = setting.spec.path, ".".join(formula.key.split(".")[:2])
         raise AlgebraError(
-            f"{path}:{formula.line}: poisson.{bracket.kind}: {error}",
+            f"{path}:{formula.line}: {key}: {error}",
             path=str(path),
             line=formula.line,
-            key=f"poisson.{bracket.kind}",
+            key=key,
             **error.parts,
         ) from None
 
