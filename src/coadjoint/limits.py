@@ -60,6 +60,9 @@ MATRIX_ENTRIES = 4096
 PARAMETRIC_TERMS = 64
 #: Generators of an algebra given by name or as a product; constants are sparse.
 GENERATORS = 5000
+#: Generators of an algebra that `coadjoint algebra` examines unless told otherwise: so(9), sp(8)
+#: and gl(6) have 36, and the slowest of them, so(9), takes 7 seconds.
+EXAMINED_GENERATORS = 36
 #: Monomials among which Casimirs are searched; 3 000 take half a second, and so(8) to degree 4
 #: has 35 959.
 MONOMIALS = 20_000

@@ -1,25 +1,45 @@
 """Command ``algebra``: what a Lie algebra is, and a proof of it.
 
 Comes in: the name of an algebra, or a spec that declares one. Goes out: bracket table, Killing
-signature, rank, Casimirs and the verdict on each claim, as text, as a LaTeX file or as JSON.
-Read next: `coadjoint.prove.examination`.
+signature, rank, Casimirs and the verdict on each claim, as text, as a LaTeX file, as a web page or
+as JSON. Read next: `coadjoint.prove.examination`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from math import comb
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from coadjoint import limits
 from coadjoint.cli.arguments import is_path, shipped_names, spec_path
-from coadjoint.cli.output import print_json, write_text
+from coadjoint.cli.output import plural, write_text
+
+if TYPE_CHECKING:
+    from coadjoint.algebra import LieAlgebra
+    from coadjoint.errors import CoadjointError
+
+#: What --help says beyond the options; \b keeps the lines as they are.
+KEYS = """\b
+Keys of --format json:
+  name, dimension, basis    the names of the basis are those of the coordinates
+  blocks                    names for parts of the basis
+  brackets                  [{pair: [e_i, e_j], value}] for i < j, those not zero
+  killing_signature         [positive, negative, zero]; null with parameters
+  properties                abelian, nilpotent, solvable, semisimple, unimodular
+  center                    its basis
+  derived_series            dimensions of g, [g, g], ... until they repeat
+  rank                      of the Lie-Poisson tensor, generic
+  casimirs                  {expected, found, missing}; missing says why, or ""
+  claims                    [{statement, kind, verdict, method}]
+"""
 
 
-@click.command("algebra")
+@click.command("algebra", epilog=KEYS)
 @click.argument("algebra", metavar="NAME|SPEC")
 @click.option(
     "--format",
@@ -47,53 +67,76 @@ from coadjoint.cli.output import print_json, write_text
 def command(algebra: str, form: str, degree: int, generators: int, output: Path | None) -> None:
     """Show the brackets, invariants and Casimirs of a Lie algebra, each proved.
 
-    NAME is an algebra such as so(4), se(3) or sl(2,R); SPEC is a shipped system or the path of a
-    spec, whose algebra with its advected quantities is shown.
+    NAME is an algebra such as so(4), se(3) or "sl(2,R)"; SPEC is a shipped system or the path of a
+    spec, whose algebra together with the duals of its advected quantities is shown.
     """
-    from coadjoint.render.document import render_document
+    from coadjoint.errors import ResourceError
     from coadjoint.sandbox import run_bounded
 
-    record = run_bounded(
-        "coadjoint.cli.algebra:examination_record",
-        {"algebra": algebra, "degree": degree, "generators": generators},
-        seconds=limits.WORKER_SECONDS,
-        memory=limits.WORKER_BYTES,
-    )
-    if form == "json" and output is None:
-        print_json(record["record"])
-        return
-    text = _json(record) if form == "json" else render_document(record["document"], form)
+    request = {"algebra": algebra, "form": form, "degree": degree, "generators": generators}
+    try:
+        record = run_bounded(
+            "coadjoint.cli.algebra:examination_record",
+            request,
+            seconds=limits.WORKER_SECONDS,
+            memory=limits.WORKER_BYTES,
+        )
+    except ResourceError as error:
+        raise ResourceError(
+            f"{algebra}: {error} Or ask for fewer generators, or for a lower --degree.",
+            found=algebra,
+        ) from error
+    text = _rendered(record, form)
     if output is None:
         click.echo(text, nl=False)
     else:
         write_text(output, text)
 
 
-def _json(record: Mapping[str, Any]) -> str:
-    import json
+def _rendered(record: Mapping[str, Any], form: str) -> str:
+    """The text of a format."""
+    if form == "json":
+        import json
 
-    return json.dumps(record["record"], indent=2) + "\n"
+        return json.dumps(record, indent=2) + "\n"
+    from coadjoint.render.document import render_document
+
+    return render_document(record, form)
 
 
-def examination_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+def examination_record(request: Mapping[str, Any]) -> dict[str, Any]:
     """The examination of an algebra as plain JSON values; runs in a bounded child."""
     from coadjoint.prove.examination import examine
 
-    algebra = _algebra(argument["algebra"], argument["generators"])
-    found = examine(algebra, argument["degree"])
-    return {"record": found.as_record(), "document": asdict(found.document())}
+    word, most, degree = request["algebra"], request["generators"], request["degree"]
+    found = examine(_algebra(word, most, degree), degree)
+    return found.as_record() if request["form"] == "json" else asdict(found.document())
 
 
-def _algebra(word: str, most: int) -> Any:
-    """The algebra that a word means."""
+def _algebra(word: str, most: int, degree: int) -> LieAlgebra:
+    """The algebra that a word means: names of algebras go before those of systems."""
     from coadjoint.algebra import algebra_by_name
+    from coadjoint.errors import AlgebraError, LimitError
+
+    if is_path(word):
+        return _declared(word, most, degree)
+    try:
+        return algebra_by_name(word, most=most)
+    except LimitError as error:
+        raise _too_large(word, error.found, most, degree) from None
+    except AlgebraError as error:
+        if word in shipped_names():
+            return _declared(word, most, degree)
+        raise _unknown(error, word) from None
+
+
+def _declared(word: str, most: int, degree: int) -> LieAlgebra:
+    """The algebra of a spec, its advected quantities included."""
     from coadjoint.derive import make_setting
     from coadjoint.derive.structure import momentum_algebra
     from coadjoint.errors import AlgebraError
     from coadjoint.spec import read_spec
 
-    if not is_path(word) and word not in shipped_names():
-        return algebra_by_name(word, most=most)
     spec = read_spec(spec_path(word))
     if spec.algebra is None:
         raise AlgebraError(
@@ -101,4 +144,37 @@ def _algebra(word: str, most: int) -> Any:
             f"[algebra]. `coadjoint prove {word}` examines the bracket.",
             found=word,
         )
-    return momentum_algebra(make_setting(spec))
+    setting = make_setting(spec)
+    advected = sum(action.dimension for action in setting.actions.values())
+    dimension = setting.algebra.dimension + advected
+    if dimension > most:
+        raise _too_large(str(spec.path), dimension, most, degree)
+    return momentum_algebra(setting)
+
+
+def _too_large(name: str, dimension: int, most: int, degree: int) -> CoadjointError:
+    """The refusal of an algebra, with what it would cost and how to have it all the same."""
+    from coadjoint.errors import LimitError
+
+    pairs, monomials = comb(dimension, 2), comb(dimension + degree, degree) - 1
+    way = f"Ask for it with --generators {dimension}"
+    if dimension > limits.GENERATORS:
+        way = f"No more than {limits.GENERATORS} (GENERATORS) are ever built; take a smaller one"
+    return LimitError(
+        f"{name} has {plural(dimension, 'generator')}, {plural(pairs, 'bracket')} between them and "
+        f"{plural(monomials, 'monomial')} up to degree {degree}; expected at most {most} "
+        f"generators (EXAMINED_GENERATORS is {limits.EXAMINED_GENERATORS}). {way}.",
+        found=dimension,
+        limit=most,
+        brackets=pairs,
+        monomials=monomials,
+    )
+
+
+def _unknown(error: CoadjointError, word: str) -> CoadjointError:
+    """The refusal of a name, which might have meant a system."""
+    from difflib import get_close_matches
+
+    near = [n for n in get_close_matches(word, shipped_names(), n=1) if n not in str(error)]
+    hint = f" Or did you mean the system {near[0]!r}?" if near else ""
+    return type(error)(f"{error}{hint}", **error.parts)

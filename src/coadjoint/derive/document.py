@@ -15,10 +15,13 @@ from sympy.printing.mathml import mathml
 from coadjoint.derive.equations import Equations, Left, Step
 from coadjoint.exact import Element, Field, element_text
 
+#: Addends on one line of LaTeX; nine fill a landscape page.
+ADDENDS = 9
+
 
 @dataclass(frozen=True)
 class Line:
-    """``left = right`` as text, LaTeX and presentation MathML."""
+    """A formula, or ``left = right``, as text, LaTeX and presentation MathML."""
 
     text: str
     latex: str
@@ -27,13 +30,23 @@ class Line:
 
 @dataclass(frozen=True)
 class Section:
-    """One step: its title, the general law, what it gives for this system, and plain words."""
+    """One step of a derivation, or one part of what was found out.
+
+    Attributes:
+        title: What is done.
+        law: The general law as plain text.
+        law_latex: The same law as LaTeX; empty where it is words.
+        lines: What the law gives here.
+        words: Names and what is said of them, both free text.
+        table: Rows of formulas, the first one and the first column being heads; empty if none.
+    """
 
     title: str
     law: str
     law_latex: str
     lines: tuple[Line, ...]
     words: tuple[tuple[str, str], ...] = ()
+    table: tuple[tuple[Line, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,21 +80,41 @@ def _section(equations: Equations, step: Step) -> Section:
     return Section(step.title, step.text, step.latex, lines)
 
 
+def formula(field: Field, element: Element) -> Line:
+    """An element in every format."""
+    terms = _terms(field, element)
+    return Line(element_text(field, element), _latex(terms), f"<math>{_mathml(terms)}</math>")
+
+
 def formula_line(field: Field, left: Left, right: Element) -> Line:
     """``left = right`` in every format."""
-    expression = sympy.Add(*(field.to_sympy(part) for part in field.partial_fractions(right)))
+    terms = _terms(field, right)
     return Line(
         f"{left.text} = {element_text(field, right)}",
-        f"{left.latex} &= {sympy.latex(expression)}",
-        _mathml(left, expression),
+        f"{left.latex} &= {_latex(terms)}",
+        f"<math><mrow>{left.mathml}<mo>=</mo>{_mathml(terms)}</mrow></math>",
     )
 
 
-def _mathml(left: Left, expression: sympy.Expr) -> str:
-    """The line as a MathML row, which browsers show without any script."""
+def _terms(field: Field, element: Element) -> list[sympy.Expr]:
+    """Addends in the order in which SymPy prints them."""
+    whole = sympy.Add(*(field.to_sympy(part) for part in field.partial_fractions(element)))
+    return list(whole.as_ordered_terms())
+
+
+def _latex(terms: list[sympy.Expr]) -> str:
+    """A sum, continued on further lines if it is long."""
+    texts = [sympy.latex(term) for term in terms]
+    signed = [text if text.startswith("-") else f"+ {text}" for text in texts]
+    rows = [" ".join(signed[n : n + ADDENDS]) for n in range(0, len(signed), ADDENDS)]
+    return " \\\\\n&\\quad ".join(rows).removeprefix("+ ")
+
+
+def _mathml(terms: list[sympy.Expr]) -> str:
+    """A sum as MathML, which browsers show without any script."""
+    text: str = mathml(sympy.Add(*terms), printer="presentation")
     # The one named entity that SymPy prints is none of XML's own, so readers of XML refuse it.
-    right = mathml(expression, printer="presentation").replace("&InvisibleTimes;", "&#x2062;")
-    return f"<math><mrow>{left.mathml}<mo>=</mo>{right}</mrow></math>"
+    return text.replace("&InvisibleTimes;", "&#x2062;")
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

@@ -8,21 +8,30 @@ Read next: `coadjoint.poisson.casimirs`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from time import perf_counter
 from typing import Any
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.derive.document import Document, Section, formula_line
+from coadjoint.derive.document import Document, Line, Section, formula, formula_line
 from coadjoint.derive.equations import algebra_bracket, symbol
+from coadjoint.errors import LimitError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.completeness import DEGREE, METHOD, Completeness, described
-from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero
+from coadjoint.prove.zero import CONSTANTS, NORMAL_FORM, Decision, decide_zero
+
+#: Columns of text that a table of brackets may take.
+TABLE = 94
+#: Terms of a Casimir that a document shows; those of so(8) have up to 3360, and to set them as
+#: formulas takes longer than to find them.
+TERMS = 60
+#: The bracket of two members of the basis that commute.
+COMMUTE = Line(".", r"\cdot", "<math><mo>&#xB7;</mo></math>")
 
 
 @dataclass(frozen=True)
@@ -34,6 +43,8 @@ class Examination:
         field: Rational functions on the dual, whose coordinates bear the names of the basis.
         signature: Signs of the Killing form (plus, minus, zero); None if parameters occur.
         properties: ``abelian``, ``nilpotent``, ``solvable``, ``semisimple``, ``unimodular``.
+        center: A basis of what commutes with everything, written as the brackets are.
+        derived_series: Dimensions of g, [g, g], ... until they repeat or vanish.
         rank: Rank of the Lie-Poisson tensor at a generic point.
         casimirs: Those found, and whether these are all.
         certificate: What was proved.
@@ -43,12 +54,14 @@ class Examination:
     field: Field
     signature: tuple[int, int, int] | None
     properties: tuple[str, ...]
+    center: tuple[Element, ...]
+    derived_series: tuple[int, ...]
     rank: int
     casimirs: Completeness
     certificate: Certificate
 
     def as_record(self) -> dict[str, Any]:
-        """The examination as JSON values."""
+        """The examination as JSON values; the README says what each key holds."""
         algebra = self.algebra
         return {
             "name": algebra.name,
@@ -56,73 +69,118 @@ class Examination:
             "basis": list(algebra.basis),
             "blocks": {name: [algebra.basis[i] for i in b] for name, b in algebra.blocks.items()},
             "brackets": [
-                {"pair": [algebra.basis[i], algebra.basis[j]], "value": self._text(row)}
-                for (i, j), row in algebra.constants.items()
+                {"pair": [algebra.basis[i], algebra.basis[j]], "value": self._text(value)}
+                for (i, j), value in self.brackets().items()
             ],
             "killing_signature": None if self.signature is None else list(self.signature),
             "properties": list(self.properties),
+            "center": list(map(self._text, self.center)),
+            "derived_series": list(self.derived_series),
             "rank": self.rank,
             "casimirs": {
                 "expected": self.casimirs.expected,
-                "found": [element_text(self.field, c) for c in self.casimirs.found],
+                "found": list(map(self._text, self.casimirs.found)),
                 "missing": self.casimirs.missing,
             },
             "claims": self.certificate.as_record()["claims"],
         }
 
+    def brackets(self) -> dict[tuple[int, int], Element]:
+        """The nonzero brackets ``[e_i, e_j]``, i < j, as sums of names of the basis."""
+        rows = self.algebra.constants.items()
+        return {pair: _vector(self.field, self.algebra.basis, row) for pair, row in rows}
+
     def document(self) -> Document:
         """The examination for people, in the formats of derivations."""
+        algebra = self.algebra
+        blocks = "; ".join(
+            f"{name} = {', '.join(algebra.basis[i] for i in members)}"
+            for name, members in algebra.blocks.items()
+            if len(members) < algebra.dimension
+        )
         return Document(
-            f"Lie algebra {self.algebra.name}",
-            f"{self.algebra.dimension} generators: {', '.join(self.algebra.basis)}.",
+            f"Lie algebra {algebra.name}",
+            f"{_counted(algebra.dimension, 'generator')}: {', '.join(algebra.basis)}.",
             "",
-            "",
+            f"Blocks: {blocks}." if blocks else "",
             (self._table(), self._invariants(), self._casimirs(), self._verdicts()),
         )
 
     # -- sections -------------------------------------------------------------------------
 
     def _table(self) -> Section:
-        """The nonzero brackets."""
+        """The brackets: as a table where that fits on a page, else one by one."""
+        title, law = "Brackets", "[e_i, e_j] = c_ij^k e_k"
+        latex = r"[e_i, e_j] = c_{ij}^k \, e_k"
+        values = self.brackets()
+        if not values:
+            return Section(title, law, latex, (), (("abelian", "all brackets are zero"),))
         basis = self.algebra.basis
+        cells = {pair: formula(self.field, value) for pair, value in values.items()}
+        widest = max(len(cell.text) for cell in (*cells.values(), *map(_head, basis))) + 2
+        if (len(basis) + 1) * widest <= TABLE:
+            law += ", e_i at the left of a row, e_j above a column"
+            return Section(title, law, latex, (), (), self._rows(cells))
         lines = tuple(
-            formula_line(self.field, algebra_bracket(basis[i], basis[j]), self._element(row))
-            for (i, j), row in self.algebra.constants.items()
+            formula_line(self.field, algebra_bracket(basis[i], basis[j]), value)
+            for (i, j), value in values.items()
         )
-        law = "[e_i, e_j] = c_ij^k e_k, other pairs commute"
-        return Section("Brackets", law, r"[e_i, e_j] = c_{ij}^k e_k", lines)
+        return Section(title, f"{law}; pairs left out commute", latex, lines)
+
+    def _rows(self, cells: Mapping[tuple[int, int], Line]) -> tuple[tuple[Line, ...], ...]:
+        """Heads, then a row for each member of the basis."""
+        turned = {(j, i): formula(self.field, -value) for (i, j), value in self.brackets().items()}
+        whole, basis = {**cells, **turned}, self.algebra.basis
+        heads = tuple(map(_head, basis))
+        return (
+            (Line("", "", ""), *heads),
+            *(
+                (heads[i], *(whole.get((i, j), COMMUTE) for j in range(len(basis))))
+                for i in range(len(basis))
+            ),
+        )
 
     def _invariants(self) -> Section:
-        """Numbers and words."""
+        """Numbers and words, each with the way it was found."""
         signature = (
-            "depends on the parameters"
+            "its signs depend on the parameters"
             if self.signature is None
-            else "{} plus, {} minus, {} zero".format(*self.signature)
+            else "{} positive, {} negative, {} zero (squares of its diagonal form)".format(
+                *self.signature
+            )
         )
+        center = ", ".join(map(self._text, self.center)) or "zero"
+        properties = ", ".join(self.properties) or "not abelian, solvable or unimodular"
+        generic = "" if self.signature else " (for almost all values of the parameters)"
         facts = {
             "Killing form": signature,
-            "properties": ", ".join(self.properties) or "none of those looked for",
-            "rank of the Lie-Poisson tensor": f"{self.rank}, so {self.casimirs.expected} "
-            "independent Casimirs",
+            "properties": properties + generic,
+            "center": f"{center} (exact kernel of ad)",
+            "derived series": f"dimensions {', '.join(map(str, self.derived_series))}"
+            f"{', [g, g] = g' if len(self.derived_series) == 1 else ''}",
+            "rank": f"{self.rank} of the Lie-Poisson tensor (at random points modulo a prime), so "
+            f"{_counted(self.casimirs.expected, 'independent Casimir')}",
         }
-        law = "K_ij = tr(ad e_i ad e_j)"
-        return Section(
-            "Invariants",
-            law,
-            r"K_{ij} = \operatorname{tr}(\mathrm{ad}_{e_i} \mathrm{ad}_{e_j})",
-            (),
-            tuple(facts.items()),
-        )
+        law = "K_ij = tr(ad_e_i ad_e_j) is the Killing form; ad_xi eta = [xi, eta]"
+        latex = r"K_{ij} = \operatorname{tr}(\mathrm{ad}_{e_i} \, \mathrm{ad}_{e_j})"
+        return Section("Invariants", law, latex, (), tuple(facts.items()))
 
     def _casimirs(self) -> Section:
         """The Casimirs, written in the coordinates that the basis gives the dual."""
-        lines = tuple(
-            formula_line(self.field, symbol(f"C{n}"), casimir)
-            for n, casimir in enumerate(self.casimirs.found, 1)
-        )
-        law = "{mu_i, C} = c_ij^k mu_k dC/dmu_j = 0"
-        latex = r"c_{ij}^k \mu_k \, \partial C / \partial \mu_j = 0"
-        return Section("Casimirs", law, latex, lines)
+        law = "c_ij^k mu_k dC/dmu_j = 0; the coordinate mu_i of the dual bears the name of e_i"
+        latex = r"c_{ij}^k \, \mu_k \, \partial C / \partial \mu_j = 0"
+        lines, words = [], []
+        for n, casimir in enumerate(self.casimirs.found, 1):
+            name = symbol(f"casimir{n}")
+            if len(self.field.terms(casimir)) > TERMS:
+                told = f"{described(self.field, casimir)}; as JSON it is there in full"
+                words.append((name.text, told))
+            else:
+                upright = replace(name, latex=rf"\mathrm{{casimir}}_{{{n}}}")
+                lines.append(formula_line(self.field, upright, casimir))
+        if not self.casimirs.found:
+            words.append(("none", self.casimirs.statement))
+        return Section("Casimirs", law, latex, tuple(lines), tuple(words))
 
     def _verdicts(self) -> Section:
         """The claims with their verdicts."""
@@ -130,15 +188,26 @@ class Examination:
             (str(claim.verdict), f"{claim.statement} ({claim.method})")
             for claim in self.certificate.claims
         )
-        return Section("Proofs", "every claim and how it was decided", "", (), words)
+        return Section("Proofs", "every claim, and how it was decided", "", (), words)
 
-    def _element(self, row: Any) -> Element:
-        """A bracket as an element: a sum of basis names."""
-        terms = (self.field[self.algebra.basis[k]] * c for k, c in row.items())
-        return sum(terms, self.field.zero)
+    def _text(self, element: Element) -> str:
+        return element_text(self.field, element)
 
-    def _text(self, row: Any) -> str:
-        return element_text(self.field, self._element(row))
+
+def _head(name: str) -> Line:
+    """A name of the basis at the edge of the table."""
+    shown = symbol(name)
+    return Line(shown.text, shown.latex, f"<math>{shown.mathml}</math>")
+
+
+def _counted(number: int, noun: str) -> str:
+    """A count in words."""
+    return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"
+
+
+def _vector(field: Field, basis: Sequence[str], row: Mapping[int, Any]) -> Element:
+    """A vector of the algebra as a sum of names of its basis."""
+    return field.sum(field[basis[k]] * c for k, c in row.items())
 
 
 def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
@@ -147,9 +216,6 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     Args:
         algebra: Named or declared; constants may hold parameters.
         degree: Up to which degree polynomial Casimirs are looked for.
-
-    Raises:
-        LimitError: The search would take more than docs/limits.md allows.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> found = examine(algebra_by_name("se(3)"))
@@ -165,6 +231,8 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
         field,
         None if _parameters(algebra) else local.killing_signature(),
         _properties(local),
+        tuple(_vector(field, local.basis, dict(enumerate(row))) for row in local.center()),
+        local.derived_series(),
         structure.generic_rank(),
         known,
         Certificate(algebra.name, tuple(_claims(local, structure, known))),
@@ -175,22 +243,21 @@ def _search(algebra: LieAlgebra, structure: PoissonStructure, degree: int) -> Co
     """The Casimirs of an algebra; with parameters in the constants there is no search."""
     expected = structure.dimension - structure.generic_rank()
     if _parameters(algebra):
-        return Completeness(
-            (), 0, expected, "the constants hold parameters, so none was looked for"
-        )
-    search = casimirs(algebra, degree)
+        missing = "the constants hold parameters, so none was looked for"
+        return Completeness((), 0, expected, missing if expected else "")
+    try:
+        search = casimirs(algebra, degree)
+    except LimitError as error:
+        return Completeness((), 0, expected, f"none was looked for: {error}")
     found = tuple(map(structure.field.adopt, search.generators))
     return Completeness(found, len(found), expected, search.missing)
 
 
 def _parameters(algebra: LieAlgebra) -> list[str]:
     """Names of the parameters in the constants."""
-    held = (
-        value
-        for row in (*algebra.constants.values(), *algebra.matrices)
-        for value in row.values()
-        if not isinstance(value, int | Fraction)
-    )
+    rows: list[Mapping[Any, Any]] = [*algebra.constants.values(), *algebra.matrices]
+    values = (value for row in rows for value in row.values())
+    held = (value for value in values if not isinstance(value, int | Fraction))
     names = {str(symbol): None for value in held for symbol in value.factors.ring.symbols}
     return list(names)
 
@@ -204,7 +271,7 @@ def _properties(algebra: LieAlgebra) -> tuple[str, ...]:
         "semisimple": algebra.is_semisimple,
         "unimodular": algebra.is_unimodular,
     }
-    return tuple(name for name, test in tests.items() if test())
+    return tuple(name for name, holds in tests.items() if holds)
 
 
 def _claims(
@@ -220,7 +287,7 @@ def _claims(
         )
     for casimir in known.found:
         start = perf_counter()
-        decision = decide_zero(structure.casimir_defects(casimir), structure.field)
+        decision = _is_casimir(structure, casimir)
         yield _claim(
             f"{described(structure.field, casimir)} is a Casimir",
             "casimir",
@@ -228,6 +295,13 @@ def _claims(
             perf_counter() - start,
         )
     yield _claim(known.statement, "casimir", Decision(Verdict.PROVED, METHOD), 0.0)
+
+
+def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
+    """Whether a function commutes with all; the point where it does not is looked for if so."""
+    if structure.is_casimir(function):
+        return Decision(Verdict.PROVED, NORMAL_FORM)
+    return decide_zero(structure.casimir_defects(function), structure.field)
 
 
 def _timed(statement: str, kind: str, check: Any) -> Claim:

@@ -23,6 +23,10 @@ from coadjoint.resources import templates_folder
 FORMATS: Final = ("text", "latex", "html")
 #: Columns of the text format; longer formulas go on under their right-hand side.
 WIDTH: Final = 100
+#: Columns that the text format leaves at the left of formulas.
+INDENT: Final = 6
+#: Lines of a section that stay below each other; more stand side by side where they are short.
+LONG: Final = 24
 
 _LATEX_ESCAPES: Final = str.maketrans(
     {character: f"\\{character}" for character in "{}$&#_%"}
@@ -43,7 +47,8 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
         document: The fields of a `coadjoint.derive.document.Document`.
         form: ``"text"``, ``"latex"`` or ``"html"``.
 
-    >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": "", "lines": (), "words": ()}
+    >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": ""}
+    >>> section |= {"lines": (), "words": (), "table": ()}
     >>> top = {"title": "A top", "about": "System top.", "source": "", "description": ""}
     >>> print(render_document({**top, "sections": [section]}))
     A top
@@ -76,8 +81,12 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         keep_trailing_newline=True,
         **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
     )
-    made.filters["aligned"] = aligned
-    made.filters["described"] = described
+    made.filters |= {
+        "aligned": aligned,
+        "abreast": abreast,
+        "described": described,
+        "tabulated": tabulated,
+    }
     return made
 
 
@@ -107,10 +116,46 @@ def latex_escaped(text: str) -> str:
 def aligned(lines: Sequence[Mapping[str, str]]) -> list[str]:
     """Lines ``left = right`` with their equals signs in one column, long ones continued.
 
+    Many short lines stand in several such columns, to be read down.
+
     >>> aligned([{"text": "a = 1"}, {"text": "long = 2"}])
     ['a    = 1', 'long = 2']
     """
-    return _columns([line["text"].split(" = ", 1) for line in lines], " = ")
+    rows = _columns([line["text"].split(" = ", 1) for line in lines], " = ")
+    number = abreast(lines)
+    if number == 1:
+        return rows
+    height = -(-len(rows) // number)
+    cell = (WIDTH - INDENT) // number
+    return ["".join(row.ljust(cell) for row in rows[n::height]).rstrip() for n in range(height)]
+
+
+def abreast(lines: Sequence[Mapping[str, str]]) -> int:
+    """How many lines of a section stand beside each other: one, unless they are many and short.
+
+    >>> abreast([{"text": "a = 1"}] * 9), abreast([{"text": "[E12, E13] = -E23"}] * 90)
+    (1, 4)
+    """
+    if len(lines) <= LONG:
+        return 1
+    widest = max(len(line["text"]) for line in lines)
+    return max(1, min(4, (WIDTH - INDENT) // (widest + 3)))
+
+
+def tabulated(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
+    """A table with a line under its heads.
+
+    >>> tabulated([[{"text": t} for t in row] for row in (("", "H", "X"), ("H", ".", "2*X"))])
+    ['   |   H   X', '---+--------', ' H |   . 2*X']
+    """
+    first = max(len(row[0]["text"]) for row in rows)
+    width = max(len(cell["text"]) for row in rows for cell in row[1:])
+    texts = [
+        f" {row[0]['text']:<{first}} |" + "".join(f" {cell['text']:>{width}}" for cell in row[1:])
+        for row in rows
+    ]
+    rule = "-" * (first + 2) + "+" + "-" * (max(map(len, texts)) - first - 3)
+    return [texts[0], rule, *texts[1:]]
 
 
 def described(words: Sequence[Sequence[str]]) -> list[str]:
@@ -130,7 +175,7 @@ def _columns(sides: Sequence[Sequence[str]], joint: str) -> list[str]:
         for left, right in sides
         for piece in textwrap.wrap(
             f"{left:<{width}}{joint}{right}",
-            WIDTH - 6,
+            WIDTH - INDENT,
             subsequent_indent=" " * (width + len(joint)),
             break_long_words=False,
             break_on_hyphens=False,
