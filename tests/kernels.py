@@ -47,6 +47,9 @@ class TextSystem:
             path = compile_text(texts, Path(tempfile.mkdtemp(dir=folder)), flags)
             self.libraries[target] = ctypes.CDLL(str(path))
 
+    def prepare(self, targets):
+        """Everything was compiled when the system was made."""
+
     def __getattr__(self, function):
         def method(state, parameters, target="c"):
             if target == "numpy":

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from coadjoint.crosscheck.ladder import Report, available_targets, crosscheck
+from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.crosscheck.reference import Reference
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
@@ -37,7 +37,7 @@ from coadjoint.spec.units import parse_unit, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
-STAGES = ("derive", "prove", "lower", "render", "compile", "cross-check")
+STAGES = ("derive", "prove", "lower", "render", "compile and cross-check")
 
 
 @dataclass(frozen=True)
@@ -93,13 +93,11 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Repor
         CompilerError: The compiler failed.
         CrossCheckError: Two forms of one function disagree.
     """
-    progress("compile")
+    progress("compile and cross-check")
     with tempfile.TemporaryDirectory(prefix="coadjoint-") as folder:
         for name, text in rendered.texts.items():
             (Path(folder) / name).write_text(text, encoding="utf-8")
         system = load_folder(Path(folder))
-        system.prepare(available_targets())
-        progress("cross-check")
         reference = Reference(rendered.equations)
         return crosscheck(rendered.programs, rendered.texts, reference, system)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from coadjoint.crosscheck import ladder
-from coadjoint.crosscheck.compare import Subject, against_oracle, differing, equal_bits
+from coadjoint.crosscheck.compare import Subject, against_oracle, differing, equal_bits, exact_points
 from coadjoint.crosscheck.ladder import TARGETS, crosscheck
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.kernels import render_system
@@ -54,6 +54,11 @@ class TopReference:
         }[function]
 
 
+def compared(subject, function, count):
+    """One function of a subject against the equations."""
+    return against_oracle(subject, exact_points(subject, function, count))
+
+
 def programs_of(context):
     """Its Programs by name."""
     return {each.name: each for each in context.programs}
@@ -97,7 +102,7 @@ def test_the_textbook_top_passes_every_rung(tmp_path):
 def test_figures_are_the_same_in_every_run(tmp_path):
     """Two runs of the oracle give the same figures to the last bit."""
     subjects = [subject(tmp_path) for _ in range(2)]
-    first, second = (against_oracle(each, "rhs", 100) for each in subjects)
+    first, second = (compared(each, "rhs", 100) for each in subjects)
     assert first == second
 
 
@@ -127,7 +132,7 @@ def test_rung_4_catches_wrong_formulas(file, target, bad, fault, tmp_path):
     """A wrong sign, index or constant in one language alone is far above any threshold."""
     spoiled = subject(tmp_path, spoil=replaced(file, GOOD, bad))
     with pytest.raises(CrossCheckError) as caught:
-        against_oracle(spoiled, "rhs", 100)
+        compared(spoiled, "rhs", 100)
     error = caught.value
     assert (error.rung, error.system, error.function) == (4, "heavy_top", "rhs")
     assert error.output == "dPi1/dt"
@@ -143,7 +148,7 @@ def test_rung_4_catches_single_precision(tmp_path):
     bad = "const float Omega1 = (float)(Pi1 / I1)"
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", "const double Omega1 = Pi1 / I1", bad))
     with pytest.raises(CrossCheckError) as caught:
-        against_oracle(spoiled, "observables", 100)
+        compared(spoiled, "observables", 100)
     assert caught.value.k > 1e6
 
 
@@ -162,7 +167,7 @@ def test_rung_4_catches_exchanged_rows(tmp_path):
     spoiled = subject(tmp_path, spoil=exchange)
     equal_bits(spoiled, 1000)
     with pytest.raises(CrossCheckError, match=r"dGamma[23]/dt"):
-        against_oracle(spoiled, "rhs", 100)
+        compared(spoiled, "rhs", 100)
 
 
 def test_rung_4_catches_wrong_equations(tmp_path):
@@ -175,7 +180,7 @@ def test_rung_4_catches_wrong_equations(tmp_path):
     spoiled = subject(tmp_path, reference=Other())
     equal_bits(spoiled, 1000)
     with pytest.raises(CrossCheckError, match="rung 4"):
-        against_oracle(spoiled, "energy", 100)
+        compared(spoiled, "energy", 100)
 
 
 @pytest.mark.parametrize(
@@ -191,7 +196,7 @@ def test_rung_5_catches_what_rounds_otherwise(good, bad, tmp_path):
     """Other orders, reciprocals and the sign of a zero pass rung 4, but not rung 5."""
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", good, bad))
     for function in spoiled.programs:
-        against_oracle(spoiled, function, 50)
+        compared(spoiled, function, 50)
     with pytest.raises(CrossCheckError, match="rung 5") as caught:
         equal_bits(spoiled, 20_000)
     error = caught.value
@@ -210,7 +215,7 @@ def test_rung_5_catches_the_last_bit_of_a_constant(tmp_path):
 def test_rung_5_catches_a_fused_build_in_the_exact_slot(tmp_path):
     """Fused multiply-add keeps k, so that only the bits tell."""
     spoiled = subject(tmp_path, c_flags=FUSED)
-    against_oracle(spoiled, "rhs", 50)
+    compared(spoiled, "rhs", 50)
     if "fma" not in _processor_features():
         pytest.skip("this processor has no fused multiply-add")
     with pytest.raises(CrossCheckError, match="rung 5"):
@@ -229,7 +234,7 @@ def test_rung_5_sees_fast_math(tmp_path):
     """A kernel that loses NaN or subnormals is caught, though no ordinary point shows it."""
     bad = "_p1 = m * g * (m * g == m * g)"
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", "_p1 = m * g", bad))
-    against_oracle(spoiled, "rhs", 50)
+    compared(spoiled, "rhs", 50)
     nan_lost = "const double Omega1 = Pi1 == Pi1 ? Pi1 / I1 : 0.0"
     spoiled = subject(
         tmp_path, spoil=replaced("kernel.c", "const double Omega1 = Pi1 / I1", nan_lost)
@@ -260,10 +265,10 @@ def test_rung_5_allows_twice_the_threshold_where_bits_are_not_promised(tmp_path)
     """With elementary functions, NumPy and C further apart than 2 k are caught."""
     reference = ProgramReference(PENDULUM.programs)
     good = subject(tmp_path, PENDULUM, reference=reference)
-    against_oracle(good, "rhs", 50)
+    compared(good, "rhs", 50)
     spoil = replaced("kernel.c", "sin(q)", "sin(q * 1.00000000000002)")
     with pytest.raises(CrossCheckError, match="rung"):
-        against_oracle(subject(tmp_path, PENDULUM, spoil, reference=reference), "rhs", 50)
+        compared(subject(tmp_path, PENDULUM, spoil, reference=reference), "rhs", 50)
 
 
 def test_nan_and_zero_are_compared_as_they_should():
@@ -278,7 +283,7 @@ def test_a_system_without_values_is_an_error(tmp_path):
     nothing = [program("rhs", "q p", "k", "", "sqrt(-1 - q*q); p", (2,))]
     empty = subject(tmp_path, PENDULUM, reference=ProgramReference(nothing))
     with pytest.raises(CrossCheckError, match="0 of 50"):
-        against_oracle(empty, "rhs", 50)
+        compared(empty, "rhs", 50)
 
 
 def test_without_a_compiler_the_c_rungs_are_not_called_passed(tmp_path, monkeypatch):

@@ -128,3 +128,29 @@ def test_other_forms_of_c_are_refused(text):
     """What the printer does not write is no expression."""
     with pytest.raises(CrossCheckError, match="no form"):
         read_c_expression(text, "f")
+
+
+def test_the_table_of_zeros_is_read():
+    """A row missing from the table of zeros, doubled in it, or beyond it is caught; so is a loop."""
+    tensor = next(each for each in HEAVY_TOP.programs if each.name == "poisson_tensor")
+    python, c = TEXTS["kernel.py"], TEXTS["kernel.c"]
+    # {Gamma3, Gamma3}, the last of the 36 entries, is zero
+    assert " 35,\n" in python.partition("_poisson_tensor(state")[2]
+    for old, new in ((" 35,\n", "\n"), (" 35,\n", " 35, 35,\n"), (" 35,\n", " 35, 1,\n")):
+        for check, text in ((check_python, python), (check_c, c)):
+            head, mark, tail = text.rpartition("rows that are zero everywhere")
+            spoiled = head + mark + tail.replace(old, new, 1)
+            assert spoiled != text
+            with pytest.raises(CrossCheckError) as caught:
+                check(tensor, spoiled, *(["heavy_top"] if check is check_c else []))
+            assert caught.value.function.endswith("poisson_tensor")
+    for old, new in (("_z = 0;", "_z = 1;"), ("] = 0.0;", "] = 1.0;"), ("sizeof *_zeros;", "2;")):
+        head, mark, tail = c.rpartition("static const unsigned short _zeros")
+        spoiled = head + mark + tail.replace(old, new, 1)
+        assert spoiled != c
+        with pytest.raises(CrossCheckError):
+            check_c(tensor, spoiled, "heavy_top")
+    spoiled = python.replace("out[zeros,] = 0.0", "out[zeros,] = 1.0")
+    assert spoiled != python
+    with pytest.raises(CrossCheckError):
+        check_python(tensor, spoiled)

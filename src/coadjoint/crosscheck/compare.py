@@ -8,7 +8,8 @@ Read next: `coadjoint.crosscheck.ladder`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any, Final
@@ -155,26 +156,56 @@ class Subject:
         )
 
 
-def against_oracle(subject: Subject, function: str, count: int) -> dict[str, Figures]:
-    """Compare every target of one function with the equations.
+@dataclass(frozen=True)
+class ExactPoints:
+    """Points of one function with its outputs to 50 digits there.
+
+    Attributes:
+        function: Which function.
+        count: How many points were asked for.
+        batches: Points with the exact outputs of each member that has a value.
+    """
+
+    function: str
+    count: int
+    batches: Sequence[tuple[Batch, Mapping[int, list[Bounded]]]]
+
+
+def exact_points(subject: Subject, function: str, count: int) -> ExactPoints:
+    """The equations at random and at hard points, which needs no compiled kernel yet.
 
     Args:
         subject: The system.
         function: Which function.
         count: How many points; a fifth of them is moved to where an output nearly cancels.
+    """
+    batches = []
+    for batch in _hard_batches(subject, function, -(-count // 5)):
+        exact = {}
+        for member in range(batch.state.shape[1]):
+            with suppress(OutsideDomain):
+                inputs = subject.inputs(batch, member)
+                exact[member] = oracle(subject.reference, function, inputs)
+        batches.append((batch, exact))
+    return ExactPoints(function, count, batches)
+
+
+def against_oracle(subject: Subject, points: ExactPoints) -> dict[str, Figures]:
+    """Compare every target of one function with the equations.
+
+    Args:
+        subject: The system.
+        points: What `exact_points` computed.
 
     Raises:
         CrossCheckError: An error is above the threshold, or fewer than half of the points can be
             evaluated at all.
     """
+    function, count = points.function, points.count
     worst = {target: Figures(0.0, 0.0, 0) for target in subject.targets}
-    for batch in _hard_batches(subject, function, -(-count // 5)):
+    for batch, known in points.batches:
         results = {each: subject.evaluate(function, batch, each) for each in subject.targets}
-        for member in range(batch.state.shape[1]):
-            try:
-                exact = oracle(subject.reference, function, subject.inputs(batch, member))
-            except OutsideDomain:
-                continue
+        for member, exact in known.items():
             measure = _measure(exact)
             for target, values in results.items():
                 errors = [

@@ -15,11 +15,18 @@ Read next: `coadjoint.pipeline`, which runs this before anything is written.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from coadjoint.build.compiler import find_compiler
-from coadjoint.crosscheck.compare import Figures, Subject, against_oracle, equal_bits
+from coadjoint.crosscheck.compare import (
+    Figures,
+    Subject,
+    against_oracle,
+    equal_bits,
+    exact_points,
+)
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_c, check_python
 from coadjoint.errors import CompilerError
@@ -92,8 +99,8 @@ def crosscheck(
         programs: The functions by name.
         texts: The rendered files by name.
         reference: The equations.
-        system: The loaded system: ``name``, ``PARAMETERS`` and one method per function, called
-            with ``state``, ``parameters`` and ``target``.
+        system: The loaded system: ``name``, ``PARAMETERS``, ``prepare`` and one method per
+            function, called with ``state``, ``parameters`` and ``target``.
         targets: What to compare; by default all, or NumPy alone without a compiler.
         oracle_points: Points against 50 digits, shared out among the functions.
         bit_points: Points of bitwise comparison for each function.
@@ -103,15 +110,16 @@ def crosscheck(
         CrossCheckError: A rung failed.
     """
     chosen = available_targets() if targets is None else tuple(targets)
-    for program in programs.values():
-        check_python(program, texts["kernel.py"])
-        check_c(program, texts["kernel.c"], system.name)
     subject = Subject(programs, reference, system, chosen)
     share = oracle_points // len(programs)
-    figures = {
-        name: against_oracle(subject, name, _share(share, program))
-        for name, program in programs.items()
-    }
+    with ThreadPoolExecutor(1) as pool:  # compilers work beside us
+        compiled = pool.submit(system.prepare, chosen)
+        for program in programs.values():
+            check_python(program, texts["kernel.py"])
+            check_c(program, texts["kernel.c"], system.name)
+        exact = [exact_points(subject, name, _share(share, p)) for name, p in programs.items()]
+        compiled.result()
+    figures = {points.function: against_oracle(subject, points) for points in exact}
     largest = max(len(program.outputs) for program in programs.values())
     points = min(bit_points, BIT_OUTPUTS // largest)
     equal = equal_bits(subject, points) if "c" in chosen else {}

@@ -8,10 +8,11 @@ Read next: `coadjoint.poisson.search`, then `coadjoint.poisson.invariants`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from math import comb
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.errors import LimitError
+from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.exact import Element, Field
 from coadjoint.limits import INVARIANT_TERMS, MONOMIALS
 from coadjoint.poisson.brackets import lie_poisson
@@ -51,7 +52,8 @@ def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearc
         degree: The largest degree of the polynomials that are searched.
 
     Raises:
-        AlgebraError: An entry of the tensor is not a polynomial over the rationals.
+        AlgebraError: An entry of the tensor is not a polynomial over the rationals, or a structure
+            constant is no number.
         LimitError: More than `MONOMIALS` monomials would be searched, and no matrices help.
 
     >>> from coadjoint.algebra import algebra_by_name
@@ -84,7 +86,21 @@ def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearc
 
 
 def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:
-    """The minus Lie-Poisson structure in coordinates named like the basis."""
+    """The minus Lie-Poisson structure in coordinates named like the basis.
+
+    Raises:
+        AlgebraError: A structure constant holds parameters; the message names its bracket.
+    """
+    for (i, j), row in algebra.constants.items():
+        for constant in row.values():
+            if not isinstance(constant, int | Fraction):
+                pair = f"[{algebra.basis[i]}, {algebra.basis[j]}]"
+                raise AlgebraError(
+                    f"{algebra.name}: {pair} has the coefficient {constant}; expected rational "
+                    "numbers. Put numbers for the parameters.",
+                    pair=[algebra.basis[i], algebra.basis[j]],
+                    found=str(constant),
+                )
     field = Field(algebra.basis)
     return lie_poisson(algebra, field, algebra.basis)
 
