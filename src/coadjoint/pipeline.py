@@ -186,7 +186,7 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         "description": spec.description,
         "docs": {quantity.name: quantity.doc for quantity in quantities if quantity.doc}
         | {entry.name: entry.doc for entry in spec.observables if entry.doc},
-        "casimirs": [formula.text for formula in spec.casimirs],
+        "casimirs": [formula.in_one_line for formula in spec.casimirs],
         "routes": list(spec.routes),
         "claims": certificate.as_record()["claims"],
     }

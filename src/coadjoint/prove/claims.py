@@ -168,14 +168,14 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     yield "the energy is conserved", "conserved", partial(drift, first, first.exact.energy)
     for casimir in spec.casimirs:
         yield (
-            f"{casimir.text} is a Casimir",
+            f"{casimir.in_one_line} is a Casimir",
             "casimir",
             partial(casimir_defects, first, setting.formula(casimir)),
         )
     yield from _about_completeness(first)
     for integral in spec.conserved:
         yield (
-            f"{integral.text} is conserved",
+            f"{integral.in_one_line} is conserved",
             "conserved",
             partial(drift, first, _with_observables(first, integral)),
         )

@@ -182,6 +182,11 @@ class Formula:
     key: str
     line: int
 
+    @property
+    def in_one_line(self) -> str:
+        """The text without its line breaks, for statements and tables."""
+        return " ".join(self.text.split())
+
 
 @dataclass(frozen=True)
 class Observable:
