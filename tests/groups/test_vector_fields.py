@@ -3,8 +3,7 @@
 import pytest
 
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Field
-from coadjoint.groups.jets import JetField
+from coadjoint.exact import Field, JetField
 from coadjoint.groups.vector_fields import (
     VectorField,
     curl,

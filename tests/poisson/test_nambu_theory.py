@@ -6,16 +6,13 @@ from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
 from coadjoint.poisson import lie_poisson, nambu
-from coadjoint.poisson.jacobi import schouten_bracket
-from coadjoint.poisson.jets import Jet
 from coadjoint.poisson.nambu_theory import (
     mixing,
-    nambu_jacobi,
     quadratic_nambu,
     rigid_body_pendulum,
     undetermined_nambu,
 )
-from coadjoint.poisson.structure import antisymmetric
+from coadjoint.poisson.structure import PoissonStructure, antisymmetric
 
 #: A quadratic form of each signature, with the Killing signature of its algebra.
 FORMS = [
@@ -32,37 +29,41 @@ FORMS = [
 @pytest.mark.parametrize("dimension", [3, 4])
 def test_nambu_brackets_satisfy_jacobi_for_all_smooth_functions(dimension):
     """Undetermined distinguished functions and density: every component is zero."""
-    defects = nambu_jacobi(dimension)
-    assert len(defects) == {3: 1, 4: 4}[dimension]
-    assert all(defect == 0 for defect in defects.values())
+    structure = undetermined_nambu(dimension)
+    assert structure.jacobi_defects() == {}
+    assert all(structure.tensor[i][j] for i in range(dimension) for j in range(i))
 
 
 def test_the_proof_for_undetermined_functions_can_fail():
     """One entry with the other sign, or one that no gradient gives, leaves a defect."""
-    jet, tensor = undetermined_nambu()
+    structure = undetermined_nambu()
+    field, tensor = structure.field, structure.tensor
     right = {(0, 1): tensor[0][1], (0, 2): tensor[0][2], (1, 2): tensor[1][2]}
-    for spoiled in (right | {(0, 1): -right[0, 1]}, right | {(1, 2): jet["c_2"]}):
-        defects = schouten_bracket(antisymmetric(jet.field, 3, spoiled), jet.slopes)
-        assert any(defect != 0 for defect in defects.values())
+    for spoiled in (right | {(0, 1): -right[0, 1]}, right | {(1, 2): field["c1_x2"]}):
+        wrong = PoissonStructure(field, structure.names, antisymmetric(field, 3, spoiled))
+        assert list(wrong.jacobi_defects()) == [(0, 1, 2)]
 
 
 def test_functions_of_the_casimir_are_casimirs():
     """{f, Phi(c)} = 0 with undetermined f, Phi and c: gradients along grad c move nothing."""
-    jet = Jet(["c", "f", "Phi"], 3)
-    field = jet.field
-    structure_rows = undetermined_nambu_rows(jet)
-    along = [jet["Phi"] * slope for slope in jet.gradient("c")]  # Phi stands for Phi'(c)
-    other = list(jet.gradient("f"))
-    for row in structure_rows:
-        assert sum((e * s for e, s in zip(row, along, strict=True)), field.zero) == 0
-        assert sum((e * s for e, s in zip(row, other, strict=True)), field.zero) != 0
+    structure = undetermined_nambu(3, ["f", "slope"])
+    field = structure.field
+    c, f = ([field[f"{name}_x{n}"] for n in (1, 2, 3)] for name in ("c1", "f"))
+    along = [field["slope"] * entry for entry in c]  # grad Phi(c), the slope being Phi'(c)
+    for row in structure.tensor:
+        assert field.sum(e * s for e, s in zip(row, along, strict=True)) == 0
+        assert field.sum(e * s for e, s in zip(row, f, strict=True)) != 0
+    assert structure.is_casimir(field["c1"])
+    assert not structure.is_casimir(field["f"])
 
 
-def undetermined_nambu_rows(jet):
-    """{x_i, x_j} = -eps_ijk c_k, typed in."""
-    c1, c2, c3 = jet.gradient("c")
-    zero = jet.field.zero
-    return ((zero, -c3, c2), (c3, zero, -c1), (-c2, c1, zero))
+def test_the_bracket_is_minus_the_triple_product():
+    """{x_i, x_j} = -density eps_ijk dc/dx_k, typed in."""
+    structure = undetermined_nambu()
+    field = structure.field
+    c1, c2, c3 = (field["density"] * field[f"c1_x{n}"] for n in (1, 2, 3))
+    zero = field.zero
+    assert structure.tensor == ((zero, -c3, c2), (c3, zero, -c1), (-c2, c1, zero))
 
 
 def test_the_motion_keeps_under_unimodular_mixing():

@@ -11,7 +11,7 @@ import pytest
 from scipy.linalg import expm
 
 from coadjoint.algebra import algebra_by_name
-from coadjoint.exact import Field
+from coadjoint.exact import Field, JetField
 from coadjoint.groups.charts import (
     chart_velocity,
     north_chart,
@@ -22,7 +22,6 @@ from coadjoint.groups.charts import (
     spherical_point,
 )
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.jets import JetField
 from coadjoint.groups.lifts import compose, cotangent_lift, jacobian, tangent_lift
 from coadjoint.groups.vector_fields import (
     VectorField,

@@ -9,7 +9,6 @@ from coadjoint.groups.complex_numbers import Complex
 from coadjoint.groups.galilean import check_galilean, classify, particles
 from coadjoint.groups.group import MatrixGroup
 from coadjoint.groups.hopf import hopf_map
-from coadjoint.groups.jets import JetField
 from coadjoint.groups.maps import breve, dual_tilde, hat, su2, tilde, unhat, untilde
 from coadjoint.groups.pairings import TracePairing, trace_pairing
 from coadjoint.groups.quaternions import Coquaternion, Quaternion
@@ -19,7 +18,6 @@ from coadjoint.groups.vector_fields import VectorField, jacobi_lie_bracket, lie_
 __all__ = [
     "Complex",
     "Coquaternion",
-    "JetField",
     "MatrixGroup",
     "Quaternion",
     "TracePairing",

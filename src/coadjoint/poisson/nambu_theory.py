@@ -17,10 +17,9 @@ from itertools import combinations, pairwise
 
 from coadjoint.algebra import LieAlgebra, from_brackets
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element, Field, JetField
 from coadjoint.poisson.brackets import nambu, nambu_tensor
-from coadjoint.poisson.jacobi import Triple, schouten_bracket
-from coadjoint.poisson.jets import Jet
+from coadjoint.poisson.structure import PoissonStructure
 
 Number = int | Fraction
 
@@ -28,25 +27,23 @@ Number = int | Fraction
 # -- the Jacobi identity, for all functions at once -----------------------------------------------
 
 
-def undetermined_nambu(dimension: int = 3) -> tuple[Jet, tuple[tuple[Element, ...], ...]]:
-    """The Nambu tensor of undetermined functions ``c, d, ...`` and an undetermined density."""
-    functions = [chr(ord("c") + n) for n in range(dimension - 2)]
-    jet = Jet([*functions, "density"], dimension)
-    gradients = [jet.gradient(function) for function in functions]
-    return jet, nambu_tensor(jet.field, gradients, jet["density"])
+def undetermined_nambu(dimension: int = 3, functions: Sequence[str] = ()) -> PoissonStructure:
+    """The Nambu bracket of undetermined functions ``c1, c2, ...`` and an undetermined density.
 
+    It satisfies the Jacobi identity, which is a proof for every smooth c and density: a bracket
+    that satisfies Leibniz' rule satisfies the identity once the coordinates do.
 
-def nambu_jacobi(dimension: int = 3) -> dict[Triple, Element]:
-    """The Schouten bracket of the Nambu tensor of undetermined functions: zero for each triple.
+    Args:
+        dimension: Number n of coordinates x1 ... xn; there are n - 2 functions c.
+        functions: Names of further undetermined functions, to be bracketed.
 
-    It is a proof for every smooth c and density: a bracket that satisfies Leibniz' rule satisfies
-    the Jacobi identity once the coordinates do.
-
-    >>> nambu_jacobi()
-    {(0, 1, 2): 0}
+    >>> undetermined_nambu().jacobi_defects()
+    {}
     """
-    jet, tensor = undetermined_nambu(dimension)
-    return schouten_bracket(tensor, jet.slopes)
+    names = [f"x{n + 1}" for n in range(dimension)]
+    casimirs = [f"c{n + 1}" for n in range(dimension - 2)]
+    field = JetField(names, [*casimirs, "density", *functions], order=2)
+    return nambu(field, names, [field[c] for c in casimirs], field["density"])
 
 
 # -- the freedom in the choice of c and h ---------------------------------------------------------

@@ -2,8 +2,7 @@
 
 import pytest
 
-from coadjoint.exact import Field
-from coadjoint.groups.jets import JetField
+from coadjoint.exact import Field, JetField
 
 NAMES = ("x", "y")
 

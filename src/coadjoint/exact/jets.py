@@ -1,9 +1,9 @@
-"""Group actions: undetermined functions, for proofs that hold whatever the function is.
+"""Undetermined functions, for proofs that hold whatever the function is.
 
 Comes in: names of variables and of functions of them. Goes out: a `JetField`, in which a function
 and each of its partial derivatives is a symbol of its own, and `derivative` by a variable is the
 total derivative: the chain rule leads from each symbol to the next.
-Read next: `coadjoint.groups.vector_fields`.
+Read next: `coadjoint.groups.vector_fields`, `coadjoint.poisson.nambu_theory`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations_with_replacement
 
-from coadjoint.exact import Element, Field
+from coadjoint.exact.element import Element
+from coadjoint.exact.field import Field
 
 
 class JetField(Field):
@@ -55,6 +56,11 @@ class JetField(Field):
             for jet in sorted(self.names_in(element) & self._jets.keys()):
                 result += super().derivative(element, jet) * self[self._next(jet, name)]
         return result
+
+    def reach(self, element: Element) -> frozenset[str]:
+        """Symbols that occur, and all variables where a function does, since it depends on them."""
+        names = super().reach(element)
+        return names | frozenset(self.variables) if names & self._jets.keys() else names
 
     def _next(self, jet: str, name: str) -> str:
         """The symbol of the derivative of a symbol; partial derivatives commute."""
