@@ -70,18 +70,24 @@ def bracket_of(equations: Equations) -> PoissonStructure:
 
 
 def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
-    """Count the claimed Casimirs, and look for others where some are missing."""
+    """Count the claimed Casimirs, and look for others where some are missing.
+
+    The distinguished functions of a Nambu bracket are known without a search.
+    """
     setting, structure = equations.setting, bracket_of(equations)
     claimed = [setting.formula(casimir) for casimir in setting.spec.casimirs]
     known = independent(structure, claimed)
     expected = structure.dimension - structure.generic_rank()
-    found: list[Element] = []
-    missing = ""
-    if len(known) < expected:
+    declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
+    given = [setting.formula(function) for function in declared]
+    found = independent(structure, [*known, *given])[len(known) :]
+    missing, generating = "", list(range(structure.dimension))
+    if len(known) + len(found) < expected:
         results, missing = _search(equations, structure, degree)
-        found = independent(structure, [*known, *results])[len(known) :]
+        found = independent(structure, [*known, *found, *results])[len(known) :]
+        # what could be searched has rational coefficients; other tensors have no such table
+        generating = PolynomialBracket(structure).generating if results else generating
     whole = len(known) + len(found)
-    generating = PolynomialBracket(structure).generating if found else []
     missing = missing if whole < expected else ""
     return Completeness(tuple(found), whole, expected, missing, tuple(generating))
 
