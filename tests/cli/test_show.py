@@ -43,3 +43,19 @@ def test_title_of_a_spec_is_escaped(run, rigid_body):
     page = run("show", rigid_body, "--format", "html").stdout
     assert "&lt;script&gt;" in page
     assert "<script" not in page
+
+
+def test_nambu_bracket_is_shown(run):
+    """A system without an algebra has its derivation, too: the pair and the motion."""
+    shown = run("show", "nambu_body")
+    assert shown.exit_code == 0, shown.stderr
+    assert "dx1/dt" in shown.stdout
+    assert max(map(len, shown.stdout.splitlines())) <= 100
+
+
+def test_many_short_lines_stand_side_by_side(run):
+    """The 9 brackets of se(3) stand below each other, the 30 of so(5) in columns."""
+    few = run("show", "kirchhoff", "--route", "lie-poisson").stdout
+    many = run("show", "so5_body").stdout
+    assert not [line for line in few.splitlines() if line.count("} =") > 1]
+    assert [line for line in many.splitlines() if line.count("} =") > 1]

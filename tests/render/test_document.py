@@ -11,7 +11,9 @@ import pytest
 from markupsafe import escape
 
 from coadjoint.derive import derive
-from coadjoint.derive.document import document
+from coadjoint.derive.document import ADDENDS, document, formula, formula_line
+from coadjoint.derive.equations import symbol
+from coadjoint.exact import Field
 from coadjoint.render.document import FORMATS, latex_escaped, render_document
 from tests.specs import shipped
 
@@ -35,8 +37,9 @@ def hostile(text):
     """A document whose every free text is hostile."""
     line = {"text": "a = 1", "latex": "a &= 1", "mathml": "<math><mi>a</mi></math>"}
     section = {"title": "Momenta", "law": "mu = p", "law_latex": r"\mu = p", "lines": [line]}
-    free = dict.fromkeys(("title", "source", "description"), text)
-    return {"name": "top", "route": "euler-poincare", "sections": [section], **free}
+    section |= {"words": [(text, text)], "table": [[line, line], [line, line]]}
+    free = dict.fromkeys(("title", "about", "source", "description"), text)
+    return {"sections": [section], **free}
 
 
 class Tags(HTMLParser):
@@ -90,8 +93,8 @@ def test_every_formula_of_the_page_is_mathml(derivation):
     """The MathML of each line is well-formed, so it cannot leave its place in the page."""
     formulas = re.findall(r"<math.*?</math>", render_document(derivation, "html"), re.DOTALL)
     assert len(formulas) == sum(len(section["lines"]) for section in derivation["sections"])
-    for formula in formulas:
-        assert ET.fromstring(formula).tag == "math"
+    for element in formulas:
+        assert ET.fromstring(element).tag == "math"
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -125,3 +128,71 @@ def test_no_control_character_gets_through(form, text):
     """No format lets a control character of a title reach a terminal."""
     assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f]", render_document(hostile(text), form))
     assert "49" not in render_document(hostile(text), form)
+
+
+def section_of(lines=(), words=(), table=()):
+    """A document of one section."""
+    section = {"title": "Lines", "law": "a = b", "law_latex": "a = b"}
+    section |= {"lines": lines, "words": words, "table": table}
+    free = {"title": "Lines", "about": "Some lines.", "source": "", "description": ""}
+    return {**free, "sections": [section]}
+
+
+def numbered(count, width=1):
+    """Lines x1 = 0..., x2 = 0..., in every format."""
+    return [
+        {
+            "text": f"x{n} = {'0' * width}",
+            "latex": f"x_{{{n}}} &= 0",
+            "mathml": f"<math><mi>x{n}</mi></math>",
+        }
+        for n in range(count)
+    ]
+
+
+@pytest.mark.parametrize(("count", "width", "abreast"), [(24, 1, 1), (25, 1, 4), (60, 40, 1)])
+def test_only_many_short_lines_stand_side_by_side(count, width, abreast):
+    """In every format each line is there once, in as many columns as fit."""
+    page = section_of(numbered(count, width))
+    text = render_document(page)
+    rows = [line for line in text.splitlines() if " x" in line]
+    assert len(rows) == -(-count // abreast)
+    assert [int(n) for n in re.findall(r"x(\d+) ", text)[:1]] == [0]
+    assert sorted(map(int, re.findall(r"x(\d+) +=", text))) == list(range(count))
+    assert max(map(len, text.splitlines())) <= 100
+    latex = render_document(page, "latex")
+    assert latex.count("&=") == count
+    assert latex.count(r" \\") == -(-count // abreast) - 1
+    assert f"columns: {abreast}" in render_document(page, "html")
+
+
+def test_a_table_has_its_heads_in_every_format():
+    """First row and first column are heads; text is padded, LaTeX and HTML count the cells."""
+    cells = [[{"text": t, "latex": t, "mathml": t} for t in row] for row in ("zHX", "Hab", "Xcd")]
+    page = section_of(table=cells)
+    assert "       z | H X\n      ---+----\n       H | a b\n" in render_document(page)
+    assert "\\begin{array}{r|rr}\nz & H & X \\\\ \\hline\nH & a & b \\\\\n" in render_document(
+        page, "latex"
+    )
+    html = render_document(page, "html")
+    assert (html.count("<th>"), html.count("<td>")) == (5, 4)
+    assert "<th>H</th>\n<td>a</td>" in html
+
+
+def test_words_wrap_under_themselves():
+    """A long text goes on under its own beginning."""
+    text = render_document(section_of(words=[("rank", "word " * 40), ("Killing form", "3 minus")]))
+    rows = text.splitlines()[-4:]
+    assert all(row.startswith(" " * 6) and len(row) <= 100 for row in rows)
+    assert {row.index("word") for row in rows[:-1]} == {rows[-1].index("3 minus")}
+
+
+def test_long_sums_are_continued_in_latex():
+    """A sum of more terms than a line holds goes on under its right side, no term lost."""
+    field = Field([f"x{n}" for n in range(20)])
+    whole = field.sum(field[name] for name in field.names) - 2 * field["x3"]
+    latex = formula(field, whole).latex
+    assert latex.count(r"&\quad") == 19 // ADDENDS
+    assert all(f"x_{{{n}}}" in latex for n in range(20))
+    assert "- x_{3}" in latex
+    assert formula_line(field, symbol("C"), field["x1"]).latex == "C &= x_{1}"

@@ -158,7 +158,7 @@ class Examination:
             "center": f"{center} (exact kernel of ad)",
             "derived series": f"dimensions {', '.join(map(str, self.derived_series))}"
             f"{', [g, g] = g' if len(self.derived_series) == 1 else ''}",
-            "rank": f"{self.rank} of the Lie-Poisson tensor (at random points modulo a prime), so "
+            "Lie-Poisson rank": f"{self.rank} (at random points modulo a prime), so "
             f"{_counted(self.casimirs.expected, 'independent Casimir')}",
         }
         law = "K_ij = tr(ad_e_i ad_e_j) is the Killing form; ad_xi eta = [xi, eta]"
