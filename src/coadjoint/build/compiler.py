@@ -35,8 +35,9 @@ _PLAIN_PROGRAM = re.compile(r"[A-Za-z0-9_./+][A-Za-z0-9_./+-]*")
 BUILDS: Mapping[str, str] = {"exact": "-ffp-contract=off", "fast": "-ffp-contract=fast"}
 _FLAGS = ("-std=c11", "-O3", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedantic")
 _NATIVE = "-march=native"
-#: Passes of GCC that take half of its time on long straight loops and change nothing there.
-_GNU = ("-fno-gcse-after-reload", "-fno-tree-loop-distribution")
+#: Passes of GCC that take more than half of its time on long straight loops and gain nothing there
+#: (docs/decisions/compiler.md has the figures).
+_GNU = ("-fno-gcse-after-reload", "-fno-tree-loop-distribution", "-fno-tree-slp-vectorize")
 _SHARED = ("-fPIC", "-shared")
 
 
