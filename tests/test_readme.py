@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+import coadjoint
 from coadjoint.cli import main
 from coadjoint.cli.program import COMMANDS
+from coadjoint.limits import EXAMINED_GENERATORS
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.shapes import FUNCTIONS
 
@@ -34,7 +36,7 @@ def folder(tmp_path, monkeypatch):
     """A working folder with the README's spec and a cache of its own."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
-    (spec,) = blocks("toml")
+    spec, *_ = blocks("toml")
     (tmp_path / "gyrostat.toml").write_text(spec, encoding="utf-8")
     return tmp_path
 
@@ -68,8 +70,43 @@ def test_commands_of_the_readme_work(folder):
 
 def test_the_example_of_a_spec_is_the_one_that_ships():
     """The walk-through and `examples/gyrostat.toml` are one text."""
-    (spec,) = blocks("toml")
+    spec, *_ = blocks("toml")
     assert spec == (ROOT / "examples" / "gyrostat.toml").read_text(encoding="utf-8")
+
+
+def test_what_a_command_prints_is_what_it_printed():
+    """Each console block is a command with the output of today."""
+    shown = [block.removeprefix("$ coadjoint ").split("\n", 1) for block in blocks("console")]
+    assert shown
+    for command, output in shown:
+        result = CliRunner().invoke(main, shlex.split(command))
+        assert (result.exit_code, result.stdout) == (0, output), command
+
+
+def test_other_specs_of_the_readme_are_proved(folder):
+    """The shorter declarations are whole, and everything claimed of them holds."""
+    _, *others = blocks("toml")
+    assert len(others) >= 2
+    for number, spec in enumerate(others):
+        path = folder / f"other{number}.toml"
+        path.write_text(spec, encoding="utf-8")
+        certificate = coadjoint.prove(coadjoint.read_spec(path))
+        assert certificate.holds, str(certificate)
+
+
+def test_the_bound_that_is_stated_is_the_bound():
+    """The number of generators in the text is that of the limits."""
+    assert f"more than {EXAMINED_GENERATORS}\ngenerators is refused" in README
+
+
+def test_every_decision_is_listed():
+    """The page of decisions links each of them by its title."""
+    folder = ROOT / "docs" / "decisions"
+    listed = set(re.findall(r"- \[(.*)\]\((.*)\)", (folder / "README.md").read_text()))
+    pages = [path for path in folder.glob("*.md") if path.name != "README.md"]
+    titles = {(path.read_text().splitlines()[0].removeprefix("# "), path.name) for path in pages}
+    assert len(pages) > 20
+    assert listed == titles
 
 
 def test_the_claim_that_is_said_to_fail_fails(folder):

@@ -3,6 +3,8 @@
     >>> from coadjoint.systems import heavy_top  # doctest: +SKIP
     >>> import coadjoint
     >>> mine = coadjoint.load("my_robot.toml")  # doctest: +SKIP
+    >>> coadjoint.examine(coadjoint.algebra_by_name("so(3)")).casimirs.found
+    (J1**2 + J2**2 + J3**2,)
 
 Importing this package, or a generated system, loads neither SymPy nor NumPy; each public name below
 loads what it needs on first use. To read the engine, begin with `coadjoint.pipeline`.
@@ -16,9 +18,12 @@ from typing import TYPE_CHECKING, Any
 from coadjoint.errors import CoadjointError
 
 if TYPE_CHECKING:
+    from coadjoint.algebra import LieAlgebra, algebra_by_name
     from coadjoint.derive import Equations, derive
     from coadjoint.loading import load
+    from coadjoint.poisson import PoissonStructure
     from coadjoint.prove import Certificate, prove
+    from coadjoint.prove.examination import Examination, examine
     from coadjoint.solve.system import System
     from coadjoint.spec import Spec, read_spec
 
@@ -27,9 +32,14 @@ __all__ = [
     "Certificate",
     "CoadjointError",
     "Equations",
+    "Examination",
+    "LieAlgebra",
+    "PoissonStructure",
     "Spec",
     "System",
+    "algebra_by_name",
     "derive",
+    "examine",
     "load",
     "prove",
     "read_spec",
@@ -39,9 +49,14 @@ __all__ = [
 _HOMES = {
     "Certificate": "coadjoint.prove",
     "Equations": "coadjoint.derive",
+    "Examination": "coadjoint.prove.examination",
+    "LieAlgebra": "coadjoint.algebra",
+    "PoissonStructure": "coadjoint.poisson",
     "Spec": "coadjoint.spec",
     "System": "coadjoint.solve.system",
+    "algebra_by_name": "coadjoint.algebra",
     "derive": "coadjoint.derive",
+    "examine": "coadjoint.prove.examination",
     "load": "coadjoint.loading",
     "prove": "coadjoint.prove",
     "read_spec": "coadjoint.spec",
