@@ -21,8 +21,11 @@ def measure() -> list[Figure]:
     for system, most in TARGETS.items():
         taken = sorted(_seconds(system) for _ in range(RUNS))[RUNS // 2]
         what = f"{system}: regenerate with an empty cache"
-        target = "none" if most is None else f"<= {most:g} s"
-        figures.append(Figure(what, target, f"{taken:.1f} s", None if most is None else taken <= most))
+        measured = f"{taken:.1f} s"
+        if most is None:
+            figures.append(Figure(what, "none", measured))
+        else:
+            figures.append(Figure(what, f"<= {most:g} s", measured, taken <= most))
     return figures
 
 

@@ -12,14 +12,23 @@ from pathlib import Path
 
 from coadjoint.cli.output import print_table
 
-BENCHMARKS = ("start", "derivation", "algebra", "emission", "c_kernels", "numpy_kernels", "call_overhead")
+BENCHMARKS = (
+    "start",
+    "derivation",
+    "algebra",
+    "emission",
+    "c_kernels",
+    "numpy_kernels",
+    "call_overhead",
+)
 
 
 def main(names: tuple[str, ...]) -> int:
     """Run benchmarks and print their figures."""
     figures = [figure for name in names for figure in import_module(name).measure()]
     verdicts = {True: "met", False: "MISSED", None: ""}
-    print(f"{processor()}, Python {platform.python_version()}; best of interleaved rounds, medians of processes")
+    machine = f"{processor()}, Python {platform.python_version()}"
+    print(f"{machine}; best of interleaved rounds, medians of processes")
     print_table(
         ("figure", ">target", ">measured", ""),
         [(each.what, each.target, each.measured, verdicts[each.met]) for each in figures],

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from coadjoint.crosscheck import ladder
-from coadjoint.crosscheck.compare import Subject, against_oracle, differing, equal_bits, exact_points
+from coadjoint.crosscheck.compare import (
+    Subject,
+    against_oracle,
+    differing,
+    equal_bits,
+    exact_points,
+)
 from coadjoint.crosscheck.ladder import TARGETS, crosscheck
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.kernels import render_system

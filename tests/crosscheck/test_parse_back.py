@@ -131,7 +131,7 @@ def test_other_forms_of_c_are_refused(text):
 
 
 def test_the_table_of_zeros_is_read():
-    """A row missing from the table of zeros, doubled in it, or beyond it is caught; so is a loop."""
+    """A row that is missing, doubled or wrong in the table is caught, and so is another loop."""
     tensor = next(each for each in HEAVY_TOP.programs if each.name == "poisson_tensor")
     python, c = TEXTS["kernel.py"], TEXTS["kernel.c"]
     # {Gamma3, Gamma3}, the last of the 36 entries, is zero
