@@ -1,8 +1,8 @@
 """The judge of mutants: runs the project's tests on one changed tree after the other.
 
-Each line of standard input is the folder of a tree and the tests to run, separated by spaces; the
-answer is pytest's exit status, the output stands in the folder. The judge loads the libraries once
-and forks for each tree: most mutants die in a second that way, instead of five.
+Each line of standard input is the folder of a tree and the arguments of pytest, separated by tabs;
+the answer is pytest's exit status, the output stands in the folder. The judge loads the libraries
+once and forks for each tree: most mutants die in a second that way, instead of five.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def main() -> None:
         if child == 0:
             status = 99
             try:
-                status = judge(*line.split())
+                status = judge(*line.rstrip("\n").split("\t"))
             except BaseException:
                 traceback.print_exc()
             finally:

@@ -6,7 +6,7 @@ piece that is no longer there fails the campaign, so the list cannot rot.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -18,12 +18,14 @@ class Mutant:
         old: What is there, once.
         new: What takes its place.
         equivalent: Why no check can see it, if so; else empty.
+        always: Whether it is tried in every run of the tests, not only in campaigns.
     """
 
     file: str
     old: str
     new: str
     equivalent: str = ""
+    always: bool = False
 
     @property
     def name(self) -> str:
@@ -33,42 +35,67 @@ class Mutant:
 
 ALGEBRA = "src/coadjoint/algebra/"
 FAMILIES = ALGEBRA + "families.py"
+GROUPS = "src/coadjoint/groups/"
+POISSON = "src/coadjoint/poisson/"
+EXACT = "src/coadjoint/exact/"
 DERIVE = "src/coadjoint/derive/"
+PROVE = "src/coadjoint/prove/"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 
-MUTANTS = (
-    # structure constants
+#: Structure constants, ad* and the choice of minus or plus: tried in every run.
+SIGNS = (
     Mutant(FAMILIES, "return {(k, j): 1, (j, k): -1}", "return {(k, j): -1, (j, k): 1}"),
-    Mutant(FAMILIES, "return {(k, j): 1, (j, k): -1}", "return {(k, j): 1, (j, k): 1}"),
-    Mutant(FAMILIES, "unit(i, column)) for i", "unit(i, column, -1)) for i"),
-    Mutant(FAMILIES, "= (axis + 1) % 3, (axis + 2) % 3", "= (axis + 2) % 3, (axis + 1) % 3"),
-    Mutant(FAMILIES, "{(i, j): 1, (j, i): -1 if", "{(i, j): 1, (j, i): 1 if"),
+    Mutant(FAMILIES, "{(i, j): 1, (j, i): -1}) for", "{(i, j): -1, (j, i): 1}) for"),
     Mutant(FAMILIES, '[("J", {(0, 1): -1, (1, 0): 1})]', '[("J", {(0, 1): 1, (1, 0): -1})]'),
     Mutant(FAMILIES, '("E", unit(3, 4))', '("E", unit(3, 4, -1))'),
-    Mutant(FAMILIES, "{(i, 3): 1, (4, i): 1}", "{(i, 3): 1, (4, i): -1}"),
-    Mutant(FAMILIES, "(n + j, n + i): -1}", "(n + j, n + i): 1}"),
-    Mutant(FAMILIES, "{(0, 1): -half, (1, 0): half}, {})", "{(0, 1): half, (1, 0): -half}, {})"),
-    Mutant(FAMILIES, "i: Matrix = {(0, 1): -1, (1, 0): 1}", "i: Matrix = {(0, 1): 1, (1, 0): -1}"),
-    Mutant(ALGEBRA + "invariants.py", "yield j, i, k, -c", "yield j, i, k, c"),
-    Mutant(
-        ALGEBRA + "matrices.py",
-        "add_multiple(result, -1, product(b, a))",
-        "add_multiple(result, 1, product(b, a))",
-    ),
     Mutant(
         ALGEBRA + "matrices.py",
         "product(a, b)\n    add_multiple(result, -1, product(b, a))",
         "product(b, a)\n    add_multiple(result, -1, product(a, b))",
     ),
     Mutant(ALGEBRA + "lie_algebra.py", "if i < j else ((j, i), -1)", "if i < j else ((j, i), 1)"),
-    Mutant(ALGEBRA + "lie_algebra.py", "term = (b, a, c, n), -inner", "term = (b, a, c, n), inner"),
-    # ad*, brackets, tensors
+    Mutant(ALGEBRA + "invariants.py", "yield j, i, k, -c", "yield j, i, k, c"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
         "result[j] + scaled(xi[i] * mu[k], c)",
         "result[j] - scaled(xi[i] * mu[k], c)",
     ),
+    Mutant(
+        POISSON + "brackets.py",
+        "mu[k] if sign * c == 1 else opposite[k]",
+        "opposite[k] if sign * c == 1 else mu[k]",
+    ),
+    Mutant(
+        DERIVE + "euler_poincare.py",
+        "[sign * m for m in momentum]",
+        "[-sign * m for m in momentum]",
+    ),
+    Mutant(DERIVE + "structure.py", "sign = -setting.sign", "sign = setting.sign"),
+    Mutant(
+        DERIVE + "setting.py",
+        'return 1 if self.spec.invariance == "left" else -1',
+        'return -1 if self.spec.invariance == "left" else 1',
+    ),
+)
+MUTANTS = (
+    *(replace(mutant, always=True) for mutant in SIGNS),
+    # structure constants
+    Mutant(FAMILIES, "return {(k, j): 1, (j, k): -1}", "return {(k, j): 1, (j, k): 1}"),
+    Mutant(FAMILIES, "unit(i, column)) for i", "unit(i, column, -1)) for i"),
+    Mutant(FAMILIES, "= (axis + 1) % 3, (axis + 2) % 3", "= (axis + 2) % 3, (axis + 1) % 3"),
+    Mutant(FAMILIES, "{(i, j): 1, (j, i): -1 if", "{(i, j): 1, (j, i): 1 if"),
+    Mutant(FAMILIES, "{(i, 3): 1, (4, i): 1}", "{(i, 3): 1, (4, i): -1}"),
+    Mutant(FAMILIES, "(n + j, n + i): -1}", "(n + j, n + i): 1}"),
+    Mutant(FAMILIES, "{(0, 1): -half, (1, 0): half}, {})", "{(0, 1): half, (1, 0): -half}, {})"),
+    Mutant(FAMILIES, "i: Matrix = {(0, 1): -1, (1, 0): 1}", "i: Matrix = {(0, 1): 1, (1, 0): -1}"),
+    Mutant(
+        ALGEBRA + "matrices.py",
+        "add_multiple(result, -1, product(b, a))",
+        "add_multiple(result, 1, product(b, a))",
+    ),
+    Mutant(ALGEBRA + "lie_algebra.py", "term = (b, a, c, n), -inner", "term = (b, a, c, n), inner"),
+    # ad*, brackets, tensors
     Mutant(ALGEBRA + "lie_algebra.py", "scaled(xi[i] * mu[k], c)", "scaled(xi[j] * mu[k], c)"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
@@ -101,31 +128,31 @@ MUTANTS = (
     Mutant(ALGEBRA + "extensions.py", "value if i < j else -value", "value"),
     Mutant(ALGEBRA + "extensions.py", "[(a + b) * d + k] = c", "[(a + b) * d + k] = -c"),
     # derivation
-    Mutant(
-        DERIVE + "euler_poincare.py",
-        "[sign * m for m in momentum]",
-        "[-sign * m for m in momentum]",
-    ),
     Mutant(DERIVE + "euler_poincare.py", "[-sign * x for x in", "[sign * x for x in"),
     Mutant(DERIVE + "euler_poincare.py", "[m + t for", "[m - t for"),
-    Mutant(DERIVE + "lie_poisson.py", "sum(entry * named[x]", "sum(-entry * named[x]"),
+    Mutant(DERIVE + "poisson.py", "sum(entry * slope for", "sum(-entry * slope for"),
+    Mutant(DERIVE + "nambu.py", "-rate for rate in", "rate for rate in"),
     Mutant(
-        DERIVE + "lie_poisson.py",
-        "tensor = poisson_tensor(setting)",
-        "tensor = tuple(zip(*poisson_tensor(setting), strict=True))",
+        DERIVE + "nambu.py",
+        "[gradients[-1], *gradients[:-1]]",
+        "[*gradients[:-1], gradients[-1]]",
     ),
-    Mutant(DERIVE + "structure.py", "setting.sign * tensor[i][j]", "-setting.sign * tensor[i][j]"),
+    Mutant(DERIVE + "nambu.py", "(-1) ** i * determinant(minor)", "determinant(minor)"),
     Mutant(
         DERIVE + "structure.py",
-        "variable.representation.dual())",
-        "variable.representation)",
-        equivalent="rotations act on vectors and covectors alike; the tests of the coadjoint "
-        "representation see it",
+        "[(names[i], names[j]) for i, j in bracket.pairs]",
+        "[(names[j], names[i]) for i, j in bracket.pairs]",
     ),
     Mutant(
+        DERIVE + "structure.py",
+        "{(names[i], names[j]): value for",
+        "{(names[j], names[i]): value for",
+    ),
+    Mutant(DERIVE + "structure.py", "action.dual()) for name", "action) for name"),
+    Mutant(
         DERIVE + "setting.py",
-        'return 1 if self.spec.invariance == "left" else -1',
-        'return -1 if self.spec.invariance == "left" else 1',
+        "{place: self.taken(value) for",
+        "{place: -self.taken(value) for",
     ),
     Mutant(DERIVE + "setting.py", 'return 1 if self.spec.invariance == "left" else -1', "return 1"),
     Mutant(DERIVE + "legendre.py", "field[mu] - field.substitute", "field[mu] + field.substitute"),
@@ -140,14 +167,112 @@ MUTANTS = (
     Mutant(DERIVE + "interpret.py", "    return a - b\n", "    return a + b\n"),
     # exact calculus
     Mutant(
-        "src/coadjoint/exact/element.py",
+        EXACT + "element.py",
         "numer * slope * -exponent",
         "numer * slope * exponent",
     ),
     Mutant(
-        "src/coadjoint/exact/field.py",
+        EXACT + "field.py",
         "return -inner * self[known.partner]",
         "return inner * self[known.partner]",
+    ),
+    Mutant(
+        EXACT + "field.py",
+        "self.one - self[known.partner] ** 2",
+        "self.one + self[known.partner] ** 2",
+    ),
+    Mutant(EXACT + "element.py", "Quotient(-q.numer, q.powers)", "Quotient(q.numer, q.powers)"),
+    # groups
+    Mutant(GROUPS + "vectors.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
+    Mutant(
+        GROUPS + "group.py",
+        "product(g, self.matrix(eta), self.inverse(g))",
+        "product(self.inverse(g), self.matrix(eta), g)",
+    ),
+    Mutant(
+        GROUPS + "group.py",
+        "zip(mu, column, strict=True))\n            for column in transpose(self.Ad_matrix(g))",
+        "zip(mu, column, strict=True))\n            for column in self.Ad_matrix(g)",
+    ),
+    Mutant(GROUPS + "group.py", "self.algebra.ad_star(xi, mu)", "self.algebra.ad_star(mu, xi)"),
+    Mutant(GROUPS + "actions.py", "inverse, xi = group.inverse(g)", "inverse, xi = g"),
+    Mutant(
+        GROUPS + "actions.py",
+        "left_translation(group.matrix(xi))",
+        "right_translation(group.matrix(xi))",
+    ),
+    Mutant(
+        GROUPS + "maps.py", "-HALF * trace(matmul(mu, xi)).re", "HALF * trace(matmul(mu, xi)).re"
+    ),
+    Mutant(GROUPS + "maps.py", "HALF * (mu[k][j] - mu[j][k])", "HALF * (mu[j][k] - mu[k][j])"),
+    Mutant(GROUPS + "maps.py", "((zero, -a3, a2), (a3", "((zero, a3, a2), (a3"),
+    Mutant(GROUPS + "quaternions.py", "a * x + b * w - s * (", "a * x + b * w + s * ("),
+    Mutant(GROUPS + "quaternions.py", "- self.square * planes", "+ self.square * planes"),
+    Mutant(GROUPS + "rotations.py", "return mu * xi - xi * mu", "return xi * mu - mu * xi"),
+    Mutant(GROUPS + "hopf.py", "scale(-4, cross(n, dH_dn))", "scale(4, cross(n, dH_dn))"),
+    Mutant(GROUPS + "charts.py", "(zeta.norm - 1) / below", "(1 - zeta.norm) / below"),
+    Mutant(
+        GROUPS + "vector_fields.py",
+        "return -lie_derivative(u, curl(u))",
+        "return lie_derivative(u, curl(u))",
+    ),
+    Mutant(
+        GROUPS + "vector_fields.py",
+        "*scale(-1, field.gradient(energy, positions))",
+        "*field.gradient(energy, positions)",
+    ),
+    Mutant(GROUPS + "central_forces.py", "scale(-lam / d**3,", "scale(lam / d**3,"),
+    Mutant(GROUPS + "complex_numbers.py", "(-z.im for z in row)", "(z.im for z in row)"),
+    # Poisson brackets
+    Mutant(
+        POISSON + "brackets.py",
+        "density * minor * (-1) ** (i + j)",
+        "density * minor * (-1) ** (i + j + 1)",
+    ),
+    Mutant(POISSON + "brackets.py", "(-1) ** place * rows[0][k]", "rows[0][k]"),
+    Mutant(POISSON + "brackets.py", "(a, n + a): field.one for", "(a, n + a): -field.one for"),
+    Mutant(
+        POISSON + "brackets.py", "entries[n + a, n + b] = value", "entries[n + a, n + b] = -value"
+    ),
+    Mutant(
+        POISSON + "structure.py",
+        "rows[j][i] = entry, opposite[id(entry)]",
+        "rows[j][i] = opposite[id(entry)], entry",
+    ),
+    Mutant(POISSON + "structure.py", "rest = rest - slope *", "rest = rest + slope *"),
+    Mutant(POISSON + "jacobi.py", "-term if a == middle else term", "term"),
+    Mutant(POISSON + "polynomial_bracket.py", "+ factor * value\n", "- factor * value * 2\n"),
+    Mutant(POISSON + "polynomial_bracket.py", "+ value * power", "+ value"),
+    Mutant(
+        POISSON + "nambu_theory.py",
+        "(x1**2 + x2**2 + x3**2) / 2 - i3 * h",
+        "(x1**2 + x2**2 + x3**2) / 2 + i3 * h",
+    ),
+    # proofs
+    Mutant(PROVE + "identities.py", "tensor[i][j] + tensor[j][i]", "tensor[i][j] - tensor[j][i]"),
+    Mutant(
+        PROVE + "identities.py", "equations.closed(rate) - _dot", "equations.closed(rate) + _dot"
+    ),
+    Mutant(
+        PROVE + "claims.py",
+        "first.closed(a) - other.closed(b)",
+        "first.closed(a) + other.closed(b)",
+    ),
+    Mutant(PROVE + "equivalence.py", "- self.pull_back(second, b)", "+ self.pull_back(second, b)"),
+    Mutant(PROVE + "equivalence.py", "slope) - field[xi]", "slope) + field[xi]"),
+    Mutant(
+        PROVE + "equivalence.py",
+        "equations.exact.energy) - energy]",
+        "equations.exact.energy) + energy]",
+    ),
+    Mutant(PROVE + "completeness.py", "== len(slopes) + 1", ">= len(slopes)"),
+    Mutant(
+        PROVE + "completeness.py", "(*setting.momenta, *advected)", "(*advected, *setting.momenta)"
+    ),
+    Mutant(
+        PROVE + "completeness.py",
+        "expected = structure.dimension - structure",
+        "expected = structure.dimension + 0 * structure",
     ),
     # lowering
     Mutant(
@@ -192,8 +317,8 @@ MUTANTS = (
     ),
     Mutant(
         "templates/c/kernel.c.j2",
-        '"out[%d * out_stride + _n]" | format(loop.index0)',
-        '"out[%d * out_stride + _n]" | format(loop.revindex0)',
+        '"out[%d * out_stride + _n]" | format(row)',
+        '"out[%d * out_stride + _n]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
         "templates/c/kernel.c.j2",
@@ -210,8 +335,8 @@ MUTANTS = (
     ),
     Mutant(
         "templates/numpy/kernel.py.j2",
-        '"out[%d]" | format(loop.index0)',
-        '"out[%d]" | format(loop.revindex0)',
+        '"out[%d]" | format(row)',
+        '"out[%d]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
         "templates/numpy/kernel.py.j2",

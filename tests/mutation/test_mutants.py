@@ -2,6 +2,8 @@
 
 Each mutant is a copy of the tree with one change, judged by the project's own tests: the book's
 formulas first, then the laws of each step. Survivors are listed with the reason, or fail this test.
+Structure constants, ad* and the choice of minus or plus are tried in every run, the whole list in
+campaigns.
 """
 
 import os
@@ -16,15 +18,22 @@ from tests.mutation.judge import OUTPUT
 from tests.mutation.mutants import MUTANTS
 
 ROOT = Path(__file__).parents[2]
-EQUATIONS, KERNELS = "tests/sources/test_equations.py", "tests/sources/test_kernels.py"
+SOURCES = "tests/sources/"
+EQUATIONS = SOURCES + "test_equations.py"
+#: Kernels of systems with parameters and zero rows; the others are built the same way.
+KERNELS = (SOURCES + "test_kernels.py", "-k", "heavy_top or bargmann")
+GROUP_ROWS = ("actions", "semidirect_actions", "quaternions", "vector_fields", "galileo")
 #: Tests that judge a mutant, by the beginning of its file: those of its step and the book's.
 JUDGES = {
-    "src/coadjoint/algebra": ("tests/algebra", EQUATIONS),
-    "src/coadjoint/derive": (EQUATIONS, "tests/derive"),
+    "src/coadjoint/algebra": (EQUATIONS, "tests/algebra"),
+    "src/coadjoint/groups": ("tests/groups", *(f"{SOURCES}test_{row}.py" for row in GROUP_ROWS)),
+    "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
+    "src/coadjoint/derive": (EQUATIONS, SOURCES + "test_declared.py", "tests/derive"),
+    "src/coadjoint/prove": ("tests/prove", "tests/derive"),
     "src/coadjoint/lower": ("tests/lower",),
-    "src/coadjoint/render": (KERNELS,),
-    "templates": (KERNELS,),
+    "src/coadjoint/render": KERNELS,
+    "templates": KERNELS,
 }
 COPIED = ("src", "templates", "derivations", "tests", "pyproject.toml")
 #: pytest's exit statuses for a failed test and for a tree that cannot even be imported.
@@ -43,7 +52,7 @@ def judge():
     )
 
     def ask(folder, tests):
-        server.stdin.write(f"{folder} {' '.join(tests)}\n")
+        server.stdin.write("\t".join(map(str, (folder, *tests))) + "\n")
         server.stdin.flush()
         return int(server.stdout.readline())
 
@@ -72,7 +81,9 @@ def mutate(folder, mutant):
 
 
 def judges_of(mutant):
-    """The tests that judge a mutant."""
+    """The tests that judge a mutant; the book alone those of every run."""
+    if mutant.always:
+        return (EQUATIONS,)
     (tests,) = [tests for start, tests in JUDGES.items() if mutant.file.startswith(start)]
     return tests
 
@@ -82,7 +93,16 @@ def names(mutants):
     return {"argvalues": mutants, "ids": [mutant.name for mutant in mutants]}
 
 
-@pytest.mark.parametrize("mutant", **names([m for m in MUTANTS if not m.equivalent]))
+def killable():
+    """The mutants that a test must see, those that can wait marked."""
+    return [
+        pytest.param(mutant, marks=() if mutant.always else pytest.mark.campaign, id=mutant.name)
+        for mutant in MUTANTS
+        if not mutant.equivalent
+    ]
+
+
+@pytest.mark.parametrize("mutant", killable())
 def test_a_mutant_is_killed(mutant, judge, tmp_path):
     """A test fails on the changed tree."""
     mutate(tmp_path, mutant)
@@ -98,14 +118,33 @@ def test_an_equivalent_mutant_survives(mutant, judge, tmp_path):
     assert judge(tmp_path, judges_of(mutant)) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
 
 
-def test_the_unchanged_tree_survives(judge, tmp_path):
+def unchanged():
+    """The judges of every run, and those of campaigns, marked."""
+    campaign = [
+        pytest.param(JUDGES[start], marks=pytest.mark.campaign, id=start) for start in JUDGES
+    ]
+    return [pytest.param((EQUATIONS,), id="book"), *campaign[:-1]]  # the last two are the same
+
+
+@pytest.mark.parametrize("tests", unchanged())
+def test_the_unchanged_tree_survives(tests, judge, tmp_path):
     """The judge passes without a mutation: what kills is the change."""
     copy_tree(tmp_path)
-    tests = dict.fromkeys(test for tests in JUDGES.values() for test in tests)
     assert judge(tmp_path, tests) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
 
 
+def test_every_piece_is_there_once():
+    """A change of the engine that moves a piece moves the mutant, too."""
+    for mutant in MUTANTS:
+        found = (ROOT / mutant.file).read_text().count(mutant.old)
+        assert found == 1, f"{mutant.old!r} is {found} times in {mutant.file}"
+        assert mutant.new != mutant.old
+        judges_of(mutant)
+
+
 def test_there_are_enough_mutants():
-    """At least thirty, all different, few of them equivalent."""
-    assert len({(m.file, m.old, m.new) for m in MUTANTS}) == len(MUTANTS) >= 30
+    """At least a hundred, all different, few of them equivalent; every step has some."""
+    assert len({(m.file, m.old, m.new) for m in MUTANTS}) == len(MUTANTS) >= 100
     assert sum(bool(m.equivalent) for m in MUTANTS) <= 3
+    assert sum(m.always for m in MUTANTS) >= 10
+    assert all(any(m.file.startswith(start) for m in MUTANTS) for start in JUDGES)
