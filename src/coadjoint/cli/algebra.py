@@ -65,7 +65,7 @@ Keys of --format json:
 )
 @click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
 def command(algebra: str, form: str, degree: int, generators: int, output: Path | None) -> None:
-    """Show the brackets, invariants and Casimirs of a Lie algebra, each proved.
+    """Show brackets, invariants and Casimirs of a Lie algebra, proved.
 
     NAME is an algebra such as so(4), se(3) or "sl(2,R)"; SPEC is a shipped system or the path of a
     spec, whose algebra together with the duals of its advected quantities is shown.

@@ -220,7 +220,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     >>> from coadjoint.algebra import algebra_by_name
     >>> found = examine(algebra_by_name("se(3)"))
     >>> [element_text(found.field, casimir) for casimir in found.casimirs.found]
-    ['P1^2 + P2^2 + P3^2', 'J1*P1 + J2*P2 + J3*P3']
+    ['J1*P1 + J2*P2 + J3*P3', 'P1^2 + P2^2 + P3^2']
     """
     field = Field([*algebra.basis, *_parameters(algebra)])
     local = algebra.over(field.adopt)
