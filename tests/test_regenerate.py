@@ -45,10 +45,10 @@ def test_the_checked_in_tree_is_current():
     """A fresh run gives the bytes of generated/; if not: `coadjoint regenerate`, then commit."""
     specs = sorted((ROOT / "derivations").glob("*.toml"))
     outcome = check(specs, ROOT / "generated", jobs=2, complete=True)
-    assert len(outcome.rows) == len(specs) >= 3
+    assert len(outcome.rows) == len(specs) >= 16
     assert not outcome.failures
     for row in outcome.rows:
-        assert row.proved == row.claims >= 13
+        assert row.proved == row.claims >= (7 if len(row.routes) == 1 else 8)
         # Against 50 digits, over every function, target and family of points.
         assert 0 < row.k <= 4
         assert row.targets == ("numpy", "c", "c-fast")

@@ -49,7 +49,7 @@ def test_the_list_sees_what_was_spoiled(copied, run):
     (copied / "derivations" / "newcomer.toml").write_text(
         (copied / "derivations" / "kirchhoff.toml").read_text()
     )
-    assert states(run) == {
+    assert {name: state for name, state in states(run).items() if state != "verified"} == {
         "heavy_top": "spec changed",
         "kirchhoff": "files changed",
         "newcomer": "not generated",

@@ -259,6 +259,13 @@ class Field:
         """Whether no adjoined function occurs, so that the normal form decides both ways."""
         return not any(name in self.adjoined for name in self.names_in(element))
 
+    def functions_in(self, element: Element) -> frozenset[str]:
+        """Generators of the functions that occur in an element or in their arguments."""
+        found = set(self._needed(element))
+        for generator in self._needed(element):
+            found |= self.functions_in(self.adjoined[generator].argument)
+        return frozenset(found)
+
     def names_in(self, element: Element) -> frozenset[str]:
         """Names of the generators that occur in an element."""
         return frozenset(

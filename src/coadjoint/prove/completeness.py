@@ -17,13 +17,18 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, casimirs
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.poisson.ranks import generic_rank, is_exact
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.zero import Decision
 
 #: Casimirs are looked for up to this degree unless told otherwise: every algebra of dimension 11 or
 #: less that books treat has all of its polynomial ones there.
 DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
+#: How the number of independent Casimirs is decided.
+METHOD = "rank of the gradients and of the bracket at random points modulo a prime"
+NUMERIC = "rank of 50-digit values of the gradients and of the bracket"
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,7 @@ class Completeness:
         expected: How many there are near almost every point: dimension - rank.
         missing: Why some are missing; empty if none is.
         generating: Places of coordinates whose brackets give all others.
+        exact: Whether the ranks were found without rounding.
     """
 
     found: tuple[Element, ...]
@@ -43,6 +49,20 @@ class Completeness:
     expected: int
     missing: str
     generating: tuple[int, ...] = ()
+    exact: bool = True
+
+    @property
+    def decision(self) -> Decision:
+        """Whether the number is proved.
+
+        Gradients of some rank at a point bound the number of Casimirs from below, and the rank of
+        the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
+        missing, the rank may be larger elsewhere, though that is most unlikely.
+        """
+        if not self.exact:
+            return Decision(Verdict.SUPPORTED, NUMERIC)
+        whole = self.known == self.expected
+        return Decision(Verdict.PROVED if whole else Verdict.SUPPORTED, METHOD)
 
     @property
     def statement(self) -> str:
@@ -53,11 +73,6 @@ class Completeness:
                 1: "every Casimir is a function of the one known",
             }.get(self.known, f"every Casimir is a function of the {self.known} known")
         return f"{self.known} of {self.expected} independent Casimirs are known: {self.missing}"
-
-
-#: How the number of independent Casimirs is decided: gradients of that rank bound it from below,
-#: and the rank of the tensor at the same kind of point bounds it from above.
-METHOD = "rank of the gradients and of the bracket at random rational points"
 
 
 def bracket_of(equations: Equations) -> PoissonStructure:
@@ -89,7 +104,8 @@ def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
         generating = PolynomialBracket(structure).generating if results else generating
     whole = len(known) + len(found)
     missing = missing if whole < expected else ""
-    return Completeness(tuple(found), whole, expected, missing, tuple(generating))
+    exact = is_exact(structure.field, (*claimed, *(e for row in structure.tensor for e in row)))
+    return Completeness(tuple(found), whole, expected, missing, tuple(generating), exact)
 
 
 def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:

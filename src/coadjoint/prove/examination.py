@@ -22,7 +22,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
-from coadjoint.prove.completeness import DEGREE, METHOD, Completeness, described
+from coadjoint.prove.completeness import DEGREE, Completeness, described
 from coadjoint.prove.zero import CONSTANTS, NORMAL_FORM, Decision, decide_zero
 
 #: Columns of text that a table of brackets may take.
@@ -294,7 +294,7 @@ def _claims(
             decision,
             perf_counter() - start,
         )
-    yield _claim(known.statement, "casimir", Decision(Verdict.PROVED, METHOD), 0.0)
+    yield _claim(known.statement, "casimir", known.decision, 0.0)
 
 
 def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
