@@ -241,7 +241,13 @@ MUTANTS = (
     ),
     Mutant(POISSON + "structure.py", "rest = rest - slope *", "rest = rest + slope *"),
     Mutant(POISSON + "jacobi.py", "-term if a == middle else term", "term"),
-    Mutant(POISSON + "polynomial_bracket.py", "+ factor * value\n", "- factor * value * 2\n"),
+    Mutant(POISSON + "polynomial_bracket.py", "+ factor * value\n", "+ value\n"),
+    Mutant(
+        POISSON + "polynomial_bracket.py",
+        "+ factor * value\n",
+        "- 2 * factor * value\n",
+        equivalent="the sum is only compared with zero, and every term of it has the same factor",
+    ),
     Mutant(POISSON + "polynomial_bracket.py", "+ value * power", "+ value"),
     Mutant(
         POISSON + "nambu_theory.py",

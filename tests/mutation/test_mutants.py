@@ -25,7 +25,7 @@ KERNELS = (SOURCES + "test_kernels.py", "-k", "heavy_top or bargmann")
 GROUP_ROWS = ("actions", "semidirect_actions", "quaternions", "vector_fields", "galileo")
 #: Tests that judge a mutant, by the beginning of its file: those of its step and the book's.
 JUDGES = {
-    "src/coadjoint/algebra": (EQUATIONS, "tests/algebra"),
+    "src/coadjoint/algebra": (EQUATIONS, SOURCES + "test_lie_algebras.py", "tests/algebra"),
     "src/coadjoint/groups": ("tests/groups", *(f"{SOURCES}test_{row}.py" for row in GROUP_ROWS)),
     "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
