@@ -171,7 +171,7 @@ def test_limit_is_named(text, limit):
         read_expression(text)
     assert caught.value.limit == limit
     assert limit in caught.value.expected
-    assert process_time() - start < 0.2
+    assert process_time() - start < 1  # hostile ones took minutes
 
 
 def test_expressions_at_the_limits_are_read():

@@ -11,6 +11,7 @@ from fractions import Fraction
 from math import prod
 
 from coadjoint.algebra.catalogue import REPRESENTATIONS
+from coadjoint.algebra.families import so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
@@ -68,6 +69,8 @@ def read_variable(
     form = part.form or ""
     if form and matrix_size(count, form) is None:
         raise _misfit(source, (*key, "form"), count, form)
+    if form == "antisymmetric" and block and algebra is not None:
+        _check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
     return Variable(name, part.role, shape, block, representation, part.unit, part.doc, form)
 
@@ -108,6 +111,37 @@ def _misfit(source: Source, key: KeyPath, count: int, form: str) -> CoadjointErr
         expected=f"{counts[form]} components for an n by n matrix",
         hint="Remove form, or choose another block, representation or shape.",
     )
+
+
+def _check_planes(
+    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]
+) -> None:
+    """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
+
+    Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
+    and no invariant would show it.
+    """
+    size = matrix_size(len(block), "antisymmetric")
+    assert size is not None, block
+    place = {b: n for n, b in enumerate(block)}
+    found: dict[tuple[int, int], dict[int | None, object]] = {}
+    for (i, j), row in algebra.constants.items():
+        if i in place and j in place:
+            sign, pair = (
+                (1, (place[i], place[j])) if place[i] < place[j] else (-1, (place[j], place[i]))
+            )
+            found[pair] = {place.get(k): sign * c for k, c in row.items()}
+    if size > 2 and found != dict(so_indefinite(size, 0).constants):
+        names = listed(algebra.basis[b] for b in block)
+        raise source.fault(
+            key,
+            f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
+            found=names,
+            expected="a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
+            hint="Leave form out, and write hat(...) where a matrix is meant."
+            if size == 3
+            else "Leave form out, or declare the algebra by these matrices.",
+        )
 
 
 def _representation(
