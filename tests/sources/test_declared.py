@@ -7,6 +7,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
+from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict, prove
 from tests.sources.components import antisymmetric, commutator, cross, dot, hat, plus, times
 from tests.sources.test_equations import values

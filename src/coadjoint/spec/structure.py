@@ -127,10 +127,9 @@ def _check_planes(
     found: dict[tuple[int, int], dict[int | None, object]] = {}
     for (i, j), row in algebra.constants.items():
         if i in place and j in place:
-            sign, pair = (
-                (1, (place[i], place[j])) if place[i] < place[j] else (-1, (place[j], place[i]))
-            )
-            found[pair] = {place.get(k): sign * c for k, c in row.items()}
+            a, b = place[i], place[j]
+            sign = 1 if a < b else -1
+            found[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
     if size > 2 and found != dict(so_indefinite(size, 0).constants):
         names = listed(algebra.basis[b] for b in block)
         raise source.fault(
