@@ -42,7 +42,7 @@ ORACLE_OPERATIONS: Final = 60_000
 FEWEST_POINTS: Final = 50
 #: Points of bitwise comparison for each function, and how many outputs these may be together.
 BIT_POINTS: Final = 200_000
-BIT_OUTPUTS: Final = 20_000_000
+BIT_OUTPUTS: Final = 10_000_000
 
 
 @dataclass(frozen=True)

@@ -63,9 +63,19 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
     1
     """
     if is_exact(field, (entry for row in rows for entry in row.values())):
-        return max(map(rank_modulo, islice(_sampled(field, rows), POINTS)))
+        return _largest(map(rank_modulo, islice(_sampled(field, rows), POINTS)), len(rows))
     with mpmath.workdps(DIGITS):
-        return max(map(_rank_of_values, islice(_valued(field, rows), POINTS)))
+        return _largest(map(_rank_of_values, islice(_valued(field, rows), POINTS)), len(rows))
+
+
+def _largest(ranks: Iterable[int], most: int) -> int:
+    """The largest of the ranks at several points; one that cannot grow ends the search."""
+    largest = 0
+    for rank in ranks:
+        largest = max(largest, rank)
+        if largest == most:
+            break
+    return largest
 
 
 def is_exact(field: Field, elements: Iterable[Element]) -> bool:
