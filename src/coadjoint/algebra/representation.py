@@ -17,6 +17,7 @@ from coadjoint.algebra.matrices import (
     SparseMatrix,
     combination,
     commutator,
+    entries_text,
     converted,
     kronecker,
     size,
@@ -47,12 +48,17 @@ class Representation:
         for i, j in combinations(range(self.algebra.dimension), 2):
             row = self.algebra.constants.get((i, j), {})
             expected = combination((c, self.matrices[k]) for k, c in row.items())
-            if expected != commutator(self.matrices[i], self.matrices[j]):
+            found = commutator(self.matrices[i], self.matrices[j])
+            if found != expected:
                 a, b = self.algebra.basis[i], self.algebra.basis[j]
                 raise AlgebraError(
                     f"representation {self.name!r} of {self.algebra.name}: the matrices of {a} and "
-                    f"{b} do not commute like [{a}, {b}]. Check the matrices of {a} and {b}.",
+                    f"{b} do not commute like [{a}, {b}]: rho({a}) rho({b}) - rho({b}) rho({a}) "
+                    f"has the entries {entries_text(found) or 'none'}; expected "
+                    f"{entries_text(expected) or 'none'}. Check the matrices of {a} and {b}.",
                     pair=[a, b],
+                    found=entries_text(found),
+                    expected=entries_text(expected),
                 )
 
     def act(self, xi: Sequence[Any], a: Sequence[Any]) -> tuple[Any, ...]:

@@ -76,7 +76,7 @@ class _Reading:
                 ("poisson", "nambu"),
                 f"{len(texts)} distinguished functions of {n} coordinates",
                 found=len(texts),
-                expected=f"{n - 2} functions, two fewer than there are coordinates"
+                expected=f"{n - 2}, two fewer than there are coordinates"
                 if n > 2
                 else "at least 3 coordinates",
             )
