@@ -8,7 +8,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.plot import _faces_viewer, plot
 from coadjoint.solve.solution import Solution
-from coadjoint.systems import heavy_top, rigid_body
+from coadjoint.systems import heavy_top, rigid_body, so8_body
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -60,6 +60,16 @@ def test_components_are_drawn_where_there_is_no_sphere(body, tmp_path):
 def legend(axes):
     """Texts of a legend, if there is one."""
     return axes.get_legend().get_texts() if axes.get_legend() else []
+
+
+def test_many_components_have_lines_of_their_own(tmp_path):
+    """28 components differ by colour or dashes, and their legend has columns of at most 14 names."""
+    state = np.linspace(-1, 1, 28)
+    axes = plot_figure(so8_body.simulate(state, (0, 1), samples=20)).axes[0]
+    lines = axes.get_lines()
+    strokes = {(line.get_color(), line.get_linestyle()) for line in lines}
+    assert len(lines) == len(strokes) == 28
+    assert axes.get_legend()._ncols == 2
 
 
 def test_only_the_near_side_is_drawn_strong(body):

@@ -7,6 +7,7 @@ is imported here alone.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 
 #: Colours that stay apart for colour-blind readers (Okabe and Ito, 2008).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+STYLES = ("solid", "dashed", "dotted", "dashdot")
+#: Names in one column of a legend.
+LEGEND_ROWS = 14
 #: Relative change of |m|^2 below which a three-vector is drawn on its sphere.
 ON_SPHERE = 1e-6
 #: From where the sphere is seen: elevation and azimuth, degrees.
@@ -175,27 +179,28 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
     for n, (name, quantity) in enumerate(quantities):
         axes = figure.add_subplot(panels[n], sharex=shared)
         shared = shared or axes
-        for colour, component in zip(_colours(), quantity.components, strict=False):
-            axes.plot(
-                solution.time, solution[component], color=colour, linewidth=1.0, label=component
-            )
+        for stroke, component in zip(_strokes(), quantity.components, strict=False):
+            axes.plot(solution.time, solution[component], linewidth=1.0, label=component, **stroke)
         axes.set_ylabel(f"{_symbol(name)} {_unit(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
+        columns = -(-len(quantity.components) // LEGEND_ROWS)
+        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
+        axes.legend(fontsize=8 if columns == 1 else 6.5, frameon=False, **beside)
         _limit_time(axes, solution)
         axes.grid(alpha=0.3)
 
 
 def _draw_drift(axes: Any, solution: Solution) -> None:
     """Change of each conserved observable relative to its largest size, on a logarithmic axis."""
-    for n, (colour, name) in enumerate(zip(_colours(), solution.conserved, strict=False)):
+    for n, (stroke, name) in enumerate(zip(_strokes(), solution.conserved, strict=False)):
         size = float(np.abs(solution[name]).max()) or 1.0
         with np.errstate(invalid="ignore"):  # of what is infinite
             change = np.abs(solution.change(name)) / size
         change[change == 0] = np.nan  # no place on a logarithmic axis
         largest = f"{solution.drift[name]:.0e}" if solution.drift[name] else "none"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
-        axes.plot(solution.time, change, color=colour, linewidth=width, label=f"{name} ({largest})")
+        label = f"{name} ({largest})"
+        axes.plot(solution.time, change, linewidth=width, label=label, **stroke)
     axes.set_yscale("log")
     _limit_time(axes, solution)
     axes.set_xlabel("time [s]", fontsize=9)
@@ -214,10 +219,11 @@ def _limit_time(axes: Any, solution: Solution) -> None:
         axes.set_xlim(solution.time[0], solution.time_reached)
 
 
-def _colours() -> Any:
-    """The colours, again and again."""
+def _strokes() -> Iterator[dict[str, str]]:
+    """Colours of solid lines, then of dashed ones and so on, again and again."""
     while True:
-        yield from COLOURS
+        for style in STYLES:
+            yield from ({"color": colour, "linestyle": style} for colour in COLOURS)
 
 
 def _unit(unit: str) -> str:
