@@ -63,7 +63,7 @@ def legend(axes):
 
 
 def test_many_components_have_lines_of_their_own(tmp_path):
-    """28 components differ by colour or dashes, and their legend has columns of at most 14 names."""
+    """28 components differ by colour or dashes, their legend columns of at most 14."""
     state = np.linspace(-1, 1, 28)
     axes = plot_figure(so8_body.simulate(state, (0, 1), samples=20)).axes[0]
     lines = axes.get_lines()
