@@ -2,7 +2,6 @@
 
 import random
 import re
-import time
 from itertools import combinations
 
 import pytest
@@ -10,7 +9,6 @@ import pytest
 from coadjoint.algebra import (
     CATALOGUE,
     algebra_by_name,
-    families,
     from_brackets,
     from_matrices,
     same_constants,
@@ -220,18 +218,6 @@ def test_brackets_are_those_of_books(name):
     assert table == BOOK[name]
 
 
-def test_large_rotation_algebras_are_built_quickly():
-    """so(12) by name takes less than a tenth of a second of CPU time, its Jacobi identity less."""
-    start = time.process_time()
-    so12 = families.so(12)  # uncached
-    built = time.process_time()
-    so12.check_jacobi()
-    # Measured 0.023 s and 0.007 s; the bounds leave room for a machine five times slower.
-    assert built - start < 0.12
-    assert time.process_time() - built < 0.04
-    assert so12.dimension == 66
-
-
 # -- bad names ------------------------------------------------------------------------------------
 
 
@@ -264,13 +250,11 @@ def test_a_name_or_size_that_is_none_is_refused(name, said):
 
 
 def test_an_explosion_is_refused_before_anything_is_built():
-    """so(200) would have 19900 generators; the estimate is in the message and it takes no time."""
-    start = time.process_time()
+    """so(200) would have 19900 generators; the estimate is in the message."""
     with pytest.raises(LimitError, match=r"so\(200\) has 19900 generators and 197995050 brackets"):
         algebra_by_name("so(200)")
     with pytest.raises(LimitError, match="999999"):
-        algebra_by_name("R^999999")
-    assert time.process_time() - start < 0.05
+        algebra_by_name("R^999999")  # its matrices alone would fill the memory
 
 
 def test_the_bound_can_be_set():

@@ -95,7 +95,7 @@ def test_large_batches_are_computed_in_pieces(monkeypatch, size):
 
 
 def test_one_call_is_short_enough_to_be_interrupted():
-    """The largest piece of the largest function ends well within 0.2 s."""
+    """The largest piece of the largest function ends within a second."""
     import time
 
     state = np.ones((6, kernels.CHUNK // (6 + 36 + 1)))
@@ -103,7 +103,7 @@ def test_one_call_is_short_enough_to_be_interrupted():
     call = heavy_top.bind("jacobian", state, None, out)
     start = time.perf_counter()
     call()
-    assert time.perf_counter() - start < 0.2
+    assert time.perf_counter() - start < 1
 
 
 def test_functions_beyond_the_square_root_agree_but_for_roundings(fresh, tmp_path):

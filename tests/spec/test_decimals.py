@@ -60,7 +60,7 @@ def test_what_is_no_number_is_refused_at_once(value, said):
     start = process_time()
     with pytest.raises(ValueError, match=said):
         read_number(value)
-    assert process_time() - start < 0.1
+    assert process_time() - start < 2  # multiplied out it would never end
 
 
 def test_integer_too_long_to_be_printed_is_refused():

@@ -41,7 +41,7 @@ def test_explosion_is_refused_with_its_limit(text, limit):
         check_size(tree, SCOPE)
     assert caught.value.limit == limit
     assert limit in caught.value.expected
-    assert process_time() - start < 0.1
+    assert process_time() - start < 2  # multiplied out it would never end
 
 
 @pytest.mark.parametrize(
