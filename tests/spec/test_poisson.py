@@ -98,8 +98,8 @@ def test_coordinates_may_be_matrices():
 @pytest.mark.parametrize(
     ("text", "change", "key", "found", "said"),
     [
-        (NAMBU, ('["dot(x, x)/2"]', '["x1", "x2"]'), "poisson.nambu", 2, "expected 1 functions"),
-        (NAMBU, ("[3] }", "[4] }"), "poisson.nambu", 1, "expected 2 functions"),
+        (NAMBU, ('["dot(x, x)/2"]', '["x1", "x2"]'), "poisson.nambu", 2, "expected 1, two fewer"),
+        (NAMBU, ("[3] }", "[4] }"), "poisson.nambu", 1, "expected 2, two fewer"),
         (NAMBU, ("[3] }", "[2] }"), "poisson.nambu", 1, "at least 3 coordinates"),
         (NAMBU, ('["dot(x, x)/2"]', '["dot(x, y)"]'), "poisson.nambu[1]", "y", "not declared"),
         (NAMBU, ('["dot(x, x)/2"]', '["x"]'), "poisson.nambu[1]", "a 3-vector", "a scalar"),

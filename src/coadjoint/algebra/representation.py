@@ -17,8 +17,8 @@ from coadjoint.algebra.matrices import (
     SparseMatrix,
     combination,
     commutator,
-    entries_text,
     converted,
+    entries_text,
     kronecker,
     size,
 )
