@@ -202,6 +202,9 @@ class PoissonStructure:
 
     def _affine(self, entry: Element) -> dict[int, Fraction | Element] | None:
         """Coefficients of an entry by the place of their coordinate, the constant one last."""
+        plain = self._linear(entry)
+        if plain is not None:
+            return plain
         field, found, rest = self.field, {}, entry
         for m, slope in self.gradient(entry).items():
             rest = rest - slope * field[self.names[m]]
@@ -211,6 +214,24 @@ class PoissonStructure:
         if any(field.reach(value) & set(self.names) for value in found.values()):
             return None
         return {m: _number(field, value) for m, value in found.items()}
+
+    def _linear(self, entry: Element) -> dict[int, Fraction | Element] | None:
+        """Coefficients of a sum of numbers times coordinates, which most entries are."""
+        found: dict[int, Fraction | Element] = {}
+        for written in self.field.quotients(entry):
+            if written.divisors:
+                return None
+            for monomial in written.monomials:
+                match monomial.powers:
+                    case ((name, 1),) if name in self._places:
+                        found[self._places[name]] = monomial.number
+                    case _:
+                        return None
+        return found
+
+    @cached_property
+    def _places(self) -> Mapping[str, int]:
+        return {name: place for place, name in enumerate(self.names)}
 
     # -- sums ---------------------------------------------------------------------------
 
