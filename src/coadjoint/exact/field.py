@@ -9,7 +9,6 @@ Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import isqrt
@@ -23,6 +22,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.written import Adjoined, Monomial, Written
 
 Value = TypeVar("Value")
 
@@ -35,39 +35,6 @@ def _paired(addends: list[Any]) -> Any:
         pairs = [a + b for a, b in zip(addends[::2], addends[1::2], strict=False)]
         addends = pairs + addends[2 * len(pairs) :]
     return addends[0]
-
-
-@dataclass(frozen=True)
-class Adjoined:
-    """A generator that stands for ``function(argument)``.
-
-    Attributes:
-        generator: Its name.
-        function: ``sqrt``, ``sin``, ``cos``, ``exp`` or ``log``.
-        argument: An element of generators adjoined before.
-        partner: The generator of the cosine for a sine and the other way round, else empty.
-    """
-
-    generator: str
-    function: str
-    argument: Element
-    partner: str = ""
-
-
-@dataclass(frozen=True)
-class Monomial:
-    """A rational number times powers of generators, by name and in the order of the field."""
-
-    number: Fraction
-    powers: tuple[tuple[str, int], ...]
-
-
-@dataclass(frozen=True)
-class Written:
-    """A quotient as it is written: addends of the numerator over powers of divisors."""
-
-    monomials: tuple[Monomial, ...]
-    divisors: tuple[tuple[Element, int], ...]
 
 
 class Field:

@@ -7,7 +7,8 @@ of generated files and in documents.
 from __future__ import annotations
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.field import Field, Monomial, Written
+from coadjoint.exact.field import Field
+from coadjoint.exact.written import Monomial, Written
 
 
 def element_text(field: Field, element: Element) -> str:

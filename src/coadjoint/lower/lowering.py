@@ -16,7 +16,7 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.exact import Element, Field
-from coadjoint.exact.field import Written
+from coadjoint.exact.written import Written
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
