@@ -51,8 +51,3 @@ def schouten_bracket(tensor: Tensor, slopes: Slopes) -> dict[Triple, Element]:
                 triple = (low, middle, high)
                 parts[triple] = parts[triple] + term if triple in parts else term
     return dict(sorted(parts.items()))
-
-
-def jacobi_defects(tensor: Tensor, names: Sequence[str], field: Field) -> list[Element]:
-    """The Schouten bracket of a tensor in named coordinates; all zero for a Poisson tensor."""
-    return list(schouten_bracket(tensor, slopes_by(field, names)).values())
