@@ -90,16 +90,46 @@ class Exact:
         definitions: Velocities by name, each in terms of the state; rates and observables may use
             these names. In the order in which they can be computed.
         rates: Time derivative of each state component.
-        energy: The Hamiltonian, in terms of the state.
+        energy: The Hamiltonian, in terms of the state; None for forces without a potential.
         observables: Name and value of each scalar emitted beside the dynamics, energy included.
-        poisson_tensor: ``{x_i, x_j}`` for the state x.
+        poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
     """
 
     definitions: tuple[tuple[str, Element], ...]
     rates: tuple[Element, ...]
-    energy: Element
+    energy: Element | None
     observables: tuple[tuple[str, Element], ...]
-    poisson_tensor: tuple[tuple[Element, ...], ...]
+    poisson_tensor: tuple[tuple[Element, ...], ...] | None
+
+
+@dataclass(frozen=True)
+class Relation:
+    """A function that vanishes where variables live, such as ``chi . r`` or ``q . q - 1``.
+
+    Attributes:
+        text: The relation for people: ``dot(chi, r) = 0``.
+        element: What vanishes.
+    """
+
+    text: str
+    element: Element
+
+
+@dataclass(frozen=True)
+class Chart:
+    """The variables in which a route moves, where they are not the declared state.
+
+    Attributes:
+        variables: Their names, in the order of the route's rates.
+        state: Each component of the declared state as a function of them.
+        through: The map in words for certificates: ``Pi = P x Q``.
+        relations: What vanishes where the variables live; the motion must keep it so.
+    """
+
+    variables: tuple[str, ...]
+    state: tuple[Element, ...]
+    through: str
+    relations: tuple[Relation, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,12 +141,15 @@ class Equations:
         route: ``euler-poincare``, ``lie-poisson``.
         exact: The equations as field elements.
         steps: The derivation, step by step.
+        chart: The route's own variables and the map to the declared state; None if that is what
+            the route moves.
     """
 
     setting: Setting
     route: str
     exact: Exact
     steps: tuple[Step, ...]
+    chart: Chart | None = None
 
     @property
     def spec(self) -> Spec:
@@ -124,9 +157,14 @@ class Equations:
         return self.setting.spec
 
     @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of what the rates are the rates of: the declared state, or the route's own."""
+        return self.setting.state if self.chart is None else self.chart.variables
+
+    @property
     def state(self) -> tuple[sympy.Symbol, ...]:
-        """State symbols in declared order."""
-        return tuple(map(sympy.Symbol, self.setting.state))
+        """Symbols of the variables, in order."""
+        return tuple(map(sympy.Symbol, self.variables))
 
     @property
     def parameters(self) -> tuple[sympy.Symbol, ...]:
@@ -135,13 +173,13 @@ class Equations:
 
     @cached_property
     def rates(self) -> tuple[sympy.Expr, ...]:
-        """Time derivative of each state component, in state and parameters alone."""
+        """Time derivative of each variable, in variables and parameters alone."""
         return tuple(map(self._sympy, self.exact.rates))
 
     @cached_property
-    def energy(self) -> sympy.Expr:
-        """The energy, in state and parameters alone."""
-        return self._sympy(self.exact.energy)
+    def energy(self) -> sympy.Expr | None:
+        """The energy, in state and parameters alone; None where there is none."""
+        return None if self.exact.energy is None else self._sympy(self.exact.energy)
 
     @cached_property
     def observables(self) -> dict[str, sympy.Expr]:
@@ -154,11 +192,12 @@ class Equations:
         return {name: self._sympy(value) for name, value in self.exact.definitions}
 
     @cached_property
-    def poisson_tensor(self) -> sympy.ImmutableMatrix:
-        """Matrix of the brackets ``{x_i, x_j}`` of the state."""
-        return sympy.ImmutableMatrix(
-            [[self._sympy(entry) for entry in row] for row in self.exact.poisson_tensor]
-        )
+    def poisson_tensor(self) -> sympy.ImmutableMatrix | None:
+        """Matrix of the brackets ``{x_i, x_j}`` of the state; None where the route has none."""
+        tensor = self.exact.poisson_tensor
+        if tensor is None:
+            return None
+        return sympy.ImmutableMatrix([[self._sympy(entry) for entry in row] for row in tensor])
 
     def closed(self, element: Element) -> Element:
         """An element with the definitions substituted: in state and parameters alone."""
@@ -178,7 +217,7 @@ class Equations:
         """The definitions and rates as a LaTeX ``aligned`` block."""
         field = self.setting.field
         lines = [(symbol(name), value) for name, value in self.exact.definitions]
-        lines += zip(map(rate, self.setting.state), self.exact.rates, strict=True)
+        lines += zip(map(rate, self.variables), self.exact.rates, strict=True)
         rows = [f"{left.latex} &= {sympy.latex(field.to_sympy(value))}" for left, value in lines]
         return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
