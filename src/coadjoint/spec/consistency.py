@@ -13,12 +13,26 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
 from coadjoint.spec.faults import listed
-from coadjoint.spec.model import Parameter, Variable
+from coadjoint.spec.model import Parameter, Variable, state_of
 from coadjoint.spec.names import derived_names, refusal
 from coadjoint.spec.positions import KeyPath
+from coadjoint.spec.routes import STARTS, energies_of, kinds_of
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
 
+#: How a missing energy is written.
+_HOW = {
+    "hamiltonian": 'Write [hamiltonian] and below it h = "dot(Pi, inverse(diag(I))*Pi)/2".',
+    "lagrangian": 'Write [lagrangian] and below it l = "dot(Omega, diag(I)*Omega)/2".',
+}
+#: What a kind of spec has, in words.
+_KINDS = {
+    "algebra": "[algebra]",
+    "poisson": "[poisson]",
+    "nambu": "nambu functions in [poisson]",
+    "canonical": "canonical pairs in [poisson]",
+    "configuration": "coordinates with velocities or momenta",
+}
 #: A declared thing: its key, its name, the names of its components, and the names of its rates.
 _Declared = tuple[KeyPath, str, tuple[str, ...], tuple[str, ...]]
 
@@ -59,7 +73,8 @@ def _declared(
     variables: Sequence[Variable], parameters: Sequence[Parameter], observables: Iterable[str]
 ) -> Iterable[_Declared]:
     for variable in variables:
-        rates = () if variable.role == "velocity" else tuple(derived_names(variable.components))
+        moving = variable in state_of(variables)
+        rates = tuple(derived_names(variable.components)) if moving else ()
         yield ("variables", variable.name), variable.name, variable.components, rates
     for parameter in parameters:
         yield ("parameters", parameter.name), parameter.name, parameter.components, ()
@@ -75,7 +90,7 @@ def check_sizes(
     Raises:
         LimitError: More components than the limit.
     """
-    state = [variable for variable in variables if variable.role != "velocity"]
+    state = state_of(variables)
     for key, quantities, limit, most in (
         ("variables", state, "STATE_COMPONENTS", STATE_COMPONENTS),
         ("parameters", parameters, "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS),
@@ -130,17 +145,19 @@ def check_blocks(source: Source, variables: Sequence[Variable], algebra: LieAlge
 
 
 def check_tables(source: Source, file: SpecFile) -> None:
-    """There is an algebra or a Poisson bracket, not both, and nothing of the one beside the other.
+    """There is an algebra, a Poisson bracket or neither, and nothing that goes with another.
 
     Raises:
-        SpecError: Neither, both, or a table or route that goes with the other.
+        SpecError: Both, or neither and no coordinates; a table or route that goes with the other.
     """
-    if file.algebra is None and file.poisson is None:
+    coordinates = any(part.role == "coordinate" for part in file.variables.values())
+    if file.algebra is None and file.poisson is None and not coordinates:
         raise source.fault(
             (),
             "the table 'algebra' is missing",
             found="algebra",
-            expected="a table [algebra], or [poisson] for a system without an algebra",
+            expected="a table [algebra], or [poisson] or coordinates with velocities for a system "
+            "without an algebra",
             hint='Write [algebra] and below it name = "so(3)".',
         )
     if file.algebra is not None and file.poisson is not None:
@@ -151,91 +168,120 @@ def check_tables(source: Source, file: SpecFile) -> None:
             expected="one of them",
             hint="The bracket on the dual of an algebra follows from it: remove [poisson].",
         )
-    _check_roads(source, file)
-    for table in ("representations", "lagrangian"):
-        if file.poisson is not None and getattr(file, table):
-            raise source.fault(
-                (table,),
-                f"there is a table [{table}] beside [poisson]",
-                found=table,
-                expected=f"[{table}] beside [algebra] alone",
-                hint=f"Remove [{table}].",
-            )
+    if file.algebra is None and file.representations:
+        raise source.fault(
+            ("representations",),
+            "there is a table [representations] without [algebra]",
+            found="representations",
+            expected="[representations] beside [algebra] alone",
+            hint="Remove [representations].",
+        )
 
 
-def _check_roads(source: Source, file: SpecFile) -> None:
-    """Each route starts from a table that is there."""
-    nambu = file.poisson is not None and file.poisson.nambu is not None
-    starts = {
-        "algebra": (file.algebra is not None, ("euler-poincare", "lie-poisson")),
-        "poisson": (file.poisson is not None, ("poisson", "nambu") if nambu else ("poisson",)),
-    }
-    routes = next(routes for is_there, routes in starts.values() if is_there)
-    for place, route in enumerate(file.routes):
-        if route not in routes:
-            missing = "nambu functions in [poisson]" if file.poisson is not None else "[poisson]"
-            if route in starts["algebra"][1]:
-                missing = "[algebra]"
-            raise source.fault(
-                ("routes", place),
-                f"the route {route} starts from {missing}, which is not there",
-                found=route,
-                expected=f"one of {listed(routes)}",
-            )
-
-
-def check_routes(
-    source: Source, file: SpecFile, variables: Sequence[Variable], algebra: LieAlgebra | None
-) -> None:
-    """Each route finds the variables and the energy that it starts from.
+def check_routes(source: Source, file: SpecFile) -> None:
+    """Each route starts from tables that are there, and none is there in vain.
 
     Raises:
         SpecError: Something is missing for a route, or is used by none.
     """
-    if algebra is None:
-        if file.hamiltonian is None:
-            raise _missing(
-                source,
-                f"the route {file.routes[0]} has no Hamiltonian",
-                "hamiltonian",
-                'Write [hamiltonian] and below it h = "dot(p, p)/2".',
+    kinds = kinds_of(file)
+    for place, route in enumerate(file.routes):
+        start = STARTS[route]
+        if not set(start.kinds) & set(kinds):
+            others = [name for name, other in STARTS.items() if set(other.kinds) & set(kinds)]
+            starts = " or ".join(_KINDS[kind] for kind in start.kinds)
+            raise source.fault(
+                ("routes", place),
+                f"the route {route} starts from {starts}, which is not there",
+                found=route,
+                expected=f"one of {listed(others)}",
             )
-        return
-    _check_energies(source, file)
-    _check_covered(source, "momentum", "Pi", variables, algebra)
-    if file.lagrangian is not None:
-        _check_covered(source, "velocity", "Omega", variables, algebra)
+        if start.table and getattr(file, start.table) is None:
+            raise _missing(source, f"the route {route} has no table [{start.table}]", start.table)
+        energies = energies_of(route, kinds)
+        if energies and not any(getattr(file, each) for each in energies):
+            names = [each.title() for each in energies]
+            lacks = f"no {names[0]}"
+            if len(names) > 1:
+                lacks = "neither " + " nor ".join(f"a {name}" for name in names)
+            raise _missing(source, f"the route {route} has {lacks}", energies[0])
+    _check_use(source, file)
 
 
-def _check_energies(source: Source, file: SpecFile) -> None:
-    """A Lagrangian or a Hamiltonian where a route needs it, and no Hamiltonian in vain."""
-    if file.lagrangian is None and "euler-poincare" in file.routes:
-        raise _missing(
-            source,
-            "the route euler-poincare has no Lagrangian",
-            "lagrangian",
-            'Write [lagrangian] and below it l = "dot(Omega, diag(I)*Omega)/2".',
-        )
-    if file.lagrangian is None and file.hamiltonian is None:
-        raise _missing(
-            source,
-            "the route lie-poisson has neither a Hamiltonian nor a Lagrangian",
-            "hamiltonian",
-            'Write [hamiltonian] and below it h = "dot(Pi, inverse(diag(I))*Pi)/2".',
-        )
-    if file.hamiltonian is not None and "lie-poisson" not in file.routes:
-        raise source.fault(
-            ("hamiltonian",),
-            "no route uses the Hamiltonian",
-            found="hamiltonian",
-            expected="the route lie-poisson beside it",
-            hint='Add "lie-poisson" to routes, or remove [hamiltonian].',
-        )
+def _check_use(source: Source, file: SpecFile) -> None:
+    """A Hamiltonian, a Lagrangian or another table that no route reads is a mistake."""
+    kinds = kinds_of(file)
+    used = {table for route in file.routes for table in energies_of(route, kinds)}
+    used |= {STARTS[route].table for route in file.routes}
+    for table in ("hamiltonian", "lagrangian", "lax", "newton"):
+        if getattr(file, table) is not None and table not in used:
+            readers = [
+                name
+                for name, start in STARTS.items()
+                if table in (*energies_of(name, kinds), start.table)
+                and set(start.kinds) & set(kinds)
+            ]
+            raise source.fault(
+                (table,),
+                f"no route uses the {table.title()}"
+                if table in _HOW
+                else f"no route uses the table [{table}]",
+                found=table,
+                expected=f"one of the routes {listed(readers)} beside it"
+                if readers
+                else f"no table [{table}] here",
+                hint=f'Add "{readers[0]}" to routes, or remove [{table}].' if readers else "",
+            )
 
 
-def _missing(source: Source, problem: str, found: str, hint: str) -> CoadjointError:
-    expected = f"a table [{found}]"
-    return source.fault(("routes",), problem, found=found, expected=expected, hint=hint)
+def check_covered(
+    source: Source, file: SpecFile, variables: Sequence[Variable], algebra: LieAlgebra | None
+) -> None:
+    """Momenta and velocities span the algebra, or belong to every coordinate.
+
+    Raises:
+        SpecError: Some direction or coordinate has none.
+    """
+    if algebra is not None:
+        _check_covered(source, "momentum", "Pi", variables, algebra)
+        if file.lagrangian is not None:
+            _check_covered(source, "velocity", "Omega", variables, algebra)
+    elif file.poisson is None or file.lagrangian is not None:
+        _check_partners(source, file, variables)
+
+
+def _check_partners(source: Source, file: SpecFile, variables: Sequence[Variable]) -> None:
+    """Every coordinate of a configuration space has a velocity where velocities are asked for."""
+    owned = {role: {v.of for v in variables if v.role == role} for role in ("velocity", "momentum")}
+    for variable in variables:
+        if variable.role != "coordinate":
+            continue
+        wanted = ["velocity"] if file.lagrangian is not None else ["velocity", "momentum"]
+        if not any(variable.name in owned[role] for role in wanted):
+            name, role = variable.name, wanted[-1]
+            letter = "v" if role == "velocity" else "p"
+            raise _at_key(
+                source,
+                ("variables", name),
+                f"the coordinate {name!r} has no {' and no '.join(wanted)}",
+                name,
+                f"a {role} of each coordinate",
+                f'Write for instance {letter} = {{ role = "{role}", of = "{name}" }}.',
+            )
+        if owned["momentum"] and variable.name not in owned["momentum"]:
+            raise _at_key(
+                source,
+                ("variables", variable.name),
+                f"the coordinate {variable.name!r} has no momentum, and others have",
+                variable.name,
+                "momenta of all coordinates or of none",
+                "",
+            )
+
+
+def _missing(source: Source, problem: str, table: str) -> CoadjointError:
+    expected, hint = f"a table [{table}]", _HOW.get(table, "")
+    return source.fault(("routes",), problem, found=table, expected=expected, hint=hint)
 
 
 def _check_covered(

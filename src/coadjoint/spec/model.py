@@ -106,6 +106,7 @@ class Variable:
         unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
         doc: Free text for documents.
         form: One of `FORMS` if the components are the entries of a matrix, else "".
+        of: The coordinate whose velocity or momentum it is; "" over an algebra.
     """
 
     name: str
@@ -116,6 +117,7 @@ class Variable:
     unit: str = "1"
     doc: str = ""
     form: str = ""
+    of: str = ""
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -131,6 +133,16 @@ class Variable:
     def value_shape(self) -> Shape:
         """Shape in formulas: that of the whole matrix where there is a form."""
         return self.shape if self.matrix_size is None else (self.matrix_size,) * 2
+
+
+def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """The variables that make the state, in declared order; see `Spec.state`."""
+    given = {variable.of for variable in variables if variable.role == "momentum"}
+    return tuple(
+        variable
+        for variable in variables
+        if variable.role != "velocity" or (variable.of and variable.of not in given)
+    )
 
 
 @dataclass(frozen=True)
@@ -217,6 +229,24 @@ class Poisson:
 
 
 @dataclass(frozen=True)
+class Lax:
+    """A declared Lax pair: ``dL/dt = [L, M]`` for every value of the spectral parameter."""
+
+    spectral: str
+    L: Formula
+    M: Formula
+
+
+@dataclass(frozen=True)
+class Force:
+    """Newton's law of one coordinate: ``mass * acceleration = force``."""
+
+    coordinate: str
+    mass: Formula
+    force: Formula
+
+
+@dataclass(frozen=True)
 class Spec:
     """One declared system.
 
@@ -225,8 +255,9 @@ class Spec:
         title: Free text, like ``source`` and ``description``; for documents only.
         license: SPDX expression of the spec's own licence, or "".
         routes: Routes to derive by; the first is emitted, the others are proved equal to it.
-        algebra: The Lie algebra of the velocities; None where a Poisson bracket is declared.
-        poisson: The declared bracket of the coordinates; None where there is an algebra.
+        algebra: The Lie algebra of the velocities; None without one.
+        poisson: The declared bracket of the coordinates; None where there is an algebra, or where
+            coordinates have velocities or momenta and nothing else is said.
         invariance: ``"left"`` (body, and without an algebra) or ``"right"`` (space).
         variables: Velocities, momenta, advected quantities or coordinates in declared order.
         parameters: Constants in declared order.
@@ -237,6 +268,8 @@ class Spec:
         conserved: Claimed integrals of the motion.
         path: File the spec was read from, for messages only.
         sha256: Hash of the file's bytes.
+        lax: The declared Lax pair, or None.
+        newton: Declared forces, one for each coordinate; empty if none.
     """
 
     name: str
@@ -257,6 +290,8 @@ class Spec:
     conserved: tuple[Formula, ...]
     path: Path
     sha256: str
+    lax: Lax | None = None
+    newton: tuple[Force, ...] = ()
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
@@ -264,6 +299,21 @@ class Spec:
 
     @property
     def state(self) -> tuple[Variable, ...]:
-        """Momenta, then advected quantities, or else the coordinates: the state of the kernels."""
-        roles = ("momentum", "advected", "coordinate")
-        return tuple(variable for role in roles for variable in self.having_role(role))
+        """The state of the kernels, in declared order: what is no velocity that another gives.
+
+        Velocities follow from momenta; only where a coordinate has no momentum is its velocity
+        part of the state.
+        """
+        return state_of(self.variables)
+
+    def partner(self, role: str, coordinate: str) -> Variable | None:
+        """The velocity or momentum of a coordinate; None if none is declared."""
+        found = (variable for variable in self.having_role(role) if variable.of == coordinate)
+        return next(found, None)
+
+    @property
+    def kind(self) -> str:
+        """``algebra``, ``poisson`` or ``configuration``: what the motion is declared on."""
+        if self.algebra is not None:
+            return "algebra"
+        return "poisson" if self.poisson is not None else "configuration"

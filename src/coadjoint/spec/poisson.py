@@ -43,6 +43,7 @@ class _Reading:
     ) -> None:
         self.source = source
         self.quantities: tuple[Variable | Parameter, ...] = (*variables, *parameters)
+        self.roles = tuple(dict.fromkeys(variable.role for variable in variables))
         self.state = [name for variable in variables for name in variable.components]
         self.places = {variable.name: self._run(variable) for variable in variables}
         self.places |= {name: (place,) for place, name in enumerate(self.state)}
@@ -65,7 +66,7 @@ class _Reading:
 
     def _formula(self, key: KeyPath, text: str, kind: str) -> Formula:
         return read_formula(
-            self.source, key, text, make_scope(kind, ("coordinate",), self.quantities)
+            self.source, key, text, make_scope(kind, self.roles, self.quantities)
         )
 
     def _nambu(self, texts: Sequence[str]) -> tuple[Formula, ...]:

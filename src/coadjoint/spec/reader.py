@@ -25,6 +25,7 @@ from coadjoint.spec.algebras import read_algebra
 from coadjoint.spec.coefficients import Scalars
 from coadjoint.spec.consistency import (
     check_blocks,
+    check_covered,
     check_names,
     check_routes,
     check_sizes,
@@ -32,7 +33,7 @@ from coadjoint.spec.consistency import (
 )
 from coadjoint.spec.faults import did_you_mean
 from coadjoint.spec.formulas import Scope, make_scope, read_formula
-from coadjoint.spec.model import Formula, Observable, Parameter, Spec, Variable
+from coadjoint.spec.model import Formula, Observable, Parameter, Spec, Variable, state_of
 from coadjoint.spec.names import system_refusal
 from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
@@ -105,8 +106,9 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         check_blocks(source, variables, algebra)
     poisson = None
     if file.poisson is not None:
-        poisson = read_poisson(source, file.poisson, variables, parameters)
-    check_routes(source, file, variables, algebra)
+        poisson = read_poisson(source, file.poisson, state_of(variables), parameters)
+    check_routes(source, file)
+    check_covered(source, file, variables, algebra)
     formulas = _Formulas(source, file, variables, parameters)
     return Spec(
         name=name,
@@ -139,7 +141,7 @@ def _read_structure(
         algebra = read_algebra(source, file.algebra, name, scalars)
         representations = read_representations(source, file.representations, algebra, scalars)
     variables = tuple(
-        read_variable(source, variable, part, algebra, representations)
+        read_variable(source, variable, part, algebra, representations, file.variables)
         for variable, part in file.variables.items()
     )
     return algebra, variables
@@ -157,14 +159,15 @@ class _Formulas:
     ) -> None:
         self.source, self.file = source, file
         self.quantities: tuple[Variable | Parameter, ...] = (*variables, *parameters)
-        without = file.poisson is not None  # an algebra
-        self.state = ("coordinate",) if without else ("momentum", "advected")
-        self.motion = self.state if without else ("velocity", *self.state)
+        # all momenta or, of coordinates without them, velocities; the reader refuses a mixture
+        self.state = tuple(dict.fromkeys(variable.role for variable in state_of(variables)))
+        self.motion = tuple(dict.fromkeys(("velocity", *self.state)))
+        self.fixed = ("advected",) if file.algebra is not None else ("coordinate",)
 
     def lagrangian(self) -> Formula | None:
         if self.file.lagrangian is None:
             return None
-        scope = make_scope("a Lagrangian", ("velocity", "advected"), self.quantities)
+        scope = make_scope("a Lagrangian", ("velocity", *self.fixed), self.quantities)
         return read_formula(self.source, ("lagrangian", "l"), self.file.lagrangian.l, scope)
 
     def hamiltonian(self) -> Formula | None:

@@ -254,7 +254,8 @@ class VariablePart(Part):
     """A velocity, a momentum, an advected quantity or a coordinate."""
 
     role: Literal["velocity", "momentum", "advected", "coordinate"] = Field(
-        description="'velocity', 'momentum', 'advected'; 'coordinate' beside [poisson]"
+        description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
+        "with a 'velocity' or 'momentum' of it"
     )
     block: Block | None = Field(
         None, description="the block of the algebra that it spans; by default all of it"
@@ -266,6 +267,11 @@ class VariablePart(Part):
     )
     shape: Annotated[list[Length], Field(max_length=1)] | None = Field(
         None, description="of a coordinate: [] for a scalar (the default), [n] for n components"
+    )
+    of: str | None = Field(
+        None,
+        description="the coordinate whose velocity, or conjugate momentum, it is; its shape and "
+        "form are those of the coordinate",
     )
     form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
         None,
@@ -302,6 +308,21 @@ class HamiltonianPart(Part):
     h: str = Field(description="h of momenta, advected quantities or coordinates, and parameters")
 
 
+class LaxPart(Part):
+    """A Lax pair, ``dL/dt = [L, M]`` for every value of the spectral parameter."""
+
+    spectral: str = Field("lambda", description="name of the spectral parameter in L and M")
+    L: str = Field(description="a square matrix of state, parameters and the spectral parameter")
+    M: str = Field(description="the same of velocities too: how L turns")
+
+
+class NewtonPart(Part):
+    """Newton's law of one coordinate: ``mass * acceleration = force``."""
+
+    mass: str = Field("1", description="a scalar, or a matrix that multiplies the acceleration")
+    force: str = Field(description="the force, of the shape of the coordinate")
+
+
 class ObservablePart(Part):
     """A scalar emitted beside the dynamics."""
 
@@ -326,6 +347,28 @@ class ClaimsPart(Part):
     )
 
 
+RouteName = Literal[
+    "euler-poincare",
+    "lie-poisson",
+    "hamilton-pontryagin",
+    "clebsch",
+    "poincare",
+    "matrix-euler-poincare",
+    "newton-euler",
+    "cayley-klein",
+    "kaluza-klein",
+    "complexification",
+    "manakov",
+    "lax",
+    "nambu",
+    "poisson",
+    "canonical",
+    "euler-lagrange",
+    "newton",
+    "alignment",
+]
+
+
 def _no_claims() -> ClaimsPart:
     return ClaimsPart(casimirs=[], conserved=[])
 
@@ -340,7 +383,7 @@ class SpecFile(Part):
         "", description="SPDX expression of the licence of this file and of what is generated"
     )
     routes: Annotated[
-        list[Literal["euler-poincare", "lie-poisson", "nambu", "poisson"]],
+        list[RouteName],
         Field(min_length=1),
         AfterValidator(is_unique),
     ] = Field(description="routes to derive by; the first is emitted, the others proved equal")
@@ -359,6 +402,10 @@ class SpecFile(Part):
     )
     lagrangian: LagrangianPart | None = Field(None, description="the reduced Lagrangian")
     hamiltonian: HamiltonianPart | None = Field(None, description="the reduced Hamiltonian")
+    lax: LaxPart | None = Field(None, description="a Lax pair of the motion")
+    newton: Annotated[dict[str, NewtonPart], Field(min_length=1)] | None = Field(
+        None, description="Newton's law, by the names of coordinates", json_schema_extra=_named()
+    )
     observables: dict[str, ObservablePart] = Field(
         {}, description="scalars emitted beside the dynamics", json_schema_extra=_named()
     )

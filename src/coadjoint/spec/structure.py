@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 from math import prod
+from types import MappingProxyType
 
 from coadjoint.algebra.catalogue import REPRESENTATIONS
 from coadjoint.algebra.families import so_indefinite
@@ -27,12 +28,13 @@ _OWN_KEYS = {
     "block": "velocities and momenta",
     "representation": "advected quantities",
     "shape": "coordinates",
+    "of": "velocities and momenta of coordinates",
 }
-_KEY_OF = {
-    "velocity": "block",
-    "momentum": "block",
-    "advected": "representation",
-    "coordinate": "shape",
+_KEYS_OF = {
+    "velocity": ("block", "of"),
+    "momentum": ("block", "of"),
+    "advected": ("representation",),
+    "coordinate": ("shape",),
 }
 
 
@@ -42,8 +44,17 @@ def read_variable(
     part: VariablePart,
     algebra: LieAlgebra | None,
     representations: Mapping[str, Representation],
+    parts: Mapping[str, VariablePart] = MappingProxyType({}),
 ) -> Variable:
     """A variable with its place in the algebra, or its shape where there is none.
+
+    Args:
+        source: The spec file, for messages.
+        name: As declared.
+        part: What is declared of it.
+        algebra: The algebra of the velocities, if any.
+        representations: Declared ones, by name.
+        parts: All that is declared, for coordinates that others are velocities of.
 
     Raises:
         SpecError: A key does not go with the role, the role not with the spec, the block or the
@@ -51,14 +62,18 @@ def read_variable(
     """
     key: KeyPath = ("variables", name)
     for alien in _OWN_KEYS:
-        if alien != _KEY_OF[part.role] and getattr(part, alien) is not None:
+        if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
     block: tuple[int, ...] = ()
     representation = None
     if part.role == "coordinate" or algebra is None:
         _check_role(source, key, part, algebra)
+        if part.role != "coordinate":
+            part = _as_partner(source, key, part, parts)
         count = prod(part.shape or [1])
         flat = bool(part.shape)
+    elif part.of is not None:
+        raise _alien_key(source, (*key, "of"), part)
     elif part.role == "advected":
         representation = _representation(source, key, part, algebra, representations)
         count = representation.dimension
@@ -72,7 +87,41 @@ def read_variable(
     if form == "antisymmetric" and block and algebra is not None:
         _check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
-    return Variable(name, part.role, shape, block, representation, part.unit, part.doc, form)
+    of = part.of or ""
+    return Variable(name, part.role, shape, block, representation, part.unit, part.doc, form, of)
+
+
+def _as_partner(
+    source: Source, key: KeyPath, part: VariablePart, parts: Mapping[str, VariablePart]
+) -> VariablePart:
+    """A velocity or momentum with the shape and form of its coordinate."""
+    coordinates = [name for name, each in parts.items() if each.role == "coordinate"]
+    if part.of is None:
+        raise source.fault(
+            (*key, "role"),
+            f"the {part.role} {key[-1]!r} belongs to no coordinate",
+            found=part.role,
+            expected=f"of = one of {listed(coordinates)}" if coordinates else "a coordinate",
+            hint="Add for instance " + f'of = "{coordinates[0] if coordinates else "q"}".',
+        )
+    if part.of not in coordinates:
+        raise source.fault(
+            (*key, "of"),
+            f"there is no coordinate {part.of!a}",
+            found=part.of,
+            expected=f"one of {listed(coordinates)}" if coordinates else "a declared coordinate",
+            hint=did_you_mean(part.of, coordinates),
+        )
+    rivals = [n for n, each in parts.items() if (each.role, each.of) == (part.role, part.of)]
+    if rivals[0] != key[-1]:
+        raise source.fault(
+            (*key, "of"),
+            f"{rivals[0]!r} is the {part.role} of {part.of!r} already",
+            found=part.of,
+            expected=f"one {part.role} for each coordinate",
+        )
+    whole = parts[part.of]
+    return part.model_copy(update={"shape": whole.shape, "form": whole.form})
 
 
 def _alien_key(source: Source, key: KeyPath, part: VariablePart) -> CoadjointError:
@@ -89,17 +138,19 @@ def _alien_key(source: Source, key: KeyPath, part: VariablePart) -> CoadjointErr
 def _check_role(
     source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
 ) -> None:
-    """Coordinates go with [poisson], the other roles with [algebra]."""
-    if (part.role == "coordinate") != (algebra is None):
-        table, roles = "[poisson]", "the role 'coordinate'"
-        if algebra is not None:
-            table, roles = "[algebra]", "the roles 'velocity', 'momentum' and 'advected'"
-        raise source.fault(
-            (*key, "role"),
-            f"{key[-1]!r} has the role {part.role!r} beside {table}",
-            found=part.role,
-            expected=f"{roles} beside {table}",
-        )
+    """Coordinates do without an algebra, advected quantities do not."""
+    if part.role == "coordinate" and algebra is not None:
+        place, roles = "beside [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
+    elif part.role == "advected" and algebra is None:
+        place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
+    else:
+        return
+    raise source.fault(
+        (*key, "role"),
+        f"{key[-1]!r} has the role {part.role!r} {place}",
+        found=part.role,
+        expected=f"{roles} {place}",
+    )
 
 
 def _misfit(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
