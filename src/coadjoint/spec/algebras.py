@@ -29,6 +29,16 @@ from coadjoint.algebra import (
 )
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import STATE_COMPONENTS
+from coadjoint.spec.algebra_schema import (
+    WAYS,
+    ActionPart,
+    AlgebraPart,
+    ExtensionPart,
+    LeibnizPart,
+    OperandPart,
+    SemidirectPart,
+    SubalgebraPart,
+)
 from coadjoint.spec.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.positions import KeyPath
@@ -39,16 +49,6 @@ from coadjoint.spec.representations import (
     places_of,
     read_matrices,
     representation_of,
-)
-from coadjoint.spec.schema import (
-    WAYS,
-    ActionPart,
-    AlgebraPart,
-    ExtensionPart,
-    LeibnizPart,
-    OperandPart,
-    SemidirectPart,
-    SubalgebraPart,
 )
 from coadjoint.spec.source import Source
 from coadjoint.spec.values import BRACKET_PATTERN

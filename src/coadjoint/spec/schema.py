@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
+from coadjoint.spec.algebra_schema import AlgebraPart, OperandPart, Part, also_text, named
 from coadjoint.spec.values import (
-    BRACKET_PATTERN,
-    NAME_PATTERN,
     POISSON_PATTERN,
     Block,
-    Entry,
     Length,
     License,
     Matrix,
@@ -29,187 +27,6 @@ from coadjoint.spec.values import (
 )
 
 
-def _no_titles(schema: dict[str, Any]) -> None:
-    """Drop the titles that pydantic makes of key names; they say nothing."""
-    for part in (schema, *schema.get("properties", {}).values()):
-        part.pop("title", None)
-
-
-def _named(pattern: str = NAME_PATTERN) -> dict[str, Any]:
-    """What a JSON Schema says about the keys of a table of names."""
-    return {"propertyNames": {"pattern": pattern}}
-
-
-class Part(BaseModel):
-    """A table of a spec: unknown keys are refused, nothing is converted."""
-
-    model_config = ConfigDict(
-        extra="forbid", strict=True, frozen=True, json_schema_extra=_no_titles
-    )
-
-
-def _also_text(schema: dict[str, Any]) -> None:
-    """The table may be a text alone."""
-    _no_titles(schema)
-    table = dict(schema)
-    schema.clear()
-    schema["anyOf"] = [{"type": "string"}, table]
-
-
-#: The ways to declare an algebra, of which each takes exactly one.
-WAYS = (
-    "name",
-    "brackets",
-    "matrices",
-    "direct_sum",
-    "semidirect",
-    "extension",
-    "leibniz",
-    "complexification",
-    "subalgebra",
-)
-
-
-class _Algebra(Part):
-    """The ways to declare a Lie algebra."""
-
-    name: str | None = Field(None, description="an algebra by name, such as 'so(3)' or 'sl(2,R)'")
-    basis: Names | None = Field(None, description="names of the basis, in order")
-    brackets: dict[str, str] | None = Field(
-        None,
-        description="brackets such as '[e1, e2]' = 'e3', each pair once; the others are 0",
-        json_schema_extra=_named(BRACKET_PATTERN),
-    )
-    matrices: dict[str, Matrix] | None = Field(
-        None, description="a matrix for each name of the basis", json_schema_extra=_named()
-    )
-    direct_sum: Annotated[list[OperandPart], Field(min_length=2)] | None = Field(
-        None, description="algebras that commute with each other, as ['so(3)', 'so(3)']"
-    )
-    semidirect: SemidirectPart | None = Field(
-        None, description="an algebra with the spaces, or the ideal, that it acts on"
-    )
-    extension: ExtensionPart | None = Field(None, description="a central extension by a 2-cocycle")
-    leibniz: LeibnizPart | None = Field(
-        None, description="an algebra with polynomials in eps, eps^order = 0, as coefficients"
-    )
-    complexification: OperandPart | None = Field(
-        None, description="an algebra with complex coefficients, as a real algebra"
-    )
-    subalgebra: SubalgebraPart | None = Field(
-        None, description="the span of some vectors of an algebra"
-    )
-    blocks: dict[str, Names] | None = Field(
-        None, description="named parts of the basis", json_schema_extra=_named()
-    )
-
-    @model_validator(mode="after")
-    def _one_way(self) -> _Algebra:
-        ways = [way for way in WAYS if getattr(self, way) is not None]
-        if len(ways) != 1:
-            raise ValueError(f"exactly one of {', '.join(WAYS)}")
-        if self.brackets is not None and self.basis is None:
-            raise ValueError("a basis beside the brackets, as basis = ['e1', 'e2', 'e3']")
-        if self.name is not None and (self.basis is not None or self.blocks is not None):
-            raise ValueError("no basis and no blocks beside a name, which has its own")
-        if self.basis is not None and ways[0] not in ("brackets", "matrices"):
-            raise ValueError(f"no basis beside {ways[0]}, which makes its own")
-        return self
-
-
-class AlgebraPart(_Algebra):
-    """The Lie algebra of the velocities."""
-
-    invariance: Literal["left", "right"] = Field(
-        "left", description="'left' (body frame, the default) or 'right' (space frame)"
-    )
-
-
-class OperandPart(_Algebra):
-    """An algebra that a larger one is made of: its name, or a table."""
-
-    model_config = ConfigDict(json_schema_extra=_also_text)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_text(cls, value: object) -> object:
-        return {"name": value} if isinstance(value, str) else value
-
-
-class ActionPart(Part):
-    """A linear action: the name of a representation, or a table of matrices."""
-
-    model_config = ConfigDict(json_schema_extra=_also_text)
-
-    name: str | None = Field(None, description="a representation by name, such as 'vector'")
-    matrices: dict[str, Matrix] | None = Field(
-        None,
-        description="a matrix for each name of the basis; those left out act as zero",
-        json_schema_extra=_named(),
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_text(cls, value: object) -> object:
-        return {"name": value} if isinstance(value, str) else value
-
-    @model_validator(mode="after")
-    def _one_way(self) -> ActionPart:
-        if (self.name is None) == (not self.matrices):
-            raise ValueError("the name of a representation, or matrices")
-        return self
-
-
-class SemidirectPart(Part):
-    """An algebra that acts on vector spaces, or on an ideal."""
-
-    algebra: OperandPart = Field(description="the algebra that acts")
-    representations: dict[str, ActionPart] | None = Field(
-        None,
-        description="how it acts on spaces, by the lead of their names, as p of p1 p2 p3",
-        json_schema_extra=_named(),
-    )
-    ideal: OperandPart | None = Field(None, description="the algebra that it acts on")
-    action: ActionPart | None = Field(None, description="how it acts on the ideal: derivations")
-
-    @model_validator(mode="after")
-    def _one_way(self) -> SemidirectPart:
-        if bool(self.representations) == (self.ideal is not None):
-            raise ValueError("either representations or an ideal")
-        if (self.ideal is None) != (self.action is None):
-            raise ValueError("ideal and action together")
-        return self
-
-
-class ExtensionPart(Part):
-    """A central extension: ``[e_i, e_j]`` gains ``cocycle(e_i, e_j)`` times the center."""
-
-    algebra: OperandPart = Field(description="the algebra that is extended")
-    center: str = Field("Z", description="name of the new vector of the basis")
-    cocycle: dict[str, Entry] = Field(
-        description="values such as '[K1, P1]' = 1, each pair once; the others are 0",
-        json_schema_extra=_named(BRACKET_PATTERN),
-    )
-
-
-class LeibnizPart(Part):
-    """The algebra with coefficients in R[eps] / eps^order."""
-
-    algebra: OperandPart = Field(description="the algebra of eps = 0")
-    order: Length = Field(description="the power of eps that is 0")
-
-
-class SubalgebraPart(Part):
-    """The span of some vectors, which must be closed under the bracket."""
-
-    algebra: OperandPart = Field(description="the algebra that holds it")
-    basis: dict[str, str] = Field(
-        min_length=1,
-        description="vectors by name, such as X1 = 'E12 + E34'",
-        json_schema_extra=_named(),
-    )
-
-
 class PoissonPart(Part):
     """A Poisson bracket of coordinates, in the place of an algebra."""
 
@@ -219,7 +36,7 @@ class PoissonPart(Part):
     brackets: dict[str, str] | None = Field(
         None,
         description="brackets such as '{X1, X2}' = '4*X3', each pair once; the others are 0",
-        json_schema_extra=_named(POISSON_PATTERN),
+        json_schema_extra=named(POISSON_PATTERN),
     )
     canonical: list[Annotated[list[str], Field(min_length=2, max_length=2)]] | None = Field(
         None, description="pairs of a position and its momentum, as [['q', 'p']]"
@@ -227,7 +44,7 @@ class PoissonPart(Part):
     magnetic: dict[str, str] | None = Field(
         None,
         description="brackets of canonical momenta, such as '{p1, p2}' = 'B*q3'",
-        json_schema_extra=_named(POISSON_PATTERN),
+        json_schema_extra=named(POISSON_PATTERN),
     )
 
     @model_validator(mode="after")
@@ -246,7 +63,7 @@ class RepresentationPart(Part):
     matrices: dict[str, Matrix] = Field(
         min_length=1,
         description="a matrix for each name of the basis; those left out act as zero",
-        json_schema_extra=_named(),
+        json_schema_extra=named(),
     )
 
 
@@ -326,7 +143,7 @@ class NewtonPart(Part):
 class ObservablePart(Part):
     """A scalar emitted beside the dynamics."""
 
-    model_config = ConfigDict(json_schema_extra=_also_text)
+    model_config = ConfigDict(json_schema_extra=also_text)
 
     expression: str = Field(description="a scalar of variables and parameters")
     unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
@@ -338,12 +155,71 @@ class ObservablePart(Part):
         return {"expression": value} if isinstance(value, str) else value
 
 
+class SymmetryPart(Part):
+    """An infinitesimal action of a Lie algebra on the state, with its momentum map."""
+
+    algebra: OperandPart = Field(description="the algebra that acts: its name, or a table")
+    vector: str | None = Field(
+        None, description="name of an element of the algebra, as its coefficients along the basis"
+    )
+    matrix: str | None = Field(
+        None, description="name of an element of the algebra, as a matrix of the algebra"
+    )
+    generators: Annotated[dict[str, str], Field(min_length=1)] | None = Field(
+        None,
+        description="how variables move, linear in the element: of positions alone, whose momenta "
+        "then follow, or of the whole state, where what is left out stands still",
+        json_schema_extra=named(),
+    )
+    linear: Names | None = Field(
+        None, description="variables on whose stacked components the algebra's matrices act"
+    )
+    time: str | None = Field(None, description="how time moves, linear in the element")
+    map: str | None = Field(
+        None, description="the momentum map paired with the element, where it is not derived"
+    )
+    side: Literal["left", "right"] = Field("left", description="of the action")
+    form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
+        None, description="the matrix whose entries are the components of the momentum map"
+    )
+    unit: Unit = Field("1", description="unit of the momentum map; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SymmetryPart:
+        if (self.generators is None) == (self.linear is None):
+            raise ValueError("either generators or linear")
+        formulas = self.generators is not None or self.time is not None or self.map is not None
+        if (self.vector is not None) + (self.matrix is not None) != formulas:
+            raise ValueError("one name, vector or matrix, where formulas use it")
+        return self
+
+
+class TransformationPart(Part):
+    """A map of the state that takes the motion to itself, or to its reverse."""
+
+    map: Annotated[dict[str, str], Field(min_length=1)] = Field(
+        description="what variables become; those left out stay", json_schema_extra=named()
+    )
+    reverses_time: bool = Field(False, description="whether it takes the motion to its reverse")
+    exchanges: dict[str, str] = Field(
+        {},
+        description="what observables and momentum maps become, as J_L = 'J_R'",
+        json_schema_extra=named(),
+    )
+
+
 class ClaimsPart(Part):
     """What is claimed of the motion and proved at every regeneration."""
 
     casimirs: list[str] = Field([], description="Casimirs of the bracket: scalars of the state")
     conserved: list[str] = Field(
         [], description="integrals of the motion; 'energy' and observables have their names here"
+    )
+    brackets: dict[str, str] = Field(
+        {},
+        description="brackets such as '{L, A}' = '-hat(A)', of any two expressions that are scalars "
+        "or vectors",
     )
 
 
@@ -370,7 +246,7 @@ RouteName = Literal[
 
 
 def _no_claims() -> ClaimsPart:
-    return ClaimsPart(casimirs=[], conserved=[])
+    return ClaimsPart(casimirs=[], conserved=[], brackets={})
 
 
 class SpecFile(Part):
@@ -392,22 +268,28 @@ class SpecFile(Part):
         None, description="a Poisson bracket of coordinates, where there is no algebra"
     )
     representations: dict[str, RepresentationPart] = Field(
-        {}, description="declared representations", json_schema_extra=_named()
+        {}, description="declared representations", json_schema_extra=named()
     )
     variables: dict[str, VariablePart] = Field(
-        min_length=1, description="the variables by name", json_schema_extra=_named()
+        min_length=1, description="the variables by name", json_schema_extra=named()
     )
     parameters: dict[str, ParameterPart] = Field(
-        {}, description="the parameters by name", json_schema_extra=_named()
+        {}, description="the parameters by name", json_schema_extra=named()
     )
     lagrangian: LagrangianPart | None = Field(None, description="the reduced Lagrangian")
     hamiltonian: HamiltonianPart | None = Field(None, description="the reduced Hamiltonian")
     lax: LaxPart | None = Field(None, description="a Lax pair of the motion")
     newton: Annotated[dict[str, NewtonPart], Field(min_length=1)] | None = Field(
-        None, description="Newton's law, by the names of coordinates", json_schema_extra=_named()
+        None, description="Newton's law, by the names of coordinates", json_schema_extra=named()
     )
     observables: dict[str, ObservablePart] = Field(
-        {}, description="scalars emitted beside the dynamics", json_schema_extra=_named()
+        {}, description="scalars emitted beside the dynamics", json_schema_extra=named()
+    )
+    symmetries: dict[str, SymmetryPart] = Field(
+        {}, description="symmetries by the names of their momentum maps", json_schema_extra=named()
+    )
+    transformations: dict[str, TransformationPart] = Field(
+        {}, description="maps that keep the motion, by name", json_schema_extra=named()
     )
     claims: ClaimsPart = Field(
         default_factory=_no_claims, description="what is proved of the motion"
@@ -431,8 +313,3 @@ def _without_null(schema: Any) -> Any:
     if len(kept.get("anyOf", "  ")) == 1:
         kept |= kept.pop("anyOf")[0]
     return kept
-
-
-# Algebras are made of algebras: names that came later are looked up now, for `model_fields`.
-for _part in (AlgebraPart, OperandPart, SemidirectPart, ExtensionPart, LeibnizPart, SubalgebraPart):
-    _part.model_rebuild(force=True)
