@@ -33,6 +33,7 @@ from coadjoint.prove import Certificate, prove
 from coadjoint.render.kernels import KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Parameter, Spec, Variable
+from coadjoint.spec.model import Shape, component_names
 from coadjoint.spec.units import parse_unit, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
@@ -148,21 +149,21 @@ def _quantity(declared: Variable | Parameter) -> Quantity:
 
 def _observables(spec: Spec) -> tuple[Quantity, ...]:
     """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
-    stated = {formula.text.strip() for formula in spec.conserved}
-    energy = _scalar("energy", _unit(spec, spec.hamiltonian or spec.lagrangian), conserved=True)
+    stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
+    energy = _emitted("energy", _unit(spec, spec.hamiltonian or spec.lagrangian), conserved=True)
     casimirs = [
-        _scalar(f"casimir{n}", _unit(spec, casimir), conserved=True)
+        _emitted(f"casimir{n}", _unit(spec, casimir), casimir.shape, conserved=True)
         for n, casimir in enumerate(spec.casimirs, 1)
     ]
     declared = [
-        _scalar(entry.name, entry.unit, conserved=entry.name in stated)
+        _emitted(entry.name, entry.unit, entry.shape, conserved=entry.name in stated)
         for entry in spec.observables
     ]
-    return (energy, *casimirs, *map(_quantity, spec.having_role("velocity")), *declared)
+    return (energy, *casimirs, *map(_quantity, spec.defined), *declared)
 
 
-def _scalar(name: str, unit: str, *, conserved: bool) -> Quantity:
-    return Quantity(name, (), unit, (name,), conserved=conserved)
+def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:
+    return Quantity(name, shape, unit, component_names(name, shape), conserved=conserved)
 
 
 def _unit(spec: Spec, formula: Formula | None) -> str:

@@ -8,16 +8,26 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from coadjoint.callable_module import make_callable
-from coadjoint.derive import euler_poincare, lie_poisson, nambu, poisson
-from coadjoint.derive.equations import Equations, Exact, Step
-from coadjoint.derive.setting import Setting, make_setting
+from coadjoint.derive import euler_poincare, legendre, lie_poisson, nambu, poisson, setting
+from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
+from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.spec import Spec
 
-__all__ = ["ROUTES", "Equations", "Exact", "Setting", "Step", "derive", "make_setting"]
+__all__ = [
+    "ROUTES",
+    "Chart",
+    "Equations",
+    "Exact",
+    "Relation",
+    "Setting",
+    "Step",
+    "derive",
+    "make_setting",
+]
 
 #: Every route by the name that specs use.
-ROUTES: Mapping[str, Callable[[Setting], Equations]] = MappingProxyType(
+ROUTES: Mapping[str, Callable[[Spec | Setting], Equations]] = MappingProxyType(
     {
         "euler-poincare": euler_poincare.derive,
         "lie-poisson": lie_poisson.derive,
@@ -25,6 +35,15 @@ ROUTES: Mapping[str, Callable[[Setting], Equations]] = MappingProxyType(
         "poisson": poisson.derive,
     }
 )
+
+#: Names that a route needs beyond those of the spec, for its own variables.
+SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType({})
+
+
+def make_setting(spec: Spec) -> Setting:
+    """The Setting of a Spec, with the symbols of all its routes: they live in one field."""
+    names = [name for route in spec.routes if route in SYMBOLS for name in SYMBOLS[route](spec)]
+    return setting.make_setting(spec, tuple(dict.fromkeys((*names, *legendre.symbols(spec)))))
 
 
 def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = None) -> Equations:

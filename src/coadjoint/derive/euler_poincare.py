@@ -19,26 +19,28 @@ from __future__ import annotations
 from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
+from coadjoint.spec import Spec
 
 
-def derive(setting: Setting) -> Equations:
+def derive(given: Spec | Setting) -> Equations:
     """Equations of motion by the Euler-Poincare theorem.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
+    setting = setting_of(given)
     formula = setting.spec.lagrangian
     assert formula is not None, "the reader asks for a Lagrangian on this route"
     lagrangian = setting.formula(formula)
     transform = legendre_transform(setting, lagrangian)
     rates = _rates(setting, lagrangian)
-    definitions = tuple(zip(setting.velocities, transform.velocities, strict=True))
-    energy = setting.field.substitute(transform.energy, dict(definitions))
+    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
+    energy = setting.field.substitute(transform.energy, velocities)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, energy, observables(setting, energy), tensor)
+    exact = Exact(transform.definitions, rates, energy, observables(setting, energy), tensor)
     return Equations(
         setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
     )
@@ -81,7 +83,7 @@ def _steps(
             "Legendre transform",
             "xi solved from mu = dl/dxi",
             r"\xi = \xi(\mu, a)",
-            tuple(zip(map(symbol, setting.velocities), transform.velocities, strict=True)),
+            tuple((symbol(name), value) for name, value in transform.definitions),
         ),
         Step(
             "Euler-Poincare equations and advection",

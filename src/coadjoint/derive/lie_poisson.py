@@ -18,32 +18,42 @@ from __future__ import annotations
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.legendre import legendre_transform
 from coadjoint.derive.poisson import hamiltonian_equations
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.solver import Definition
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.exact import Element
+from coadjoint.spec import Spec
 
 
-def derive(setting: Setting) -> Equations:
+def derive(given: Spec | Setting) -> Equations:
     """Equations of motion by the Lie-Poisson bracket.
 
     Raises:
         DerivationError: Neither a Hamiltonian nor an invertible Legendre transform is there.
     """
+    setting = setting_of(given)
     sign = "-" if setting.sign == 1 else ""
     law = (
         f"Lie-Poisson bracket on the dual of {momentum_algebra(setting).name}",
         f"{{x_i, x_j}} = {sign}c_ij^k x_k",
         rf"\{{x_i, x_j\}} = {sign}c_{{ij}}^k x_k",
     )
-    return hamiltonian_equations(setting, "lie-poisson", hamiltonian(setting), law)
+    h, solved = hamiltonian(setting)
+    return hamiltonian_equations(setting, "lie-poisson", h, law, solved)
 
 
-def hamiltonian(setting: Setting) -> Element:
-    """The declared Hamiltonian, or the Legendre transform of the declared Lagrangian."""
+def hamiltonian(setting: Setting) -> tuple[Element, tuple[Definition, ...]]:
+    """The declared Hamiltonian, or the Legendre transform of the declared Lagrangian.
+
+    Returns:
+        h, and the definitions of the velocities that keep their names in it because the kernel
+        solves for them. Partial derivatives of such an h at fixed velocities are those of h, since
+        ``<mu, xi> - l`` is stationary in xi.
+    """
     spec = setting.spec
     if spec.hamiltonian is not None:
-        return setting.formula(spec.hamiltonian)
+        return setting.formula(spec.hamiltonian), ()
     assert spec.lagrangian is not None, "the reader asks for a Hamiltonian or a Lagrangian"
     transform = legendre_transform(setting, setting.formula(spec.lagrangian))
     velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    return setting.field.substitute(transform.energy, velocities)
+    return setting.field.substitute(transform.energy, velocities), transform.solved

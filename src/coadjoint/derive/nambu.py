@@ -17,17 +17,19 @@ from __future__ import annotations
 from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
+from coadjoint.spec import Spec
 
 
-def derive(setting: Setting) -> Equations:
+def derive(given: Spec | Setting) -> Equations:
     """Equations of motion by gradients alone.
 
     Raises:
         DerivationError: A formula divides by zero.
     """
+    setting = setting_of(given)
     spec, field, names = setting.spec, setting.field, setting.state
     assert spec.poisson is not None, "the reader asks for distinguished functions on this route"
     assert spec.hamiltonian is not None, "the reader asks for a Hamiltonian on this route"
@@ -38,7 +40,7 @@ def derive(setting: Setting) -> Equations:
     rates = tuple(-rate for rate in generalised_cross_product([gradients[-1], *gradients[:-1]]))
     tensor = poisson_structure(setting).tensor
     exact = Exact((), rates, h, observables(setting, h), tensor)
-    return Equations(setting, "nambu", exact, _steps(setting, functions, exact, gradients))
+    return Equations(setting, "nambu", exact, _steps(setting, [*functions, h], rates, gradients))
 
 
 def generalised_cross_product(gradients: list[tuple[Element, ...]]) -> list[Element]:
@@ -51,10 +53,11 @@ def generalised_cross_product(gradients: list[tuple[Element, ...]]) -> list[Elem
 def _steps(
     setting: Setting,
     functions: list[Element],
-    exact: Exact,
+    rates: tuple[Element, ...],
     gradients: list[tuple[Element, ...]],
 ) -> tuple[Step, ...]:
-    """The derivation as a person would write it down."""
+    """The derivation as a person would write it down; h is the last function."""
+    *functions, h = functions
     labels = ["c"] if len(functions) == 1 else [f"c{n + 1}" for n in range(len(functions))]
     named: list[tuple[Left, Element]] = list(zip(map(symbol, labels), functions, strict=True))
     slopes = [
@@ -66,13 +69,13 @@ def _steps(
     wedge = sign + " x ".join(f"grad {label}" for label in factors)
     wedge_latex = sign + r" \times ".join(rf"\nabla {symbol(label).latex}" for label in factors)
     return (
-        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), exact.energy),)),
+        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), h),)),
         Step("Distinguished functions", "c(x)", "c(x)", tuple(named)),
         Step("Gradients", "grad c, grad h", r"\nabla c, \nabla h", tuple(slopes)),
         Step(
             "Nambu's equations",
             f"dx/dt = {wedge}",
             rf"\dot x = {wedge_latex}",
-            tuple(zip(map(rate, setting.state), exact.rates, strict=True)),
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
         ),
     )

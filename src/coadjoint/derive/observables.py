@@ -1,25 +1,40 @@
-"""Scalars emitted beside the dynamics, the same for every route.
+"""What is emitted beside the dynamics, the same for every route.
 
-Comes in: a Setting and a route's energy. Goes out: names with elements: the energy, the claimed
+Comes in: a Setting and a route's energy. Goes out: components by name: the energy, the claimed
 Casimirs, the velocities, and what the spec declares.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
+from coadjoint.spec import Formula
+from coadjoint.spec.model import component_names
 
 
 def observables(setting: Setting, energy: Element) -> tuple[tuple[str, Element], ...]:
-    """Name and value of each observable, in the order in which kernels return them."""
+    """Name and value of each component, in the order in which kernels return them."""
     spec = setting.spec
     casimirs = [
-        (f"casimir{n}", setting.formula(casimir)) for n, casimir in enumerate(spec.casimirs, 1)
+        part
+        for n, casimir in enumerate(spec.casimirs, 1)
+        for part in _named(component_names(f"casimir{n}", casimir.shape), setting, casimir)
     ]
     velocities = [
-        (name, setting.field[name])
-        for variable in spec.having_role("velocity")
-        for name in variable.components
+        (name, setting.field[name]) for variable in spec.defined for name in variable.components
     ]
-    declared = [(entry.name, setting.formula(entry.formula)) for entry in spec.observables]
+    declared = [
+        part
+        for entry in spec.observables
+        for part in _named(entry.components, setting, entry.formula)
+    ]
     return (("energy", energy), *casimirs, *velocities, *declared)
+
+
+def _named(
+    names: tuple[str, ...], setting: Setting, formula: Formula
+) -> Iterator[tuple[str, Element]]:
+    """The components of a formula with their names."""
+    return zip(names, setting.components(formula), strict=True)

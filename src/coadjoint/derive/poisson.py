@@ -13,61 +13,77 @@ from itertools import combinations
 
 from coadjoint.derive.equations import Equations, Exact, Step, bracket, partial, rate, symbol
 from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.solver import Definition
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
+from coadjoint.spec import Spec
 
 #: Title, text and LaTeX of the step that states the bracket.
 Law = tuple[str, str, str]
 
 
-def derive(setting: Setting) -> Equations:
+def derive(given: Spec | Setting) -> Equations:
     """Equations of motion by the declared bracket.
 
     Raises:
         DerivationError: A formula divides by zero.
     """
+    setting = setting_of(given)
     formula = setting.spec.hamiltonian
     assert formula is not None, "the reader asks for a Hamiltonian on this route"
     law = ("Poisson bracket of the coordinates", "{x_i, x_j}", r"\{x_i, x_j\}")
     return hamiltonian_equations(setting, "poisson", setting.formula(formula), law)
 
 
-def hamiltonian_equations(setting: Setting, route: str, h: Element, law: Law) -> Equations:
+def hamiltonian_equations(
+    setting: Setting, route: str, h: Element, law: Law, solved: tuple[Definition, ...] = ()
+) -> Equations:
     """``dx/dt = {x, h}`` by the bracket of the state.
 
     Where the spec names velocities, ``xi = dh/dmu`` are definitions that the rates use.
+
+    Args:
+        setting: The spec and the field.
+        route: Name of the route.
+        h: The Hamiltonian, stationary in the velocities that it names.
+        law: What the step says that states the bracket.
+        solved: Definitions of these velocities.
     """
     field, tensor = setting.field, poisson_structure(setting).tensor
     gradient = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
-    pairs = zip(setting.velocities, setting.momenta, strict=bool(setting.velocities))
-    definitions = tuple((velocity, gradient[momentum]) for velocity, momentum in pairs)
-    named = gradient | {
-        momentum: field[velocity]
-        for velocity, momentum in zip(setting.velocities, setting.momenta, strict=False)
-    }
+    given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
+    pairs = dict(zip(setting.momenta, given, strict=bool(given)))
+    known = dict(solved)
+    definitions = (
+        *solved,
+        *((xi, gradient[momentum]) for momentum, xi in pairs.items() if xi not in known),
+    )
+    named = gradient | {momentum: field[velocity] for momentum, velocity in pairs.items()}
     slopes = [named[x] for x in setting.state]
     rates = field.vector(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
         for row in tensor
     )
     exact = Exact(definitions, rates, h, observables(setting, h), tensor)
-    return Equations(setting, route, exact, _steps(setting, exact, gradient, law))
-
-
-def _steps(
-    setting: Setting, exact: Exact, gradient: dict[str, Element], law: Law
-) -> tuple[Step, ...]:
-    """The derivation as a person would write it down."""
-    state = setting.state
     brackets = tuple(
-        (bracket(a, b), exact.poisson_tensor[i][j])
-        for (i, a), (j, b) in combinations(enumerate(state), 2)
-        if exact.poisson_tensor[i][j] != 0
+        (bracket(a, b), tensor[i][j])
+        for (i, a), (j, b) in combinations(enumerate(setting.state), 2)
+        if tensor[i][j] != 0
     )
-    return (
-        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), exact.energy),)),
+    steps = (
+        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), h),)),
         Step(*law, brackets),
+        *_motion(setting, gradient, rates),
+    )
+    return Equations(setting, route, exact, steps)
+
+
+def _motion(
+    setting: Setting, gradient: dict[str, Element], rates: tuple[Element, ...]
+) -> tuple[Step, ...]:
+    """How the motion follows from Hamiltonian and bracket."""
+    return (
         Step(
             "Derivatives of the Hamiltonian",
             "dh/dx",
@@ -78,6 +94,6 @@ def _steps(
             "Hamilton's equations",
             "dx/dt = {x, h}",
             r"\dot x = \{x, h\}",
-            tuple(zip(map(rate, state), exact.rates, strict=True)),
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
         ),
     )

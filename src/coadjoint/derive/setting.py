@@ -11,14 +11,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from random import Random
 from types import MappingProxyType
 
 from coadjoint.algebra import LieAlgebra, Representation
-from coadjoint.derive.interpret import Quantity, interpret
+from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Formula, Spec, tree
-from coadjoint.spec.model import Parameter, Variable, unpacked
+from coadjoint.spec.model import Parameter, Shape, Variable, unpacked
+from coadjoint.spec.shapes import ELEMENTARY
+
+#: The functions for which the field needs room; the others are sums and products.
+_ADJOINED = (*ELEMENTARY, "norm")
 
 
 @dataclass(frozen=True)
@@ -40,7 +45,7 @@ class Setting:
 
     @cached_property
     def state(self) -> tuple[str, ...]:
-        """Component names of the state: momenta and advected quantities, or coordinates."""
+        """Component names of the state, in declared order."""
         return tuple(name for variable in self.spec.state for name in variable.components)
 
     @cached_property
@@ -50,12 +55,12 @@ class Setting:
 
     @cached_property
     def velocities(self) -> tuple[str, ...]:
-        """Name of the velocity along each basis vector; empty if none is declared."""
+        """Name of the velocity along each basis vector, or of each position; empty without any."""
         return self._along_basis("velocity")
 
     @cached_property
     def momenta(self) -> tuple[str, ...]:
-        """Name of the momentum along each basis vector of the algebra."""
+        """Name of the momentum along each basis vector, or of each position; empty without any."""
         return self._along_basis("momentum")
 
     @cached_property
@@ -99,7 +104,17 @@ class Setting:
         """+1 if left invariant, -1 if right: the motion runs the other way (Holm 2011, 9.1)."""
         return 1 if self.spec.invariance == "left" else -1
 
+    @cached_property
+    def positions(self) -> tuple[str, ...]:
+        """Component names of the coordinates; empty over an algebra."""
+        coordinates = self.spec.having_role("coordinate")
+        return tuple(name for variable in coordinates for name in variable.components)
+
     def _along_basis(self, role: str) -> tuple[str, ...]:
+        if self.spec.algebra is None:
+            coordinates = self.spec.having_role("coordinate")
+            partners = (self.spec.partner(role, variable.name) for variable in coordinates)
+            return tuple(name for each in partners if each for name in each.components)
         places = {
             place: name
             for variable in self.spec.having_role(role)
@@ -114,9 +129,22 @@ class Setting:
         return tuple(self.field[name] for name in names)
 
     def formula(
-        self, formula: Formula, observables: Mapping[str, Element] = MappingProxyType({})
+        self, formula: Formula, observables: Mapping[str, Quantity] = MappingProxyType({})
     ) -> Element:
-        """The value of a declared scalar formula.
+        """The value of a declared scalar formula; arguments as in `value`."""
+        found: Element = self.value(formula, observables)
+        return found
+
+    def components(
+        self, formula: Formula, observables: Mapping[str, Quantity] = MappingProxyType({})
+    ) -> tuple[Element, ...]:
+        """The components of a formula of any shape, row by row; arguments as in `value`."""
+        return entries(self.value(formula, observables))
+
+    def value(
+        self, formula: Formula, observables: Mapping[str, Quantity] = MappingProxyType({})
+    ) -> Quantity:
+        """The value of a declared formula: an element, a vector or a matrix.
 
         Args:
             formula: Parsed and shape-checked.
@@ -126,8 +154,7 @@ class Setting:
             DerivationError: Division by zero or a singular inverse inside it.
         """
         try:
-            value: Element = interpret(formula.tree, {**self.values, **observables}, self.field)
-            return value
+            return interpret(formula.tree, {**self.values, **observables}, self.field)
         except DerivationError as error:
             raise DerivationError(
                 f"{self.spec.path}:{formula.line}: {formula.key}: {error}",
@@ -147,19 +174,52 @@ class Setting:
         return self.field.vector(by_name[name] for name in self.state)
 
 
-def make_setting(spec: Spec) -> Setting:
-    """The Setting of a Spec: symbols for all its components, room for all its function calls."""
+def setting_of(given: Spec | Setting) -> Setting:
+    """What routes start from, so that each takes a Spec, too."""
+    if isinstance(given, Setting):
+        return given
+    from coadjoint.derive import make_setting as with_symbols_of_routes
+
+    return with_symbols_of_routes(given)
+
+
+def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
+    """The Setting of a Spec: symbols for all its components, room for all its function calls.
+
+    Args:
+        spec: What was declared.
+        symbols: Names that the routes need beyond those of the spec.
+    """
     quantities: list[Variable | Parameter] = [
         *spec.state,
-        *spec.having_role("velocity"),
+        *spec.defined,
         *spec.parameters,
     ]
     names = [name for quantity in quantities for name in quantity.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
-    field = Field(names, _function_calls(spec), positive)
+    # a route may call the functions of a formula with other arguments than the spec does
+    room = _function_calls(spec) * (1 + len(spec.routes) * bool(symbols))
+    field = Field([*names, *symbols], room, positive)
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
-        values[quantity.name] = _shaped(quantity, field)
+        values[quantity.name] = _shaped(quantity, values)
+    return Setting(spec, field, values)
+
+
+def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
+    """The Setting with random numbers for all quantities but those of one role.
+
+    What a formula depends on in these shows much sooner there than among all the symbols.
+    """
+    kept = spec.having_role(role)
+    names = [name for variable in kept for name in variable.components]
+    field = Field(names, _function_calls(spec))
+    values: dict[str, Quantity] = {name: field[name] for name in names}
+    for quantity in (*spec.variables, *spec.parameters):
+        for name in quantity.components:
+            number = Fraction(source.randint(1, 999), source.randint(1, 999))
+            values.setdefault(name, field.number(number))
+        values[quantity.name] = _shaped(quantity, values)
     return Setting(spec, field, values)
 
 
@@ -169,25 +229,30 @@ def formulas(spec: Spec) -> tuple[Formula, ...]:
     if spec.poisson is not None:
         stated += [*spec.poisson.functions, *(formula for *_, formula in spec.poisson.entries)]
     declared = [observable.formula for observable in spec.observables]
-    return (*stated, *declared, *spec.casimirs, *spec.conserved)
+    claimed = [f for claim in spec.conserved for f in (claim.formula, *claim.where)]
+    return (*stated, *declared, *spec.casimirs, *claimed)
 
 
 def _function_calls(spec: Spec) -> int:
     """How many elementary functions the formulas of a spec call at the most."""
     nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
-    return sum(isinstance(node, tree.Call) for node in nodes)
+    return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
 
 
-def _shaped(quantity: Variable | Parameter, field: Field) -> Quantity:
+def _shaped(quantity: Variable | Parameter, values: Mapping[str, Quantity]) -> Quantity:
     """The components of a quantity as an element, a vector or a matrix."""
-    parts = tuple(field[name] for name in quantity.components)
-    if isinstance(quantity, Variable) and quantity.form:
-        return unpacked(parts, quantity.form)
-    match quantity.shape:
+    parts = tuple(values[name] for name in quantity.components)
+    return unpacked(parts, quantity.form) if quantity.form else shaped(parts, quantity.shape)
+
+
+def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:
+    """Components, row by row, as an element, a vector or a matrix."""
+    parts = tuple(parts)
+    match shape:
         case ():
             return parts[0]
         case (_,):
             return parts
         case (rows, columns):
             return tuple(parts[i * columns : (i + 1) * columns] for i in range(rows))
-    raise AssertionError(quantity.shape)
+    raise AssertionError(shape)

@@ -14,12 +14,16 @@ from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import (
     antisymmetry_defects,
     casimir_defects,
@@ -34,6 +38,7 @@ from coadjoint.prove.zero import (
     decide_zero,
 )
 from coadjoint.spec import Formula, Spec
+from coadjoint.spec.model import Integral
 
 #: (statement, kind, what must be zero or a decision already made)
 Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
@@ -97,6 +102,8 @@ def _about_structure(first: Equations) -> Iterator[Examined]:
             "algebra",
             lambda: _constants(algebra),
         )
+    if tensor is None:
+        return
     yield (
         "the Poisson tensor is antisymmetric",
         "jacobi",
@@ -137,16 +144,19 @@ def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
         lambda: _nonzero(pulled.determinants(), routes[0]),
     )
     for equations in routes:
+        if equations.chart is not None or equations.exact.energy is None:
+            continue
         yield (
             f"h(dl/dxi) = <dl/dxi, xi> - l on the route {equations.route}",
             "legendre",
             partial(pulled.energy_defects, equations),
         )
-        yield (
-            f"dh/dmu = xi on the route {equations.route}",
-            "legendre",
-            partial(pulled.velocity_defects, equations),
-        )
+        if pulled.momenta:
+            yield (
+                f"dh/dmu = xi on the route {equations.route}",
+                "legendre",
+                partial(pulled.velocity_defects, equations),
+            )
 
 
 def _nonzero(elements: Sequence[Element], equations: Equations) -> Decision:
@@ -159,7 +169,9 @@ def _nonzero(elements: Sequence[Element], equations: Equations) -> Decision:
 
 def _about_equality(first: Equations, other: Equations) -> Iterator[Examined]:
     """That two routes give the same motion."""
-    if first.spec.lagrangian is not None:
+    if other.chart is not None:
+        yield from _about_chart(first, other)
+    elif LegendreMap.applies(first):
         yield (
             f"{first.route} and {other.route} give the same motion, through the Legendre transform",
             "equivalence",
@@ -173,6 +185,24 @@ def _about_equality(first: Equations, other: Equations) -> Iterator[Examined]:
         )
 
 
+def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
+    """That a route in variables of its own gives the same motion, and where."""
+    assert other.chart is not None
+    chart_map = ChartMap(first, other)
+    relations = ", ".join(relation.text for relation in other.chart.relations)
+    where = f", where {relations}" if relations else ""
+    through = f"through {other.chart.through}{where}"
+    yield (
+        f"{first.route} and {other.route} give the same motion, {through}",
+        "equivalence",
+        chart_map.related,
+    )
+    if relations:
+        yield f"the route {other.route} keeps {relations}", "equivalence", chart_map.kept
+    statement, decision = reach(chart_map)
+    yield statement, "equivalence", lambda: decision
+
+
 def _same_rates(first: Equations, other: Equations) -> list[Element]:
     pairs = zip(first.exact.rates, other.exact.rates, strict=True)
     return [first.closed(a) - other.closed(b) for a, b in pairs]
@@ -180,26 +210,66 @@ def _same_rates(first: Equations, other: Equations) -> list[Element]:
 
 def _about_motion(first: Equations) -> Iterator[Examined]:
     """The emitted motion: Hamiltonian form, energy, and the claims of the spec."""
-    spec, setting = first.spec, first.setting
-    yield (
-        f"the motion by {first.route} is {{x, h}}",
-        "equivalence",
-        lambda: hamiltonian_defects(first),
-    )
-    yield "the energy is conserved", "conserved", partial(drift, first, first.exact.energy)
+    spec = first.spec
+    energy, tensor = first.exact.energy, first.exact.poisson_tensor
+    if energy is not None and tensor is not None:
+        yield (
+            f"the motion by {first.route} is {{x, h}}",
+            "equivalence",
+            partial(hamiltonian_defects, first, energy, tensor),
+        )
+    if energy is not None:
+        yield "the energy is conserved", "conserved", partial(drift, first, energy)
     for casimir in spec.casimirs:
         yield (
             f"{casimir.in_one_line} is a Casimir",
             "casimir",
-            partial(casimir_defects, first, setting.formula(casimir)),
+            partial(_casimir, first, casimir),
         )
-    yield from _about_completeness(first)
-    for integral in spec.conserved:
+    if tensor is not None:
+        yield from _about_completeness(first)
+    for claim in spec.conserved:
+        where = _vanishing(claim)
         yield (
-            f"{integral.in_one_line} is conserved",
+            f"{claim.formula.in_one_line} is conserved" + (f" where {where}" if where else ""),
             "conserved",
-            partial(drift, first, _with_observables(first, integral)),
+            partial(_integral, first, claim),
         )
+
+
+def _casimir(first: Equations, casimir: Formula) -> list[Element]:
+    """The brackets of all components of a claimed Casimir."""
+    parts = first.setting.components(casimir)
+    return [defect for part in parts for defect in casimir_defects(first, part)]
+
+
+def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision:
+    """The rates of all components of a claimed integral: zero everywhere, or on its level set.
+
+    The motion must stay on the level set, too: there the functions that define it keep the value 0.
+    """
+    rates = _rates(first, claim.formula)
+    if not claim.where:
+        return rates
+    names = _emitted(first)
+    level = [first.closed(g) for f in claim.where for g in first.setting.components(f, names)]
+    kept = [rate for formula in claim.where for rate in _rates(first, formula)]
+    field = first.setting.field
+    ideal = Ideal(field, level, _vanishing(claim))
+    if ideal.contains(field.one):  # on an empty set anything is conserved
+        return Decision(Verdict.REFUTED, f"{ideal.text} holds nowhere", {}, "1")
+    return decide_zero([*kept, *rates], field, ideal)
+
+
+def _vanishing(claim: Integral) -> str:
+    """The level set of a claim: ``dot(Pi, Gamma) = 0``."""
+    return ", ".join(f"{formula.in_one_line} = 0" for formula in claim.where)
+
+
+def _rates(first: Equations, formula: Formula) -> list[Element]:
+    """Time derivatives of the components of a formula, which may name what is emitted."""
+    parts = first.setting.components(formula, _emitted(first))
+    return [rate for part in parts for rate in drift(first, part)]
 
 
 def _about_completeness(first: Equations) -> Iterator[Examined]:
@@ -214,6 +284,9 @@ def _about_completeness(first: Equations) -> Iterator[Examined]:
     yield known.statement, "casimir", lambda: known.decision
 
 
-def _with_observables(first: Equations, formula: Formula) -> Element:
-    """A claimed integral, which may name the energy and declared observables."""
-    return first.setting.formula(formula, dict(first.exact.observables))
+def _emitted(first: Equations) -> dict[str, Quantity]:
+    """The energy and the observables, by the names that claims use."""
+    known: dict[str, Quantity] = dict(first.exact.observables)
+    for entry in first.spec.observables:
+        known[entry.name] = shaped([known[name] for name in entry.components], entry.shape)
+    return known

@@ -77,10 +77,9 @@ class Completeness:
 
 def bracket_of(equations: Equations) -> PoissonStructure:
     """The emitted Poisson tensor as a structure."""
-    setting = equations.setting
-    tensor = tuple(
-        tuple(equations.closed(entry) for entry in row) for row in equations.exact.poisson_tensor
-    )
+    setting, emitted = equations.setting, equations.exact.poisson_tensor
+    assert emitted is not None, f"the route {equations.route} knows no bracket"
+    tensor = tuple(tuple(map(equations.closed, row)) for row in emitted)
     return PoissonStructure(setting.field, setting.state, tensor, f"bracket of {setting.spec.name}")
 
 
@@ -90,7 +89,7 @@ def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
     The distinguished functions of a Nambu bracket are known without a search.
     """
     setting, structure = equations.setting, bracket_of(equations)
-    claimed = [setting.formula(casimir) for casimir in setting.spec.casimirs]
+    claimed = [c for casimir in setting.spec.casimirs for c in setting.components(casimir)]
     known = independent(structure, claimed)
     expected = structure.dimension - structure.generic_rank()
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()

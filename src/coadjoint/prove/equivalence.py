@@ -23,8 +23,15 @@ class LegendreMap:
         assert formula is not None, "only a Lagrangian has a Legendre transform"
         self.setting = setting
         self.lagrangian = setting.formula(formula)
-        slopes = setting.field.gradient(self.lagrangian, setting.velocities)
-        self.momenta = dict(zip(setting.momenta, slopes, strict=True))
+        self.slopes = setting.field.gradient(self.lagrangian, setting.velocities)
+        # where velocities are themselves the state there is nothing to pull back
+        given = self.slopes if setting.momenta else ()
+        self.momenta = dict(zip(setting.momenta, given, strict=True))
+
+    @staticmethod
+    def applies(equations: Equations) -> bool:
+        """Whether velocities are other coordinates of the state, not part of it."""
+        return equations.spec.lagrangian is not None and bool(equations.setting.momenta)
 
     def pull_back(self, equations: Equations, element: Element) -> Element:
         """An element of one route's Equations in velocities and advected quantities alone."""
@@ -38,7 +45,7 @@ class LegendreMap:
     def determinants(self) -> list[Element]:
         """Determinants of the blocks of ``d2l/dxi2``: the map is invertible where none vanishes."""
         field, names = self.setting.field, self.setting.velocities
-        mass = tuple(field.gradient(slope, names) for slope in self.momenta.values())
+        mass = tuple(field.gradient(slope, names) for slope in self.slopes)
         return [
             determinant(tuple(tuple(mass[i][j] for j in block) for i in block))
             for block in coupled_blocks(mass)
@@ -47,13 +54,15 @@ class LegendreMap:
     def energy_defects(self, equations: Equations) -> list[Element]:
         """``h(dl/dxi, a) - (<dl/dxi, xi> - l)``."""
         field = self.setting.field
-        pairs = zip(self.momenta.values(), self.setting.velocities, strict=True)
+        pairs = zip(self.slopes, self.setting.velocities, strict=True)
         energy = sum((slope * field[xi] for slope, xi in pairs), -self.lagrangian)
+        assert equations.exact.energy is not None, "a Lagrangian has an energy"
         return [self.pull_back(equations, equations.exact.energy) - energy]
 
     def velocity_defects(self, equations: Equations) -> list[Element]:
         """``dh/dmu - xi`` at ``mu = dl/dxi``."""
         field = self.setting.field
+        assert equations.exact.energy is not None, "a Lagrangian has an energy"
         slopes = field.gradient(equations.exact.energy, self.setting.momenta)
         return [
             self.pull_back(equations, slope) - field[xi]

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from coadjoint.derive import Equations
 from coadjoint.exact import Element, Field
 
+Tensor = Sequence[Sequence[Element]]
+
 
 def antisymmetry_defects(tensor: Sequence[Sequence[Element]]) -> list[Element]:
     """``J_ij + J_ji`` for i <= j."""
@@ -30,6 +32,7 @@ def casimir_defects(
     field = equations.setting.field
     gradient = field.gradient(equations.closed(function), equations.setting.state)
     tensor = equations.exact.poisson_tensor
+    assert tensor is not None, "only a bracket has Casimirs"
     places = range(len(tensor)) if coordinates is None else coordinates
     return [_dot(field, tensor[i], gradient) for i in places]
 
@@ -41,13 +44,13 @@ def drift(equations: Equations, function: Element) -> list[Element]:
     return [_dot(field, gradient, [equations.closed(rate) for rate in equations.exact.rates])]
 
 
-def hamiltonian_defects(equations: Equations) -> list[Element]:
+def hamiltonian_defects(equations: Equations, energy: Element, tensor: Tensor) -> list[Element]:
     """``dx/dt - {x, h}`` for every state component."""
     field, state = equations.setting.field, equations.setting.state
-    gradient = field.gradient(equations.closed(equations.exact.energy), state)
+    gradient = field.gradient(equations.closed(energy), state)
     return [
         equations.closed(rate) - _dot(field, row, gradient)
-        for rate, row in zip(equations.exact.rates, equations.exact.poisson_tensor, strict=True)
+        for rate, row in zip(equations.exact.rates, tensor, strict=True)
     ]
 
 

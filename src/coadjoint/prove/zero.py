@@ -16,8 +16,9 @@ from typing import Any
 
 import mpmath
 
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.ideals import Ideal
 
 DIGITS = 50
 #: Points at which a nonzero normal form is tried before it counts as numerically supported.
@@ -46,12 +47,19 @@ class Decision:
     defect: str = ""
 
 
-def decide_zero(elements: Sequence[Element], ring: Field) -> Decision:
+def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:
     """Whether every element is zero.
 
     A normal form of zero is a proof. A nonzero one refutes where no elementary function occurs;
     otherwise 50-digit values at random points refute, or support and say so.
+
+    Args:
+        elements: What should be zero.
+        ring: Where they live.
+        where: Relations on whose zero set alone they should be zero; by default everywhere.
     """
+    if where is not None and where.relations:
+        return _decide_where(elements, ring, where)
     left = [element for element in map(ring.normal, elements) if element != 0]
     plain = all(ring.function_free(element) for element in elements)
     if not left:
@@ -65,6 +73,24 @@ def decide_zero(elements: Sequence[Element], ring: Field) -> Decision:
             return Decision(Verdict.REFUTED, f"{method} counter-example", named, value)
     assert not plain, "a nonzero rational function is nonzero at almost every point"
     return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {POINTS} random points")
+
+
+def _decide_where(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
+    """Whether every element is zero where relations hold."""
+    left = [rest for rest in map(where.remainder, elements) if rest != 0]
+    if not left:
+        return Decision(Verdict.PROVED, f"normal form modulo the ideal of {where.text}")
+    if not where.is_solved:
+        reason = f"nonzero remainder modulo the ideal of {where.text}"
+        return Decision(Verdict.REFUTED, reason, {}, element_text(ring, left[0]))
+    found = decide_zero(list(map(where.on_zero_set, elements)), ring)
+    point = found.point
+    if point:
+        free = dict.fromkeys(ring.names, Fraction(1)) | {n: Fraction(v) for n, v in point.items()}
+        whole = where.completed(free)
+        shown = point.keys() | where.solved.keys()
+        point = {name: str(whole[name]) for name in ring.names if name in shown}
+    return Decision(found.verdict, f"{found.method}, where {where.text}", point, found.defect)
 
 
 def random_points(

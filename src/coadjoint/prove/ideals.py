@@ -1,0 +1,118 @@
+"""Ideals: what is zero where given relations hold, such as ``Pi . Gamma = 0``.
+
+Comes in: the relations, as elements of the field. Goes out: remainders modulo the ideal that their
+numerators generate, and points where all of them vanish. A remainder of zero proves that an element
+vanishes wherever the relations do and its denominator does not; a counter-example on the zero set
+refutes it. Read next: `coadjoint.prove.zero`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+
+from sympy.polys.groebnertools import groebner
+from sympy.polys.rings import PolyElement
+
+from coadjoint.exact import Element, Field
+
+
+class Ideal:
+    """The ideal of the numerators of some elements.
+
+    Args:
+        field: Where the elements live.
+        relations: What is zero.
+        text: The relations for people, ``dot(Pi, Gamma) = 0``.
+        variables: Symbols that `solved` may solve for; by default all.
+
+    >>> field = Field(["x", "y", "z"])
+    >>> x, y, z = field["x"], field["y"], field["z"]
+    >>> ideal = Ideal(field, [x * y - z], "x*y = z")
+    >>> ideal.contains(x**2 * y / z - x), ideal.contains(x - y)
+    (True, False)
+    """
+
+    def __init__(
+        self,
+        field: Field,
+        relations: Sequence[Element],
+        text: str = "",
+        variables: Sequence[str] = (),
+    ) -> None:
+        self.field = field
+        self._variables = frozenset(variables or field.names)
+        self.relations = tuple(map(field.normal, relations))
+        self.text = text
+        self._basis = _groebner_basis([_numerator(each) for each in self.relations if each != 0])
+
+    def remainder(self, element: Element) -> Element:
+        """The remainder of an element's numerator; 0 if and only if the ideal contains it."""
+        combined = self.field.normal(element).combined()
+        if combined == 0 or not self._basis:
+            return combined
+        rest = _numerator(combined).rem(self._basis)
+        terms = {tuple(exponents): value for exponents, value in rest.terms()}
+        return self.field.polynomial(self.field.names, terms)
+
+    def contains(self, element: Element) -> bool:
+        """Whether an element vanishes wherever the relations do, as the ideal shows."""
+        return bool(self.remainder(element) == 0)
+
+    @cached_property
+    def solved(self) -> Mapping[str, Element]:
+        """Some symbols in terms of the others, on the zero set.
+
+        A relation is solved for the first symbol in which it is linear; one that is linear in none
+        is left, and then these are fewer than the relations.
+        """
+        known: dict[str, Element] = {}
+        for relation in self.relations:
+            value = self.field.substitute(relation, known)
+            for name in sorted(self.field.names_in(value) & self._variables):
+                slope = self.field.derivative(value, name)
+                if name not in self.field.reach(slope):
+                    root = -self.field.substitute(value, {name: self.field.zero}) / slope
+                    known = {n: self.field.substitute(v, {name: root}) for n, v in known.items()}
+                    known[name] = root
+                    break
+        return known
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether `solved` gives all of the zero set, but for where its denominators vanish."""
+        return len(self.solved) == len(self.relations)
+
+    def on_zero_set(self, element: Element) -> Element:
+        """An element with the solved symbols replaced."""
+        return self.field.substitute(element, self.solved)
+
+    def completed(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
+        """A point of the zero set from values of the symbols that are free.
+
+        Raises:
+            ZeroDivisionError: The solved symbols are not defined there.
+        """
+        values = {
+            name: self.field.evaluate(root, point, Fraction, _no_call)
+            for name, root in self.solved.items()
+        }
+        return {**point, **values}
+
+
+def _numerator(element: Element) -> PolyElement:
+    """The numerator of a nonzero element."""
+    (quotient,) = element.combined().parts
+    return quotient.numer
+
+
+def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:
+    """A Groebner basis; of one polynomial it is that polynomial."""
+    if len(polynomials) < 2:
+        return list(polynomials)
+    return list(groebner(list(polynomials), polynomials[0].ring))
+
+
+def _no_call(function: str, argument: Fraction) -> Fraction:
+    raise ZeroDivisionError(f"{function}({argument}) is not rational")
