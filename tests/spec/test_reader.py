@@ -69,7 +69,7 @@ def test_shipped_specs_have_the_state_and_parameters_of_the_books(system):
     assert all(p.default is not None and p.doc and p.unit for p in spec.parameters)
     assert all(v.doc and v.unit for v in spec.variables)
     assert spec.casimirs or system == "affine_line"
-    assert spec.conserved[0].text == "energy"
+    assert spec.conserved[0].formula.text == "energy"
     assert "Holm" in spec.source
 
 

@@ -49,6 +49,11 @@ SCOPE = {
         ("diag(q)", (4, 4)),
         ("diag(A)", (3,)),
         ("norm(q)", ()),
+        ("outer(u, q)", (3, 4)),
+        ("rows(u, w)", (2, 3)),
+        ("rows(q)", (1, 4)),
+        ("C[2]", (3,)),
+        ("rows(A[1], cross(A[2], A[3]), u)*w", (3,)),
         ("sqrt(s) + sin(s)*cos(s)/tan(s) - exp(s)*log(s)", ()),
     ],
 )
@@ -59,7 +64,7 @@ def test_shape_of_what_fits(text, shape):
 
 def test_every_function_is_tried_above():
     """No function of the table is missing from the test above."""
-    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(27))
+    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(32))
     assert all(f"{name}(" in texts for name in FUNCTIONS)
 
 
@@ -96,7 +101,13 @@ def test_every_function_is_tried_above():
         ("u[0]", "u[0]", ["out of range", "1 to 3", "counted from 1"]),
         ("u[4]", "u[4]", ["u[4]", "1 to 3"]),
         ("u[1, 2]", "u[1, 2]", ["u is a 3-vector", "u[1]"]),
-        ("A[1]", "A[1]", ["a 3 by 3 matrix", "A[1, 2]"]),
+        ("A[4]", "A[4]", ["A[4]", "1 to 3"]),
+        ("1 + A[1]", "1 + A[1]", ["a scalar + a 3-vector"]),
+        ("outer(A, u)", "outer(A, u)", ["a 3 by 3 matrix and a 3-vector", "two vectors"]),
+        ("outer(u)", "outer(u)", ["1 argument"]),
+        ("rows(u, q)", "rows(u, q)", ["a 3-vector and a 4-vector", "of one length"]),
+        ("rows(s, s)", "rows(s, s)", ["a scalar and a scalar", "vectors"]),
+        ("rows(A)", "rows(A)", ["a 3 by 3 matrix", "vectors"]),
         ("s[1]", "s[1]", ["s is a scalar", "without a subscript"]),
         ("C[3, 1]", "C[3, 1]", ["1 to 2"]),
         ("1 + sin(Omgea)*u", "Omgea", ["'Omgea'"]),

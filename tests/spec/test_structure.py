@@ -114,7 +114,7 @@ def test_matrices_are_stored_by_their_independent_entries():
         (('"antisymmetric" }', '"matrix" }'), "variables.M.form", 6, "n^2 components"),
         (('"symmetric", form = "symmetric"', '"vector", form = "symmetric"'), None, 4, "(n + 1)/2"),
         (('"antisymmetric" }', '"antisym" }'), "variables.M.form", "antisym", "'antisymmetric'?"),
-        (("M[2, 1]", "M[2]"), "hamiltonian.h", "M[2]", "M is a 4 by 4 matrix"),
+        (("M[2, 1]", "M[2]"), "hamiltonian.h", None, "a scalar + a 4-vector"),
         (("M[2, 1]", "M[5, 1]"), "hamiltonian.h", "M[5, 1]", "1 to 4"),
         (("M12", "M21"), "hamiltonian.h", "M21", "not declared"),
         (

@@ -8,7 +8,7 @@ Read next: `coadjoint.derive.setting`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from coadjoint.algebra import algebra_by_name
@@ -32,31 +32,53 @@ def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> 
     Raises:
         DerivationError: Division by zero or the inverse of a singular matrix.
     """
+    found: dict[int, Quantity] = {}
+    for part in tree.walk_up(node):  # definitions put into each other may be 1000 levels deep
+        below = [found[id(child)] for child in tree.children(part)]
+        found[id(part)] = _value(part, below, values, field)
+    return found[id(node)]
+
+
+def _value(
+    node: tree.Node, below: list[Quantity], values: Mapping[str, Quantity], field: Field
+) -> Quantity:
+    """The value of one node from those of its children."""
     match node:
         case tree.Number(value=value):
             return field.number(value)
         case tree.Name(name=name):
             return values[name]
         case tree.Index(name=name, indices=indices):
-            value = values[name]
-            for index in indices:
-                value = value[index - 1]
-            return value
-        case tree.Negate(operand=operand):
-            return _scale(-field.one, interpret(operand, values, field))
-        case tree.Power(base=base, exponent=exponent):
-            return _power(interpret(base, values, field), exponent, field)
-        case tree.Binary(operator=operator, left=left, right=right):
-            a, b = interpret(left, values, field), interpret(right, values, field)
-            return _BINARY[operator](a, b)
-        case tree.Call(function=function, arguments=arguments):
-            found = [interpret(argument, values, field) for argument in arguments]
-            if function in _TENSOR_FUNCTIONS:
-                return _TENSOR_FUNCTIONS[function](*found)
-            if function == "norm":
-                return field.call("sqrt", _dot(found[0], found[0]))
-            return field.call(function, found[0])
+            return _component(values[name], indices)
+        case tree.Component(indices=indices):
+            return _component(below[0], indices)
+        case tree.Negate():
+            return _scale(-field.one, below[0])
+        case tree.Power(exponent=exponent):
+            return _power(below[0], exponent, field)
+        case tree.Binary(operator=operator):
+            return _BINARY[operator](*below)
+        case tree.Call(function="norm"):
+            return field.call("sqrt", _dot(below[0], below[0]))
+        case tree.Call(function=function) if function in _TENSOR_FUNCTIONS:
+            return _TENSOR_FUNCTIONS[function](*below)
+        case tree.Call(function=function):
+            return field.call(function, below[0])
     raise AssertionError(node)
+
+
+def _component(value: Quantity, indices: Iterable[int]) -> Quantity:
+    """A component counted from 1; of a matrix with one index, a row."""
+    for index in indices:
+        value = value[index - 1]
+    return value
+
+
+def entries(value: Quantity) -> tuple[Element, ...]:
+    """The components of a value of any shape, row by row."""
+    if isinstance(value, tuple):
+        return tuple(entry for part in value for entry in entries(part))
+    return (value,)
 
 
 def _scale(factor: Element, value: Quantity) -> Quantity:
@@ -184,5 +206,7 @@ _TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "det": determinant,
     "inverse": inverse,
     "diag": _diag,
+    "outer": lambda a, b: tuple(tuple(x * y for y in b) for x in a),
+    "rows": lambda *rows: rows,
     "commutator": lambda a, b: _subtract(_multiply(a, b), _multiply(b, a)),
 }

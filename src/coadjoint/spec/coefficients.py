@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError
-from coadjoint.spec.model import Parameter, Shape
+from coadjoint.spec.model import Parameter, Shape, unpacked
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.shapes import shape_of
 from coadjoint.spec.sizes import check_size
@@ -47,21 +47,24 @@ class Scalars:
 
     def __init__(self, parameters: Sequence[Parameter] = ()) -> None:
         self.shapes: dict[str, Shape] = {}
-        self._components: dict[tuple[str, tuple[int, ...]], str] = {}
+        self._components: dict[tuple[str, tuple[int, ...]], tuple[str, int]] = {}  # with signs
         self._positive: list[str] = []
         self._terms = 0  # in the coefficients read so far
         for parameter in parameters:
-            self.shapes |= {parameter.name: parameter.shape}
-            places = product(*(range(1, length + 1) for length in parameter.shape))
-            for indices, name in zip(places, parameter.components, strict=True):
+            self.shapes |= {parameter.name: parameter.value_shape}
+            for name in parameter.components:
                 self.shapes[name] = ()
-                self._components[parameter.name, indices] = self._components[name, ()] = name
+                self._components[name, ()] = name, 1
+            for indices, entry in _entries(parameter).items():
+                self._components[parameter.name, indices] = entry
             self._positive += parameter.components if parameter.positive else ()
 
     def value(self, name: str, indices: tuple[int, ...] = ()) -> Coefficient | None:
         """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
-        component = self._components.get((name, indices))
-        return None if component is None else self._field[component]
+        component, sign = self._components.get((name, indices), ("", 0))
+        if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
+            return Fraction(0) if component else None
+        return sign * self._field[component]
 
     def check_terms(self, tree: Node, terms: int) -> None:
         """Count the terms of a coefficient with parameters: elimination among many takes for ever.
@@ -87,7 +90,20 @@ class Scalars:
     def _field(self) -> Field:
         from coadjoint.exact import Field  # loads SymPy, which specs with plain numbers never need
 
-        return Field(list(dict.fromkeys(self._components.values())), positive=self._positive)
+        names = [name for name, indices in self._components if not indices]
+        return Field(names, positive=self._positive)
+
+
+def _entries(parameter: Parameter) -> dict[tuple[int, ...], tuple[str, int]]:
+    """The component, and its sign, that each entry of a parameter is."""
+    names, shape = parameter.components, parameter.value_shape
+    places = list(product(*(range(1, length + 1) for length in shape)))
+    kept: Sequence[int] = range(1, len(names) + 1)
+    if parameter.form:
+        kept = [entry for row in unpacked(kept, parameter.form) for entry in row]
+    return {
+        place: (names[abs(n) - 1], (n > 0) - (n < 0)) for place, n in zip(places, kept, strict=True)
+    }
 
 
 def read_combination(

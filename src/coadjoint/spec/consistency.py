@@ -6,14 +6,15 @@ how to write it. Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
 from coadjoint.spec.faults import listed
-from coadjoint.spec.model import Parameter, Variable, state_of
+from coadjoint.spec.model import Observable, Parameter, Variable, state_of
 from coadjoint.spec.names import derived_names, refusal
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.routes import STARTS, energies_of, kinds_of
@@ -41,15 +42,25 @@ def check_names(
     source: Source,
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Iterable[str],
+    observables: Sequence[Observable] = (),
+    others: Mapping[KeyPath, str] = MappingProxyType({}),
 ) -> None:
     """Every name is free and declared once, components and rates included.
+
+    Args:
+        source: The text of the spec.
+        variables: The variables.
+        parameters: The parameters.
+        observables: Those whose shape is known.
+        others: Further names at their keys, of things whose components are not known yet.
 
     Raises:
         SpecError: A reserved or doubled name, with a suggestion.
     """
     owners: dict[str, str] = {}
-    for key, name, components, rates in _declared(variables, parameters, observables):
+    declared = [*_declared(variables, parameters, observables)]
+    declared += [(key, name, (), ()) for key, name in others.items()]
+    for key, name, components, rates in declared:
         for derived in dict.fromkeys((name, *components)):
             refused = refusal(derived)
             if refused is not None:
@@ -70,7 +81,9 @@ def check_names(
 
 
 def _declared(
-    variables: Sequence[Variable], parameters: Sequence[Parameter], observables: Iterable[str]
+    variables: Sequence[Variable],
+    parameters: Sequence[Parameter],
+    observables: Sequence[Observable],
 ) -> Iterable[_Declared]:
     for variable in variables:
         moving = variable in state_of(variables)
@@ -78,8 +91,8 @@ def _declared(
         yield ("variables", variable.name), variable.name, variable.components, rates
     for parameter in parameters:
         yield ("parameters", parameter.name), parameter.name, parameter.components, ()
-    for name in observables:
-        yield ("observables", name), name, (), ()
+    for entry in observables:
+        yield ("observables", entry.name), entry.name, entry.components, ()
 
 
 def check_sizes(

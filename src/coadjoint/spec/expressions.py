@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -61,8 +61,12 @@ _MEANT = {
 }
 
 
-def read_expression(text: str) -> Node:
+def read_expression(text: str, defined: Collection[str] = ()) -> Node:
     """The tree of an expression.
+
+    Args:
+        text: What stands in the spec.
+        defined: Functions that it may call beside those of the language.
 
     Raises:
         ExpressionError: A syntax error, with what was probably meant, or a limit passed.
@@ -75,7 +79,7 @@ right=Name(start=2, end=3, name='x'))
         raise _limit(
             "EXPRESSION_CHARACTERS", f"the expression has {len(text)} characters", 0, len(text)
         )
-    return _Reader(text).expression()
+    return _Reader(text, defined).expression()
 
 
 @dataclass(frozen=True)
@@ -89,8 +93,9 @@ class _Token:
 class _Reader:
     """One reading of one text, by precedence climbing."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, defined: Collection[str]) -> None:
         self.text = text
+        self.functions = {*FUNCTIONS, *defined}
         self.tokens = list(_tokens(text))
         self.at = self.nodes = self.depth = 0
 
@@ -206,7 +211,7 @@ class _Reader:
         """A name, a component of it, or a function of something."""
         if self.next.kind == "(":
             return self._call(name)
-        if name.text in FUNCTIONS:
+        if name.text in self.functions:
             raise ExpressionError(
                 f"the function {name.text!r} has no argument",
                 name.start,
@@ -219,16 +224,16 @@ class _Reader:
         return self._made(Name(name.text, start=name.start, end=name.end))
 
     def _call(self, name: _Token) -> Node:
-        if name.text not in FUNCTIONS:
+        if name.text not in self.functions:
             raise ExpressionError(
                 f"{name.text!r} is not a function",
                 name.start,
                 name.end,
                 found=name.text,
-                expected=f"one of {', '.join(sorted(FUNCTIONS))}",
+                expected=f"one of {', '.join(sorted(self.functions))}",
                 hint=did_you_mean(
                     name.text,
-                    FUNCTIONS,
+                    self.functions,
                     f"Write {name.text}[1] for a component, {name.text}*(...) for a product.",
                 ),
             )

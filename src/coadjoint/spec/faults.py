@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from coadjoint.spec.tree import Node
+
 
 class ExpressionError(Exception):
     """An expression is not what it may be.
@@ -37,6 +39,12 @@ class ExpressionError(Exception):
         super().__init__(problem)
         self.problem, self.start, self.end = problem, start, end
         self.found, self.expected, self.hint, self.limit = found, expected, hint, limit
+
+
+def fault_at(node: Node, problem: str, **parts: str) -> ExpressionError:
+    """A fault at a node; where a definition was put in, it is the definition that has it."""
+    where = f"in the definition of {node.within}: " if node.within else ""
+    return ExpressionError(where + problem, node.start, node.end, **parts)
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:

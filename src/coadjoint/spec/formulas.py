@@ -7,17 +7,20 @@ checked for names, shapes and size. Read next: `coadjoint.spec.consistency`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from coadjoint.spec.definitions import expand, functions
 from coadjoint.spec.expressions import read_expression
-from coadjoint.spec.faults import ExpressionError, did_you_mean
-from coadjoint.spec.model import Formula, Parameter, Shape, Variable
+from coadjoint.spec.faults import ExpressionError, did_you_mean, fault_at
+from coadjoint.spec.model import Definition, Formula, Parameter, Shape, Variable
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.shapes import shape_of, words
 from coadjoint.spec.sizes import check_size
 from coadjoint.spec.source import Source, dotted
 from coadjoint.spec.tree import Index, Name, Node, walk
 
+#: What a spec declares and a formula may use.
+Quantity = Variable | Parameter | Definition
 #: What the variables of each role are called together.
 PLURALS = {
     "velocity": "velocities",
@@ -44,19 +47,21 @@ class Scope:
         takes: What it is a function of, in words.
         shapes: Shape of each name in scope, whole quantities and components.
         outside: Names that the spec declares and this kind of formula may not use, with their role.
+        definitions: What may be put in, by name.
     """
 
     kind: str
     takes: str
     shapes: Mapping[str, Shape]
     outside: Mapping[str, str]
+    definitions: Mapping[str, Definition] = field(default_factory=dict)
 
 
 def make_scope(
     kind: str,
     roles: tuple[str, ...],
-    quantities: Iterable[Variable | Parameter],
-    others: Iterable[str] = (),
+    quantities: Iterable[Quantity],
+    others: Mapping[str, Shape] | Iterable[str] = (),
 ) -> Scope:
     """The scope of a kind of formula.
 
@@ -64,11 +69,15 @@ def make_scope(
         kind: ``a Lagrangian``, for messages.
         roles: Roles of variables that it may use; parameters it always may.
         quantities: Everything the spec declares.
-        others: Further names of scalars.
+        others: Further names with their shapes, or of scalars.
     """
-    shapes: dict[str, Shape] = dict.fromkeys(others, ())
+    shapes = dict(others) if isinstance(others, Mapping) else dict.fromkeys(others, ())
     outside: dict[str, str] = {}
+    definitions: dict[str, Definition] = {}
     for quantity in quantities:
+        if isinstance(quantity, Definition):
+            definitions[quantity.name] = quantity
+            continue
         role = quantity.role if isinstance(quantity, Variable) else "parameter"
         if role == "parameter" or role in roles:
             shapes |= dict.fromkeys(quantity.components, ())
@@ -76,22 +85,31 @@ def make_scope(
         else:
             outside |= dict.fromkeys((quantity.name, *quantity.components), role)
     takes = " and ".join([", ".join(PLURALS[role] for role in roles), "parameters"])
-    return Scope(kind, takes, shapes, outside)
+    return Scope(kind, takes, shapes, outside, definitions)
 
 
-def read_formula(source: Source, key: KeyPath, text: str, scope: Scope) -> Formula:
-    """The scalar formula at a key.
+def read_formula(
+    source: Source, key: KeyPath, text: str, scope: Scope, *, any_shape: bool = False
+) -> Formula:
+    """The formula at a key, with its definitions put in.
+
+    Args:
+        source: The text of the spec.
+        key: Where the expression stands.
+        text: The expression.
+        scope: The names that it may use.
+        any_shape: Whether it may be a vector or a matrix, too.
 
     Raises:
         SpecError: A syntax error, a name out of scope, shapes that do not fit, or no scalar.
         LimitError: The expression is too large.
     """
     try:
-        tree = read_expression(text)
+        tree = expand(read_expression(text, functions(scope.definitions)), scope.definitions)
         _check_roles(tree, scope)
         shape = shape_of(tree, scope.shapes)
         check_size(tree, scope.shapes)
-        if shape != ():
+        if shape != () and not any_shape:
             hint = "Write dot(a, a) for the square of a vector." if len(shape) == 1 else ""
             problem = f"the value is {words(shape)}"
             raise ExpressionError(
@@ -107,10 +125,9 @@ def _check_roles(tree: Node, scope: Scope) -> None:
     """Refuse a declared name that this kind of formula may not use, saying why."""
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
-            raise ExpressionError(
+            raise fault_at(
+                node,
                 f"{node.name!r} is {_ROLES[scope.outside[node.name]]}",
-                node.start,
-                node.end,
                 found=node.name,
                 expected=f"{scope.kind} in terms of {scope.takes}",
                 hint=did_you_mean(node.name, scope.shapes),

@@ -7,8 +7,8 @@ and JSON only and never reaches a template, a C file or a Python file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, product
 from math import isqrt
@@ -151,11 +151,12 @@ class Parameter:
 
     Attributes:
         name: As declared, e.g. ``chi``.
-        shape: ``()``, ``(n,)`` or ``(n, m)``.
+        shape: ``()``, ``(n,)`` or ``(n, m)``; with a form ``(n,)`` for the n entries that it keeps.
         positive: Whether every component may be assumed positive.
         default: One exact value per component, row by row; None if the user must give it.
         unit: Unit text, ``"1"`` if dimensionless.
         doc: Free text for documents.
+        form: ``"antisymmetric"`` or ``"symmetric"`` if it is such a matrix in formulas, else "".
     """
 
     name: str
@@ -164,16 +165,18 @@ class Parameter:
     default: tuple[Fraction, ...] | None = None
     unit: str = "1"
     doc: str = ""
+    form: str = ""
 
     @property
     def components(self) -> tuple[str, ...]:
         """Names of the components, in order."""
-        return component_names(self.name, self.shape)
+        return component_names(self.name, self.shape, self.form)
 
     @property
     def value_shape(self) -> Shape:
-        """Shape in formulas."""
-        return self.shape
+        """Shape in formulas: that of the whole matrix where there is a form."""
+        size = matrix_size(self.shape[0], self.form) if self.form else None
+        return self.shape if size is None else (size, size)
 
 
 @dataclass(frozen=True)
@@ -201,13 +204,65 @@ class Formula:
 
 
 @dataclass(frozen=True)
+class Definition:
+    """A short name for an expression, put in as a tree wherever it occurs.
+
+    Attributes:
+        name: As declared, ``V`` of ``V(s, d)``.
+        arguments: Names of its arguments; empty if it takes none.
+        text: The expression as typed.
+        tree: The parsed expression, with earlier definitions put in.
+        shape: Shape of its value; None with arguments, whose shapes only a call has.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    text: str
+    tree: Node
+    shape: Shape | None
+
+    @property
+    def signature(self) -> str:
+        """How it is called: ``V(s, d)``."""
+        return f"{self.name}({', '.join(self.arguments)})" if self.arguments else self.name
+
+    @property
+    def in_one_line(self) -> str:
+        """The definition for documents: ``V(s, d) = s^2 - d``."""
+        return f"{self.signature} = {' '.join(self.text.split())}"
+
+
+@dataclass(frozen=True)
 class Observable:
-    """A declared scalar emitted beside the dynamics."""
+    """A declared scalar, vector or matrix emitted beside the dynamics."""
 
     name: str
     formula: Formula
     unit: str = "1"
     doc: str = ""
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of its value."""
+        return self.formula.shape
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, row by row."""
+        return component_names(self.name, self.shape)
+
+
+@dataclass(frozen=True)
+class Integral:
+    """A claimed integral of the motion: everywhere, or where some functions vanish.
+
+    Attributes:
+        formula: What is conserved, of any shape; it may name the energy and observables.
+        where: The functions that are zero on the level set; empty for an integral everywhere.
+    """
+
+    formula: Formula
+    where: tuple[Formula, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -219,13 +274,16 @@ class Poisson:
         functions: The n - 2 distinguished functions of a Nambu bracket, else empty.
         entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
             the declared brackets, or the magnetic terms of a canonical one.
-        pairs: ``(i, j)`` with ``{x_i, x_j} = 1`` of a canonical bracket, else empty.
+        pairs: ``(i, j)`` of a position and its momentum of a canonical bracket, else empty.
+        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices beside
+            the diagonal, since there the pairing is ``tr(P dS/dt)``, which counts it twice.
     """
 
     kind: str
     functions: tuple[Formula, ...] = ()
     entries: tuple[tuple[int, int, Formula], ...] = ()
     pairs: tuple[tuple[int, int], ...] = ()
+    weights: tuple[Fraction, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -247,6 +305,81 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Symmetry:
+    """An infinitesimal action, whose momentum map is emitted beside the dynamics.
+
+    Attributes:
+        name: Of the momentum map.
+        algebra: What acts.
+        element: Name of its generic element in the formulas; "" if they are none.
+        as_matrix: Whether the element is a matrix there, not the vector of its coefficients.
+        generators: How variables move, by name.
+        linear: Variables on whose stacked components the matrices of the algebra act.
+        time: How time moves, or None.
+        map: The momentum map paired with the element, where it is declared, or None.
+        side: ``"left"`` or ``"right"``.
+        form: One of `FORMS` if the components are the entries of a matrix, else "".
+        unit: Unit text of the momentum map.
+        doc: Free text for documents.
+    """
+
+    name: str
+    algebra: LieAlgebra
+    element: str = ""
+    as_matrix: bool = False
+    generators: Mapping[str, Formula] = field(default_factory=dict)
+    linear: tuple[str, ...] = ()
+    time: Formula | None = None
+    map: Formula | None = None
+    side: str = "left"
+    form: str = ""
+    unit: str = "1"
+    doc: str = ""
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the momentum map as a list of components."""
+        return (self.algebra.dimension,) if self.algebra.dimension > 1 or self.form else ()
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, one for each basis vector."""
+        return component_names(self.name, self.shape, self.form)
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas: that of the whole matrix where there is a form."""
+        size = matrix_size(self.algebra.dimension, self.form) if self.form else None
+        return self.shape if size is None else (size, size)
+
+
+@dataclass(frozen=True)
+class Transformation:
+    """A map of the state that keeps the motion.
+
+    Attributes:
+        name: As declared.
+        map: What variables become; those left out stay.
+        reverses_time: Whether the motion becomes its reverse.
+        exchanges: What observables and momentum maps become.
+    """
+
+    name: str
+    map: Mapping[str, Formula]
+    reverses_time: bool
+    exchanges: Mapping[str, Formula]
+
+
+@dataclass(frozen=True)
+class ClaimedBracket:
+    """``{left, right} = value``, of scalars or vectors."""
+
+    left: Formula
+    right: Formula
+    value: Formula
+
+
+@dataclass(frozen=True)
 class Spec:
     """One declared system.
 
@@ -263,13 +396,17 @@ class Spec:
         parameters: Constants in declared order.
         lagrangian: l of the velocities and advected quantities, or None.
         hamiltonian: h of the state, or None.
-        observables: Declared scalars in order.
-        casimirs: Claimed Casimirs of the bracket.
-        conserved: Claimed integrals of the motion.
+        observables: Declared scalars, vectors and matrices in order.
+        casimirs: Claimed Casimirs of the bracket, scalars or vectors of them.
+        conserved: Claimed integrals of the motion, some of them on a level set alone.
         path: File the spec was read from, for messages only.
         sha256: Hash of the file's bytes.
         lax: The declared Lax pair, or None.
         newton: Declared forces, one for each coordinate; empty if none.
+        definitions: Short names in declared order; formulas hold them no more.
+        symmetries: Declared actions; their momentum maps are emitted after the observables.
+        transformations: Maps that are claimed to keep the motion.
+        brackets: Claimed brackets of observables, momentum maps and state.
     """
 
     name: str
@@ -287,11 +424,15 @@ class Spec:
     hamiltonian: Formula | None
     observables: tuple[Observable, ...]
     casimirs: tuple[Formula, ...]
-    conserved: tuple[Formula, ...]
+    conserved: tuple[Integral, ...]
     path: Path
     sha256: str
     lax: Lax | None = None
     newton: tuple[Force, ...] = ()
+    definitions: tuple[Definition, ...] = ()
+    symmetries: tuple[Symmetry, ...] = ()
+    transformations: tuple[Transformation, ...] = ()
+    brackets: tuple[ClaimedBracket, ...] = ()
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
@@ -305,6 +446,12 @@ class Spec:
         part of the state.
         """
         return state_of(self.variables)
+
+    @property
+    def defined(self) -> tuple[Variable, ...]:
+        """The velocities that follow from the state, emitted beside the dynamics."""
+        state = self.state
+        return tuple(each for each in self.having_role("velocity") if each not in state)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""

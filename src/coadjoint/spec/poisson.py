@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.formulas import make_scope, read_formula
-from coadjoint.spec.model import Formula, Parameter, Poisson, Variable
+from coadjoint.spec.formulas import Quantity, make_scope, read_formula
+from coadjoint.spec.model import Definition, Formula, Parameter, Poisson, Variable, unpacked
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.schema import PoissonPart
 from coadjoint.spec.source import Source
@@ -25,26 +26,36 @@ def read_poisson(
     source: Source,
     part: PoissonPart,
     variables: Sequence[Variable],
-    parameters: Sequence[Parameter],
+    constants: Sequence[Parameter | Definition],
 ) -> Poisson:
     """The bracket of a spec.
+
+    Args:
+        source: The text of the spec.
+        part: The table [poisson].
+        variables: The state.
+        constants: What its functions may use beside the state.
 
     Raises:
         SpecError: A coordinate is unknown, a pair stands twice, or functions are too few or many.
     """
-    return _Reading(source, variables, parameters).poisson(part)
+    return _Reading(source, variables, constants).poisson(part)
 
 
 class _Reading:
     """The reading of one table, with the places of the coordinates."""
 
     def __init__(
-        self, source: Source, variables: Sequence[Variable], parameters: Sequence[Parameter]
+        self,
+        source: Source,
+        variables: Sequence[Variable],
+        constants: Sequence[Parameter | Definition],
     ) -> None:
         self.source = source
-        self.quantities: tuple[Variable | Parameter, ...] = (*variables, *parameters)
+        self.quantities: tuple[Quantity, ...] = (*variables, *constants)
         self.roles = tuple(dict.fromkeys(variable.role for variable in variables))
         self.state = [name for variable in variables for name in variable.components]
+        self.forms = {variable.name: variable.form for variable in variables}
         self.places = {variable.name: self._run(variable) for variable in variables}
         self.places |= {name: (place,) for place, name in enumerate(self.state)}
 
@@ -59,15 +70,13 @@ class _Reading:
         if part.brackets is not None:
             entries = self._entries("brackets", part.brackets, range(len(self.state)))
             return Poisson("brackets", entries=entries)
-        pairs = self._canonical(part.canonical or [])
-        momenta = [p for _, p in pairs]
+        weights = self._canonical(part.canonical or [])
+        momenta = [p for _, p in weights]
         entries = self._entries("magnetic", part.magnetic or {}, momenta)
-        return Poisson("canonical", entries=entries, pairs=pairs)
+        return Poisson("canonical", (), entries, tuple(weights), tuple(weights.values()))
 
     def _formula(self, key: KeyPath, text: str, kind: str) -> Formula:
-        return read_formula(
-            self.source, key, text, make_scope(kind, self.roles, self.quantities)
-        )
+        return read_formula(self.source, key, text, make_scope(kind, self.roles, self.quantities))
 
     def _nambu(self, texts: Sequence[str]) -> tuple[Formula, ...]:
         """The distinguished functions, two fewer than there are coordinates."""
@@ -122,22 +131,26 @@ class _Reading:
             )
         return self.state.index(found[1]), self.state.index(found[2])
 
-    def _canonical(self, names: Sequence[Sequence[str]]) -> tuple[tuple[int, int], ...]:
-        """The places of positions and momenta; all coordinates are in pairs."""
-        pairs: list[tuple[int, int]] = []
+    def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
+        """The places of positions and momenta with their brackets; all coordinates are in pairs."""
+        weights: dict[tuple[int, int], Fraction] = {}
         for number, pair in enumerate(names):
             key: KeyPath = ("poisson", "canonical", number)
             q, p = (self._places((*key, side), name) for side, name in enumerate(pair))
-            if len(q) != len(p):
+            forms = [self.forms.get(name, "") for name in pair]
+            if len(q) != len(p) or forms[0] != forms[1]:
+                found = [
+                    f"{n!r} {_like(len(c), f)}" for n, c, f in zip(pair, (q, p), forms, strict=True)
+                ]
                 raise self.source.fault(
                     key,
-                    f"{pair[0]!r} has {len(q)} components and {pair[1]!r} has {len(p)}",
+                    " and ".join(found),
                     found=listed(pair),
-                    expected="a position and a momentum of one shape",
+                    expected="a position and a momentum of one shape and form",
                 )
-            pairs += zip(q, p, strict=True)
-        self._check_single([place for pair in pairs for place in pair])
-        return tuple(pairs)
+            weights |= zip(zip(q, p, strict=True), _weights(len(q), forms[0]), strict=True)
+        self._check_single([place for pair in weights for place in pair])
+        return weights
 
     def _places(self, key: KeyPath, name: str) -> tuple[int, ...]:
         if name not in self.places:
@@ -163,3 +176,20 @@ class _Reading:
                     expected="each coordinate in one pair",
                     hint=hint,
                 )
+
+
+def _like(count: int, form: str) -> str:
+    """How a variable looks, in words."""
+    return f"has {count} components" + (f" of the form {form!r}" if form else "")
+
+
+def _weights(count: int, form: str) -> list[Fraction]:
+    """``{q, p}`` of each component, by the pairing ``tr(P dS/dt)`` of symmetric matrices.
+
+    Antisymmetric ones are paired by ``tr(P^T dQ/dt)/2``, others by ``tr(P^T dQ/dt)``: all 1.
+    """
+    if form != "symmetric":
+        return [Fraction(1)] * count
+    rows = unpacked(range(count), form)
+    diagonal = {rows[n][n] for n in range(len(rows))}
+    return [Fraction(1, 1 if n in diagonal else 2) for n in range(count)]

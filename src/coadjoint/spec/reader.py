@@ -31,9 +31,20 @@ from coadjoint.spec.consistency import (
     check_sizes,
     check_tables,
 )
+from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
-from coadjoint.spec.formulas import Scope, make_scope, read_formula
-from coadjoint.spec.model import Formula, Observable, Parameter, Spec, Variable, state_of
+from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.model import (
+    Definition,
+    Formula,
+    Integral,
+    Observable,
+    Parameter,
+    Shape,
+    Spec,
+    Variable,
+    state_of,
+)
 from coadjoint.spec.names import system_refusal
 from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
@@ -98,18 +109,24 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         read_parameter(source, parameter, part) for parameter, part in file.parameters.items()
     )
     check_sizes(source, (), parameters)
-    check_names(source, (), parameters, ())  # the algebra may depend on them
+    check_names(source, (), parameters)  # the algebra may depend on them
     algebra, variables = _read_structure(source, file, name, Scalars(parameters))
     check_sizes(source, variables, parameters)
-    check_names(source, variables, parameters, file.observables)
+    defined = defined_names(source, file.definitions)
+    named: dict[KeyPath, str] = {("observables", each): each for each in file.observables}
+    check_names(source, variables, parameters, (), defined | named)
+    definitions = read_definitions(source, file.definitions, (*variables, *parameters))
     if algebra is not None:
         check_blocks(source, variables, algebra)
     poisson = None
     if file.poisson is not None:
-        poisson = read_poisson(source, file.poisson, state_of(variables), parameters)
+        constants: list[Parameter | Definition] = [*parameters, *definitions]
+        poisson = read_poisson(source, file.poisson, state_of(variables), constants)
     check_routes(source, file)
     check_covered(source, file, variables, algebra)
-    formulas = _Formulas(source, file, variables, parameters)
+    formulas = _Formulas(source, file, variables, parameters, definitions)
+    observables = formulas.observables()
+    check_names(source, variables, parameters, observables, defined)  # now with their components
     return Spec(
         name=name,
         title=file.title,
@@ -124,11 +141,12 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         parameters=parameters,
         lagrangian=formulas.lagrangian(),
         hamiltonian=formulas.hamiltonian(),
-        observables=formulas.observables(),
+        observables=observables,
         casimirs=formulas.casimirs(),
-        conserved=formulas.conserved(),
+        conserved=formulas.conserved(observables),
         path=Path(path),
         sha256=sha256(data).hexdigest(),
+        definitions=definitions,
     )
 
 
@@ -156,9 +174,10 @@ class _Formulas:
         file: SpecFile,
         variables: Sequence[Variable],
         parameters: Sequence[Parameter],
+        definitions: Sequence[Definition],
     ) -> None:
         self.source, self.file = source, file
-        self.quantities: tuple[Variable | Parameter, ...] = (*variables, *parameters)
+        self.quantities: tuple[Quantity, ...] = (*variables, *parameters, *definitions)
         # all momenta or, of coordinates without them, velocities; the reader refuses a mixture
         self.state = tuple(dict.fromkeys(variable.role for variable in state_of(variables)))
         self.motion = tuple(dict.fromkeys(("velocity", *self.state)))
@@ -183,22 +202,35 @@ class _Formulas:
             # An observable may be its expression alone.
             inner = (*key, "expression")
             key = inner if inner in self.source.positions.values else key
-            formula = read_formula(self.source, key, part.expression, scope)
+            formula = read_formula(self.source, key, part.expression, scope, any_shape=True)
             found.append(Observable(name, formula, part.unit, part.doc))
         return tuple(found)
 
     def casimirs(self) -> tuple[Formula, ...]:
         scope = make_scope("a Casimir", self.state, self.quantities)
-        return self._claims("casimirs", self.file.claims.casimirs, scope)
+        key: KeyPath = ("claims", "casimirs")
+        return self._formulas(key, self.file.claims.casimirs, scope)
 
-    def conserved(self) -> tuple[Formula, ...]:
-        named = ("energy", *self.file.observables)
+    def conserved(self, observables: Sequence[Observable]) -> tuple[Integral, ...]:
+        named: dict[str, Shape] = {"energy": ()}
+        for entry in observables:
+            named |= {**dict.fromkeys(entry.components, ()), entry.name: entry.shape}
         scope = make_scope("an integral", self.motion, self.quantities, named)
-        return self._claims("conserved", self.file.claims.conserved, scope)
+        found = []
+        for place, part in enumerate(self.file.claims.conserved):
+            key: KeyPath = ("claims", "conserved", place)
+            # A claim may be its expression alone.
+            inner = (*key, "integral")
+            at = inner if inner in self.source.positions.values else key
+            formula = read_formula(self.source, at, part.integral, scope, any_shape=True)
+            where = self._formulas((*key, "where"), part.where, scope)
+            found.append(Integral(formula, where))
+        return tuple(found)
 
-    def _claims(self, kind: str, texts: Sequence[str], scope: Scope) -> tuple[Formula, ...]:
+    def _formulas(self, key: KeyPath, texts: Sequence[str], scope: Scope) -> tuple[Formula, ...]:
+        """The formulas of a list, scalars or not."""
         return tuple(
-            read_formula(self.source, ("claims", kind, place), text, scope)
+            read_formula(self.source, (*key, place), text, scope, any_shape=True)
             for place, text in enumerate(texts)
         )
 

@@ -13,6 +13,7 @@ from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from coadjoint.spec.algebra_schema import AlgebraPart, OperandPart, Part, also_text, named
 from coadjoint.spec.values import (
+    DEFINITION_PATTERN,
     POISSON_PATTERN,
     Block,
     Length,
@@ -58,12 +59,18 @@ class PoissonPart(Part):
 
 
 class RepresentationPart(Part):
-    """A linear action of the algebra on advected quantities."""
+    """A linear action of the algebra on advected quantities: by matrices, or on matrices."""
 
-    matrices: dict[str, Matrix] = Field(
-        min_length=1,
+    matrices: Annotated[dict[str, Matrix], Field(min_length=1)] | None = Field(
+        None,
         description="a matrix for each name of the basis; those left out act as zero",
         json_schema_extra=named(),
+    )
+    left: Block | None = Field(
+        None, description="the block whose matrices L act as A -> L A on matrices A, row by row"
+    )
+    right: Block | None = Field(
+        None, description="the block whose matrices R act as A -> -A R on matrices A, row by row"
     )
 
 
@@ -105,6 +112,11 @@ class ParameterPart(Part):
     shape: Annotated[list[Length], Field(max_length=2)] = Field(
         [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix"
     )
+    form: Literal["antisymmetric", "symmetric"] | None = Field(
+        None,
+        description="the square matrix that it is in formulas: its components are the entries "
+        "above the diagonal, or those with the diagonal, row by row",
+    )
     positive: bool = Field(False, description="whether every component is positive")
     default: Numbers | None = Field(
         None, description="exact default: a number for all components, or nested lists of them"
@@ -141,11 +153,11 @@ class NewtonPart(Part):
 
 
 class ObservablePart(Part):
-    """A scalar emitted beside the dynamics."""
+    """A scalar, vector or matrix emitted beside the dynamics."""
 
     model_config = ConfigDict(json_schema_extra=also_text)
 
-    expression: str = Field(description="a scalar of variables and parameters")
+    expression: str = Field(description="a scalar, vector or matrix of variables and parameters")
     unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")
 
@@ -209,17 +221,35 @@ class TransformationPart(Part):
     )
 
 
+class IntegralPart(Part):
+    """An integral of the motion, everywhere or on a level set."""
+
+    model_config = ConfigDict(json_schema_extra=also_text)
+
+    integral: str = Field(description="what is conserved")
+    where: Annotated[list[str], Field(min_length=1)] = Field(
+        [], description="functions that are zero on the level set where it is conserved"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: object) -> object:
+        return {"integral": value} if isinstance(value, str) else value
+
+
 class ClaimsPart(Part):
     """What is claimed of the motion and proved at every regeneration."""
 
-    casimirs: list[str] = Field([], description="Casimirs of the bracket: scalars of the state")
-    conserved: list[str] = Field(
+    casimirs: list[str] = Field(
+        [], description="Casimirs of the bracket: scalars, or vectors of them, of the state"
+    )
+    conserved: list[IntegralPart] = Field(
         [], description="integrals of the motion; 'energy' and observables have their names here"
     )
     brackets: dict[str, str] = Field(
         {},
-        description="brackets such as '{L, A}' = '-hat(A)', of any two expressions that are scalars "
-        "or vectors",
+        description="brackets such as '{L, A}' = '-hat(A)', of two expressions that are scalars or "
+        "vectors",
     )
 
 
@@ -276,6 +306,11 @@ class SpecFile(Part):
     parameters: dict[str, ParameterPart] = Field(
         {}, description="the parameters by name", json_schema_extra=named()
     )
+    definitions: dict[str, str] = Field(
+        {},
+        description="short names for expressions, such as u = 'A*b' and 'V(s, d)' = 's^2 - d'",
+        json_schema_extra=named(DEFINITION_PATTERN),
+    )
     lagrangian: LagrangianPart | None = Field(None, description="the reduced Lagrangian")
     hamiltonian: HamiltonianPart | None = Field(None, description="the reduced Hamiltonian")
     lax: LaxPart | None = Field(None, description="a Lax pair of the motion")
@@ -283,7 +318,7 @@ class SpecFile(Part):
         None, description="Newton's law, by the names of coordinates", json_schema_extra=named()
     )
     observables: dict[str, ObservablePart] = Field(
-        {}, description="scalars emitted beside the dynamics", json_schema_extra=named()
+        {}, description="what is emitted beside the dynamics", json_schema_extra=named()
     )
     symmetries: dict[str, SymmetryPart] = Field(
         {}, description="symmetries by the names of their momentum maps", json_schema_extra=named()

@@ -11,11 +11,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
+from coadjoint.spec.faults import ExpressionError, did_you_mean, fault_at, listed
 from coadjoint.spec.model import Shape
 from coadjoint.spec.tree import (
     Binary,
     Call,
+    Component,
     Index,
     Name,
     Negate,
@@ -26,6 +27,8 @@ from coadjoint.spec.tree import (
     walk_up,
 )
 
+#: The functions that are adjoined to the field, by their own names.
+ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")
 #: Determinants and inverses are written out; larger systems are solved inside the kernel.
 LARGEST_INVERSE = 3
 
@@ -72,6 +75,14 @@ def _norm(a: Shape) -> Shape | None:
     return () if len(a) == 1 else None
 
 
+def _outer(a: Shape, b: Shape) -> Shape | None:
+    return a + b if len(a) == len(b) == 1 else None
+
+
+def _rows(*rows: Shape) -> Shape | None:
+    return (len(rows), *rows[0]) if len(rows[0]) == 1 and set(rows) == {rows[0]} else None
+
+
 def _elementary(a: Shape) -> Shape | None:
     return () if a == () else None
 
@@ -89,7 +100,7 @@ class Function:
     """A function of the expression language.
 
     Attributes:
-        arity: Number of arguments.
+        arity: Number of arguments; 0 for any number but none.
         rule: Shape of the value from the shapes of the arguments; None if they do not fit.
         takes: The arguments that fit, in words.
         meaning: What it is, for documents.
@@ -115,6 +126,8 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "diag": Function(
             1, _diag, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"
         ),
+        "outer": Function(2, _outer, "two vectors", "matrix a_i b_j"),
+        "rows": Function(0, _rows, "vectors of one length", "matrix with these rows"),
         "norm": Function(1, _norm, "a vector", "sqrt(dot(a, a))"),
         "sqrt": Function(1, _elementary, "a scalar", "square root"),
         "sin": Function(1, _elementary, "a scalar", "sine"),
@@ -172,8 +185,10 @@ def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
             return ()
         case Name(name=name):
             return _declared(node, name, scope)
-        case Index():
-            return _component(node, scope)
+        case Index(name=name, indices=indices):
+            return _component(node, name, indices, _declared(node, name, scope))
+        case Component(name=name, indices=indices):
+            return _component(node, name, indices, below[0])
         case Negate():
             return below[0]
         case Power():
@@ -197,19 +212,18 @@ def _declared(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
     )
 
 
-def _component(node: Index, scope: Mapping[str, Shape]) -> Shape:
-    shape = _declared(node, node.name, scope)
-    text = f"{node.name}[{', '.join(map(str, node.indices))}]"
-    if len(shape) != len(node.indices):
-        example = "[1]" if len(shape) == 1 else "[1, 2]"
-        expected = f"{node.name}{example}" if shape else f"{node.name} without a subscript"
-        raise _fault(node, f"{node.name} is {words(shape)}, found {text}", text, expected)
-    for index, length in zip(node.indices, shape, strict=True):
+def _component(node: Node, name: str, indices: tuple[int, ...], shape: Shape) -> Shape:
+    """What is left of a shape behind its subscripts: a scalar, or a row of a matrix."""
+    text = f"{name}[{', '.join(map(str, indices))}]"
+    if len(shape) < len(indices):
+        expected = f"{name}[1]" if shape else f"{name} without a subscript"
+        raise _fault(node, f"{name} is {words(shape)}, found {text}", text, expected)
+    for index, length in zip(indices, shape, strict=False):
         if not 1 <= index <= length:
             hint = "Components are counted from 1." if index == 0 else ""
             problem = f"the subscript of {text} is out of range"
             raise _fault(node, problem, text, f"1 to {length}", hint)
-    return ()
+    return shape[len(indices) :]
 
 
 def _power(node: Power, base: Shape) -> Shape:
@@ -249,7 +263,7 @@ def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
 
 def _call(node: Call, arguments: list[Shape]) -> Shape:
     function, name = FUNCTIONS[node.function], node.function
-    if len(arguments) != function.arity:
+    if function.arity not in (0, len(arguments)):
         given = f"{len(arguments)} argument{'s' * (len(arguments) != 1)}"
         raise _fault(node, f"{name} is given {given}", given, function.takes)
     shape = function.rule(*arguments)
@@ -264,4 +278,4 @@ def _call(node: Call, arguments: list[Shape]) -> Shape:
 
 
 def _fault(node: Node, problem: str, found: str, expected: str, hint: str = "") -> ExpressionError:
-    return ExpressionError(problem, node.start, node.end, found=found, expected=expected, hint=hint)
+    return fault_at(node, problem, found=found, expected=expected, hint=hint)

@@ -10,17 +10,25 @@ Read next: `coadjoint.spec.reader`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb, factorial
 
 from coadjoint import limits
-from coadjoint.spec.faults import ExpressionError
+from coadjoint.spec.faults import ExpressionError, fault_at
 from coadjoint.spec.model import Shape
-from coadjoint.spec.shapes import shapes
-from coadjoint.spec.tree import Binary, Call, Negate, Node, Number, Power, children, walk_up
-
-_ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")
+from coadjoint.spec.shapes import ELEMENTARY, shapes
+from coadjoint.spec.tree import (
+    Binary,
+    Call,
+    Component,
+    Negate,
+    Node,
+    Number,
+    Power,
+    children,
+    walk_up,
+)
 
 
 @dataclass(frozen=True)
@@ -93,7 +101,9 @@ def _size(node: Node, below: list[Size], shape: list[Shape]) -> Size:
             return _quotient(node, *below)
         case Binary(operator=operator):
             return _sum(below[0], _negative(below[1]) if operator == "-" else below[1])
-        case Call(function=function) if function in _ELEMENTARY:
+        case Component():
+            return replace(below[0], diagonal=False, constant=None)
+        case Call(function=function) if function in ELEMENTARY:
             return _function(node, function, below[0])
         case Call(function=function):
             return _tensor(node, function, below, shape)
@@ -188,6 +198,10 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
     match function:
         case "dot":
             return _product(a, below[1], n)
+        case "outer":
+            return _product(a, below[1])
+        case "rows":
+            return _largest(below)
         case "cross":
             return _product(a, below[1], 2)
         case "commutator":
@@ -215,6 +229,16 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
     raise AssertionError(function)
 
 
+def _largest(parts: list[Size]) -> Size:
+    """The size of what is put together without being reckoned with."""
+    return Size(
+        max(part.terms for part in parts),
+        max(part.degree for part in parts),
+        max(part.bits for part in parts),
+        fixed=all(part.fixed for part in parts),
+    )
+
+
 def _determinant(a: Size, n: int) -> Size:
     products = 1 if a.diagonal else factorial(n)
     return Size(products * a.terms**n, n * a.degree, n * a.bits + products.bit_length())
@@ -222,10 +246,8 @@ def _determinant(a: Size, n: int) -> Size:
 
 def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:
     expected = f"at most {getattr(limits, limit)} ({limit})"
-    return ExpressionError(
-        problem, node.start, node.end, found=problem, expected=expected, limit=limit
-    )
+    return fault_at(node, problem, found=problem, expected=expected, limit=limit)
 
 
 def _no_value(node: Node, problem: str, expected: str) -> ExpressionError:
-    return ExpressionError(problem, node.start, node.end, found=problem, expected=expected)
+    return fault_at(node, problem, found=problem, expected=expected)

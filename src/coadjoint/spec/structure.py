@@ -19,7 +19,7 @@ from coadjoint.errors import CoadjointError
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.model import Parameter, Shape, Variable, matrix_size
 from coadjoint.spec.positions import KeyPath
-from coadjoint.spec.representations import places_of, representation_of
+from coadjoint.spec.representations import block_places, representation_of
 from coadjoint.spec.schema import ParameterPart, VariablePart
 from coadjoint.spec.source import Source
 
@@ -220,37 +220,21 @@ def _block(
     """Places in the basis that a velocity or momentum spans."""
     if part.block is None:
         return tuple(range(algebra.dimension))
-    if isinstance(part.block, list):
-        places = places_of(source, key, part.block, algebra.basis)
-        if len(set(places)) < len(places):
-            raise source.fault(
-                key,
-                "a name of the basis stands twice",
-                found=listed(part.block),
-                expected="each name once",
-            )
-        return places
-    if part.block in algebra.blocks:
-        return algebra.blocks[part.block]
-    if part.block in algebra.basis:
-        return (algebra.basis.index(part.block),)
-    known = (*algebra.blocks, *algebra.basis)
-    raise source.fault(
-        key,
-        f"{algebra.name} has no block {part.block!a}",
-        found=part.block,
-        expected=f"one of {listed(known)}",
-        hint=did_you_mean(part.block, known),
-    )
+    return block_places(source, key, part.block, algebra)
 
 
 def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
     """A parameter with one exact default for each component, or none.
 
     Raises:
-        SpecError: The default does not have the shape, or is not positive where it must be.
+        SpecError: The default does not have the shape, or is not positive where it must be, or the
+            components fill no matrix of the form.
     """
-    shape = tuple(part.shape)
+    shape, form = tuple(part.shape), part.form or ""
+    if form:
+        shape = shape or (1,)
+        if len(shape) > 1 or matrix_size(shape[0], form) is None:
+            raise _misfit(source, ("parameters", name, "form"), prod(shape), form)
     key: KeyPath = ("parameters", name, "default")
     default = None
     if part.default is not None:
@@ -269,7 +253,7 @@ def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
                 found=str(min(default)),
                 expected="positive numbers, since positive = true",
             )
-    return Parameter(name, shape, part.positive, default, part.unit, part.doc)
+    return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
 
 
 def _spread(value: object, shape: Shape) -> tuple[Fraction, ...] | None:

@@ -9,17 +9,24 @@ turns them into exact field elements.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 
 @dataclass(frozen=True)
 class Node:
-    """A piece of an expression and its place in the text (which equality ignores)."""
+    """A piece of an expression and its place in the text (which equality ignores).
+
+    Attributes:
+        start: Offset of its first character.
+        end: Offset after its last one.
+        within: The definition whose text it comes from, if that is not the text of the formula.
+    """
 
     start: int = field(compare=False, kw_only=True, default=0)
     end: int = field(compare=False, kw_only=True, default=0)
+    within: str = field(compare=False, kw_only=True, default="")
 
 
 @dataclass(frozen=True)
@@ -38,9 +45,18 @@ class Name(Node):
 
 @dataclass(frozen=True)
 class Index(Node):
-    """One component, counted from 1 as books do: ``Omega[1]``, ``A[1, 2]``."""
+    """A component, counted from 1 as books do: ``Omega[1]``, ``A[1, 2]``; ``A[1]`` is a row."""
 
     name: str
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Component(Node):
+    """A component of an expression that a name stands for: ``u[1]`` for ``u = "A*b"``."""
+
+    name: str
+    operand: Node
     indices: tuple[int, ...]
 
 
@@ -79,7 +95,7 @@ class Call(Node):
 def children(node: Node) -> tuple[Node, ...]:
     """The nodes directly below ``node``, in reading order."""
     match node:
-        case Negate(operand=operand):
+        case Negate(operand=operand) | Component(operand=operand):
             return (operand,)
         case Binary(left=left, right=right):
             return (left, right)
@@ -88,6 +104,20 @@ def children(node: Node) -> tuple[Node, ...]:
         case Call(arguments=arguments):
             return arguments
     return ()
+
+
+def rebuilt(node: Node, below: Sequence[Node]) -> Node:
+    """``node`` with other nodes directly below it, as many as it has."""
+    match node:
+        case Negate() | Component():
+            return replace(node, operand=below[0])
+        case Binary():
+            return replace(node, left=below[0], right=below[1])
+        case Power():
+            return replace(node, base=below[0])
+        case Call():
+            return replace(node, arguments=tuple(below))
+    return node
 
 
 def walk(node: Node) -> Iterator[Node]:

@@ -19,7 +19,7 @@ Unit = Mapping[str, Fraction]
 
 _FACTOR = re.compile(r"([A-Za-z]+)(?:\^(-?\d+))?|1")
 _SAME = ("transpose", "trace", "diag", "hat", "norm")
-_PRODUCT = ("dot", "cross", "commutator")
+_PRODUCT = ("dot", "cross", "commutator", "outer")
 
 
 def parse_unit(text: str) -> Unit | None:
@@ -63,19 +63,29 @@ def unit_of(node: tree.Node, units: Mapping[str, Unit | None]) -> Unit | None:
         node: A parsed expression.
         units: Unit of each name, quantities and components alike.
     """
+    found: dict[int, Unit | None] = {}
+    for part in tree.walk_up(node):
+        found[id(part)] = _unit(part, [found[id(child)] for child in tree.children(part)], units)
+    return found[id(node)]
+
+
+def _unit(
+    node: tree.Node, below: list[Unit | None], units: Mapping[str, Unit | None]
+) -> Unit | None:
+    """The unit of one node from those of its children."""
     match node:
         case tree.Number():
             return {}
         case tree.Name(name=name) | tree.Index(name=name):
             return units.get(name)
-        case tree.Negate(operand=operand):
-            return unit_of(operand, units)
-        case tree.Power(base=base, exponent=exponent):
-            return _raised(unit_of(base, units), Fraction(exponent))
-        case tree.Binary(operator=operator, left=left, right=right):
-            return _combined(operator, unit_of(left, units), unit_of(right, units))
-        case tree.Call(function=function, arguments=arguments):
-            return _of_call(function, [unit_of(argument, units) for argument in arguments])
+        case tree.Negate() | tree.Component():
+            return below[0]
+        case tree.Power(exponent=exponent):
+            return _raised(below[0], Fraction(exponent))
+        case tree.Binary(operator=operator):
+            return _combined(operator, *below)
+        case tree.Call(function=function):
+            return _of_call(function, below)
     raise AssertionError(node)
 
 
@@ -86,6 +96,8 @@ def _of_call(function: str, arguments: list[Unit | None]) -> Unit | None:
         return first
     if function in _PRODUCT:
         return _combined("*", first, arguments[1])
+    if function == "rows":
+        return first if all(argument == first for argument in arguments) else None
     if function == "inverse":
         return _raised(first, Fraction(-1))
     if function == "sqrt":

@@ -21,6 +21,8 @@ _UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.()-]+", re.ASCII)
 _LICENSE = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*", re.ASCII)
 #: Keys such as ``[e1, e2]`` of a bracket in an algebra, ``{X1, X2}`` of one of functions.
 BRACKET_PATTERN = r"^\[ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\]$"
+#: Keys such as ``u`` and ``V(s, d)`` of definitions.
+DEFINITION_PATTERN = r"^[A-Za-z]\w*( *\( *[A-Za-z]\w*( *, *[A-Za-z]\w*)* *\))?$"
 POISSON_PATTERN = r"^\{ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\}$"
 
 
