@@ -72,16 +72,15 @@ class ChartMap:
         Velocities that both routes define stay symbols, where the definitions agree: what is left
         is polynomial. Only if that fails is everything written out.
         """
-        decision = decide_zero(
-            [*self._definition_defects(), *self._defects()], self.field, self.domain
-        )
+        shared = [*self._definition_defects(), *self._shared_defects()]
+        decision = decide_zero(shared, self.field, self.domain)
         if decision.verdict is Verdict.PROVED:
             return decision
-        return decide_zero(list(map(self.other.closed, self._defects())), self.field, self.domain)
+        return decide_zero(list(self._closed_defects()), self.field, self.domain)
 
-    def _defects(self) -> Iterator[Element]:
-        """``D phi . Y - X o phi``, component by component."""
-        kept = {name: self.field[name] for name, _ in self.other.exact.definitions}
+    def _shared_defects(self) -> Iterator[Element]:
+        """``D phi . Y - X o phi`` with the velocities that both routes define as symbols."""
+        kept = {name for name, _ in self.other.exact.definitions}
         missing = {
             name: self.pull_back(self.first.closed(self.field[name]))
             for name, _ in self.first.exact.definitions
@@ -89,6 +88,12 @@ class ChartMap:
         }
         for name, rate in zip(self.first.setting.state, self.first.exact.rates, strict=True):
             yield self.carried(self.image[name]) - self.field.substitute(rate, self.image | missing)
+
+    def _closed_defects(self) -> Iterator[Element]:
+        """``D phi . Y - X o phi`` with each route's own velocities written out."""
+        for name, rate in zip(self.first.setting.state, self.first.exact.rates, strict=True):
+            own = self.other.closed(self.carried(self.image[name]))
+            yield own - self.pull_back(self.first.closed(rate))
 
     def _definition_defects(self) -> Iterator[Element]:
         """What the emitted route defines, at the image, minus what this one defines."""

@@ -1,0 +1,82 @@
+"""Ideals: what vanishes where relations hold is told from what does not."""
+
+from fractions import Fraction
+
+import pytest
+
+from coadjoint.exact import Field
+from coadjoint.prove import Verdict
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.zero import decide_zero
+
+NAMES = ("P1", "P2", "P3", "G1", "G2", "G3")
+
+
+@pytest.fixture
+def plane():
+    """The field of two vectors and the ideal of P . G = 0."""
+    field = Field(NAMES)
+    P, G = ([field[name] for name in NAMES[n : n + 3]] for n in (0, 3))
+    product = field.sum(p * g for p, g in zip(P, G, strict=True))
+    return field, Ideal(field, [product], "dot(P, G) = 0"), product
+
+
+def test_multiples_of_a_relation_vanish_and_others_do_not(plane):
+    """A multiple over any denominator is in the ideal; a factor alone is not."""
+    field, ideal, product = plane
+    assert ideal.contains(product * field["P1"] ** 2 / field["G2"])
+    assert not ideal.contains(field["P1"])
+    assert ideal.remainder(field["P1"] * field["G1"]) == -(
+        field["P2"] * field["G2"] + field["P3"] * field["G3"]
+    )
+
+
+def test_zero_where_a_relation_holds_is_proved_and_named(plane):
+    """|P x G|^2 = |P|^2 |G|^2 where P . G = 0 (Lagrange's identity), and nowhere else."""
+    field, ideal, _ = plane
+    P, G = ([field[name] for name in NAMES[n : n + 3]] for n in (0, 3))
+    cross = [P[i - 2] * G[i - 1] - P[i - 1] * G[i - 2] for i in range(3)]
+    squares = [field.sum(x * x for x in vector) for vector in (cross, P, G)]
+    defect = squares[0] - squares[1] * squares[2]
+    assert decide_zero([defect], field).verdict is Verdict.REFUTED
+    decision = decide_zero([defect], field, ideal)
+    assert decision.verdict is Verdict.PROVED
+    assert "dot(P, G) = 0" in decision.method
+
+
+def test_counterexample_lies_on_the_zero_set(plane):
+    """What is not zero there is refuted at a point where the relation holds."""
+    field, ideal, product = plane
+    decision = decide_zero([field["P1"] * field["G1"]], field, ideal)
+    assert decision.verdict is Verdict.REFUTED
+    point = dict.fromkeys(NAMES, Fraction(1)) | {n: Fraction(v) for n, v in decision.point.items()}
+    assert field.evaluate(product, point, Fraction, None) == 0
+    assert point["P1"] * point["G1"] == Fraction(decision.defect)
+
+
+def test_relation_that_is_linear_in_nothing_still_proves():
+    """c^2 = 1 - s^2 on the circle; what is nonzero there is refuted by its remainder."""
+    field = Field(["c", "s"])
+    c, s = field["c"], field["s"]
+    circle = Ideal(field, [c**2 + s**2 - 1], "c^2 + s^2 = 1")
+    assert not circle.is_solved
+    assert decide_zero([c**4 - (1 - s**2) ** 2], field, circle).verdict is Verdict.PROVED
+    refuted = decide_zero([c**3 - c], field, circle)
+    assert refuted.verdict is Verdict.REFUTED
+    assert refuted.defect == "-c*s^2"
+
+
+def test_several_relations_are_reduced_together():
+    """The twisted cubic y = x^2, z = x^3 lies on x z = y^2, which neither relation gives alone."""
+    field = Field(["x", "y", "z"])
+    x, y, z = field["x"], field["y"], field["z"]
+    cubic = Ideal(field, [y - x**2, z - x**3], "y = x^2, z = x^3")
+    assert cubic.contains(x * z - y**2)
+    assert not Ideal(field, [y - x**2], "y = x^2").contains(x * z - y**2)
+    assert cubic.is_solved
+
+
+def test_only_named_variables_are_solved_for(plane):
+    """Parameters are not solved for where variables are named."""
+    field, _, product = plane
+    assert set(Ideal(field, [product], "", ("G2",)).solved) == {"G2"}
