@@ -36,6 +36,9 @@ EXPRESSION_CHARACTERS = 4096
 EXPRESSION_NESTING = 48
 #: Numbers, names, operations and calls of one expression.
 EXPRESSION_NODES = 1000
+#: Parts that definitions put into all expressions of a spec together; a name of one letter may stand
+#: for 1000 parts, and a spec has room for thousands of such names.
+DEFINED_PARTS = 20_000
 #: Size of an exponent, which is a literal integer.
 EXPONENT = 32
 #: Bits of numerator and denominator of any constant that multiplying out would make.
@@ -68,10 +71,13 @@ EXAMINED_GENERATORS = 36
 MONOMIALS = 20_000
 #: Products of terms of one invariant of matrices; the largest one of so(8) takes 6300.
 INVARIANT_TERMS = 25_000
+#: Velocities coupled by a kinetic energy that the kernel solves for: unrolled, twelve take 90
+#: intermediates, whose derivatives are most of a Jacobian.
+COUPLED_VELOCITIES = 12
 #: Operations of one function after lowering.
 OPERATIONS = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
-C_STATEMENTS = 1000
+C_STATEMENTS = 2000
 
 # -- children -------------------------------------------------------------------------------------
 

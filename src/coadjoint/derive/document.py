@@ -7,6 +7,7 @@ of a format must escape. Read next: `coadjoint.render.document`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy
@@ -14,6 +15,7 @@ from sympy.printing.mathml import mathml
 
 from coadjoint.derive.equations import Equations, Left, Step
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.spec.model import Definition
 
 #: Addends on one line of LaTeX; nine fill a landscape page.
 ADDENDS = 9
@@ -70,8 +72,16 @@ def document(equations: Equations) -> Document:
     """The document of a derivation, ending with the closed equations of motion."""
     spec = equations.spec
     sections = [_section(equations, step) for step in equations.steps]
+    if spec.definitions:
+        sections.insert(0, _definitions(spec.definitions))
     about = f"System {spec.name}, route {equations.route}."
     return Document(spec.title, about, spec.source, spec.description, tuple(sections))
+
+
+def _definitions(definitions: Sequence[Definition]) -> Section:
+    """The short names of a spec; the steps below show what they stand for in its place."""
+    words = tuple((each.signature, f"= {each.in_one_line}") for each in definitions)
+    return Section("Definitions", "short names in the spec", "", (), words)
 
 
 def _section(equations: Equations, step: Step) -> Section:

@@ -10,6 +10,7 @@ Read next: `coadjoint.spec.formulas`.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
@@ -61,7 +62,7 @@ def read_definitions(
         name, arguments = signature(text)
         _check_arguments(source, key, arguments, [*shapes, *map(_name, texts)])
         try:
-            tree = expand(read_expression(expression, functions(known)), known)
+            tree = expand(read_expression(expression, functions(known)), known, source.spent)
             shape = _shape(tree, shapes, arguments, [_name(later) for later in texts])
         except ExpressionError as error:
             raise source.expression_fault(key, error) from None
@@ -139,12 +140,19 @@ def _shape(
 # -- putting in -----------------------------------------------------------------------------------
 
 
-def expand(tree: Node, definitions: Mapping[str, Definition]) -> Node:
+def expand(
+    tree: Node, definitions: Mapping[str, Definition], spent: Counter[str] | None = None
+) -> Node:
     """A tree with its definitions put in.
 
+    Args:
+        tree: What was read.
+        definitions: What may be put in, by name.
+        spent: Parts that were put into other trees of the spec; those of this one are added.
+
     Raises:
-        ExpressionError: One is given another number of arguments, or the tree grows beyond the
-            limit, which is seen before it does: 20 definitions that double make a million parts.
+        ExpressionError: One is given another number of arguments, or a tree grows beyond the
+            limits, which is seen before it does: 20 definitions that double make a million parts.
 
     >>> double = Definition("f", ("x",), "x + x", read_expression("x + x"), None)
     >>> expand(read_expression("f(2*y)", ["f"]), {"f": double}) == read_expression("2*y + 2*y")
@@ -152,6 +160,7 @@ def expand(tree: Node, definitions: Mapping[str, Definition]) -> Node:
     """
     if not definitions:
         return tree
+    spent = Counter() if spent is None else spent
     total = sum(1 for _ in walk(tree))
     made: dict[int, tuple[Node, int]] = {}  # with the number of parts
     for node in walk_up(tree):
@@ -161,23 +170,24 @@ def expand(tree: Node, definitions: Mapping[str, Definition]) -> Node:
         if definition is not None:
             put = _put_in(node, definition, below)
             total += put[1] - found[1]
+            spent["DEFINED_PARTS"] += put[1]
             found = put
             if total > limits.EXPRESSION_NODES:
-                raise _too_large(node, definition)
+                raise _too_large(node, definition, "EXPRESSION_NODES", "the expression has")
+            if spent["DEFINED_PARTS"] > limits.DEFINED_PARTS:
+                raise _too_large(node, definition, "DEFINED_PARTS", "all expressions have")
         made[id(node)] = found
     return made[id(tree)][0]
 
 
-def _too_large(node: Node, definition: Definition) -> ExpressionError:
-    problem = f"with {definition.name} put in, the expression has too many parts"
-    expected = f"at most {limits.EXPRESSION_NODES} (EXPRESSION_NODES)"
+def _too_large(node: Node, definition: Definition, limit: str, what: str) -> ExpressionError:
     return ExpressionError(
-        problem,
+        f"with {definition.name} put in, {what} too many parts",
         node.start,
         node.end,
         found=definition.name,
-        expected=expected,
-        limit="EXPRESSION_NODES",
+        expected=f"at most {getattr(limits, limit)} ({limit})",
+        limit=limit,
     )
 
 

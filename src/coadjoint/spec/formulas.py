@@ -105,7 +105,8 @@ def read_formula(
         LimitError: The expression is too large.
     """
     try:
-        tree = expand(read_expression(text, functions(scope.definitions)), scope.definitions)
+        typed = read_expression(text, functions(scope.definitions))
+        tree = expand(typed, scope.definitions, source.spent)
         _check_roles(tree, scope)
         shape = shape_of(tree, scope.shapes)
         check_size(tree, scope.shapes)

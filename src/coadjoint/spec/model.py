@@ -228,8 +228,8 @@ class Definition:
 
     @property
     def in_one_line(self) -> str:
-        """The definition for documents: ``V(s, d) = s^2 - d``."""
-        return f"{self.signature} = {' '.join(self.text.split())}"
+        """The expression without its line breaks, for documents."""
+        return " ".join(self.text.split())
 
 
 @dataclass(frozen=True)
@@ -338,13 +338,15 @@ class Symmetry:
 
     @property
     def shape(self) -> Shape:
-        """Shape of the momentum map as a list of components."""
+        """Shape of the components as they are kept: the whole matrix, or a list."""
+        if self.form == "matrix":
+            return self.value_shape
         return (self.algebra.dimension,) if self.algebra.dimension > 1 or self.form else ()
 
     @property
     def components(self) -> tuple[str, ...]:
         """Names of the components, one for each basis vector."""
-        return component_names(self.name, self.shape, self.form)
+        return component_names(self.name, self.shape, "" if self.form == "matrix" else self.form)
 
     @property
     def value_shape(self) -> Shape:

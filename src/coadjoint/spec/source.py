@@ -11,8 +11,9 @@ with the parts as attributes. Read next: `coadjoint.spec.schema`, the first step
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from coadjoint.errors import CoadjointError, LimitError, SpecError
@@ -67,11 +68,13 @@ class Source:
         path: The file as the user named it.
         text: Its text with plain newlines.
         positions: Where its keys and values stand.
+        spent: What its formulas took so far of limits that hold for all of them together.
     """
 
     path: str
     text: str
     positions: Positions
+    spent: Counter[str] = field(default_factory=Counter, compare=False)
 
     def line(self, span: Span) -> int:
         """Line of a place, counted from 1."""
