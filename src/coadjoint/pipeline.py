@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import Any
 
 from coadjoint.crosscheck.ladder import Report, crosscheck
-from coadjoint.crosscheck.reference import Reference
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
+from coadjoint.derive.reference import Reference
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
@@ -159,7 +159,11 @@ def _observables(spec: Spec) -> tuple[Quantity, ...]:
         _emitted(entry.name, entry.unit, entry.shape, conserved=entry.name in stated)
         for entry in spec.observables
     ]
-    return (energy, *casimirs, *map(_quantity, spec.defined), *declared)
+    maps = [
+        Quantity(each.name, each.shape, each.unit, each.components, conserved=each.name in stated)
+        for each in spec.symmetries
+    ]
+    return (energy, *casimirs, *map(_quantity, spec.defined), *declared, *maps)
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:
@@ -186,9 +190,12 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         "source": spec.source,
         "description": spec.description,
         "docs": {quantity.name: quantity.doc for quantity in quantities if quantity.doc}
-        | {entry.name: entry.doc for entry in spec.observables if entry.doc},
+        | {entry.name: entry.doc for entry in spec.observables if entry.doc}
+        | {entry.name: entry.doc for entry in spec.symmetries if entry.doc},
         "casimirs": [formula.in_one_line for formula in spec.casimirs],
         "routes": list(spec.routes),
         "claims": certificate.as_record()["claims"],
     }
+    if spec.definitions:  # the texts of casimirs and claims may hold them
+        record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

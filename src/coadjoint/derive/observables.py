@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from coadjoint.derive.setting import Setting
+from coadjoint.derive.symmetries import momentum_maps
 from coadjoint.exact import Element
 from coadjoint.spec import Formula
 from coadjoint.spec.model import component_names
@@ -30,7 +31,13 @@ def observables(setting: Setting, energy: Element) -> tuple[tuple[str, Element],
         for entry in spec.observables
         for part in _named(entry.components, setting, entry.formula)
     ]
-    return (("energy", energy), *casimirs, *velocities, *declared)
+    values = momentum_maps(setting, energy)
+    maps = [
+        part
+        for symmetry in spec.symmetries
+        for part in zip(symmetry.components, values[symmetry.name], strict=True)
+    ]
+    return (("energy", energy), *casimirs, *velocities, *declared, *maps)
 
 
 def _named(

@@ -197,8 +197,10 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     ]
     names = [name for quantity in quantities for name in quantity.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
-    # a route may call the functions of a formula with other arguments than the spec does
-    room = _function_calls(spec) * (1 + len(spec.routes) * bool(symbols))
+    # a route, and what a transformation makes of a formula, may call its functions with other
+    # arguments than the spec does
+    more = len(spec.routes) * bool(symbols) + len(spec.transformations)
+    room = _function_calls(spec) * (1 + more)
     field = Field([*names, *symbols], room, positive)
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
@@ -230,6 +232,12 @@ def formulas(spec: Spec) -> tuple[Formula, ...]:
         stated += [*spec.poisson.functions, *(formula for *_, formula in spec.poisson.entries)]
     declared = [observable.formula for observable in spec.observables]
     claimed = [f for claim in spec.conserved for f in (claim.formula, *claim.where)]
+    for symmetry in spec.symmetries:
+        claimed += [f for f in (symmetry.time, symmetry.map) if f is not None]
+        claimed += symmetry.generators.values()
+    for transformation in spec.transformations:
+        claimed += [*transformation.map.values(), *transformation.exchanges.values()]
+    claimed += [f for each in spec.brackets for f in (each.left, each.right, each.value)]
     return (*stated, *declared, *spec.casimirs, *claimed)
 
 

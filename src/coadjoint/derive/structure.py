@@ -54,7 +54,7 @@ def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
                 return declared(field, names, entries, setting.spec.name)
         pairs = [(names[i], names[j]) for i, j in bracket.pairs]
         fields = {(names[i], names[j]): value for (i, j), value in entries.items()}
-        return _reordered(magnetic(field, pairs, fields), names)
+        return _reordered(magnetic(field, pairs, fields, bracket.weights), names)
     except AlgebraError as error:
         formula = (*bracket.functions, *(formula for *_, formula in bracket.entries))[0]
         path, key = setting.spec.path, ".".join(formula.key.split(".")[:2])

@@ -102,13 +102,16 @@ def magnetic(
     field: Field,
     pairs: Sequence[tuple[str, str]],
     two_form: Mapping[tuple[str, str], Element],
+    weights: Sequence[Number] = (),
 ) -> PoissonStructure:
-    """``{q_a, p_b} = delta_ab`` and ``{p_a, p_b} = B_ab(q)``: charges in a magnetic field.
+    """``{q_a, p_b} = w_a delta_ab``, ``{p_a, p_b} = B_ab(q)``: charges in a magnetic field.
 
     Args:
         field: Where the coordinates are symbols.
         pairs: Each coordinate with its momentum.
         two_form: B by pairs of momenta, each pair once; a function of the coordinates q alone.
+        weights: w, 1 by default; entries of symmetric matrices beside the diagonal have 1/2, since
+            ``tr(P dS/dt)`` counts them twice.
 
     Raises:
         AlgebraError: B depends on a momentum or is not closed; the message shows the defect.
@@ -118,19 +121,23 @@ def magnetic(
     """
     coordinates, momenta = [q for q, _ in pairs], [p for _, p in pairs]
     names, n = (*coordinates, *momenta), len(pairs)
-    entries = {(a, n + a): field.one for a in range(n)}
+    scale = field.vector(_exact(weights or (1,) * n))
+    entries = {(a, n + a): scale[a] for a in range(n)}
     for (first, second), value in two_form.items():
         a, b = places(momenta, (first, second))
         entries[n + a, n + b] = value
     structure = PoissonStructure(field, names, antisymmetric(field, 2 * n, entries), "magnetic")
-    _check_closed(structure, coordinates, momenta)
+    _check_closed(structure, coordinates, momenta, scale)
     return structure
 
 
 def _check_closed(
-    structure: PoissonStructure, coordinates: Sequence[str], momenta: Sequence[str]
+    structure: PoissonStructure,
+    coordinates: Sequence[str],
+    momenta: Sequence[str],
+    weights: Sequence[Element],
 ) -> None:
-    """``d_a B_bc + cyclic = 0``, the Jacobi identity of a magnetic bracket."""
+    """``w_a d_a B_bc + cyclic = 0``, the Jacobi identity of a magnetic bracket."""
     field, n = structure.field, len(coordinates)
     form = [row[n:] for row in structure.tensor[n:]]
     for (i, a), (j, b) in combinations(enumerate(momenta), 2):
@@ -144,7 +151,9 @@ def _check_closed(
             )
     for i, j, k in combinations(range(n), 3):
         cycle = ((i, j, k), (j, k, i), (k, i, j))
-        total = sum((field.derivative(form[b][c], coordinates[a]) for a, b, c in cycle), field.zero)
+        total = field.sum(
+            weights[a] * field.derivative(form[b][c], coordinates[a]) for a, b, c in cycle
+        )
         defect = field.normal(total)
         if defect != 0:
             x, y, z = (coordinates[a] for a in (i, j, k))

@@ -17,12 +17,13 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
+from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
-from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.equivalence import LegendreMap, in_velocities
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import (
     antisymmetry_defects,
@@ -30,6 +31,7 @@ from coadjoint.prove.identities import (
     drift,
     hamiltonian_defects,
 )
+from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
     NORMAL_FORM,
@@ -141,11 +143,18 @@ def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield (
         "the Legendre transform is invertible for generic parameters",
         "legendre",
-        lambda: _nonzero(pulled.determinants(), routes[0]),
+        lambda: _invertible(pulled),
     )
     for equations in routes:
         if equations.chart is not None or equations.exact.energy is None:
             continue
+        if equations.kept:
+            yield (
+                f"the kernel solves for the velocities on the route {equations.route}: "
+                "L D L^T = d2l/dxi2",
+                "legendre",
+                partial(pulled.solution_defects, equations),
+            )
         yield (
             f"h(dl/dxi) = <dl/dxi, xi> - l on the route {equations.route}",
             "legendre",
@@ -159,11 +168,9 @@ def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
             )
 
 
-def _nonzero(elements: Sequence[Element], equations: Equations) -> Decision:
-    """That no element is identically zero."""
-    assert elements
-    zero = [element for element in elements if equations.setting.field.is_zero(element)]
-    assert not zero, "legendre_transform refuses these"
+def _invertible(pulled: LegendreMap) -> Decision:
+    """That no block of the mass matrix is singular everywhere."""
+    assert pulled.is_invertible(), "legendre_transform refuses these"
     return Decision(Verdict.PROVED, "nonzero determinants of the blocks of d2l/dxi2")
 
 
@@ -235,6 +242,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
             "conserved",
             partial(_integral, first, claim),
         )
+    yield from about_symmetries(first, _emitted(first))
 
 
 def _casimir(first: Equations, casimir: Formula) -> list[Element]:
@@ -252,7 +260,8 @@ def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision
     if not claim.where:
         return rates
     names = _emitted(first)
-    level = [first.closed(g) for f in claim.where for g in first.setting.components(f, names)]
+    functions = [g for f in claim.where for g in first.setting.components(f, names)]
+    level = in_velocities(first, functions)
     kept = [rate for formula in claim.where for rate in _rates(first, formula)]
     field = first.setting.field
     ideal = Ideal(field, level, _vanishing(claim))
@@ -289,4 +298,7 @@ def _emitted(first: Equations) -> dict[str, Quantity]:
     known: dict[str, Quantity] = dict(first.exact.observables)
     for entry in first.spec.observables:
         known[entry.name] = shaped([known[name] for name in entry.components], entry.shape)
+    for symmetry in first.spec.symmetries:
+        parts = [known[name] for name in symmetry.components]
+        known[symmetry.name] = in_formulas(symmetry, parts)
     return known

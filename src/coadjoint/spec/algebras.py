@@ -57,21 +57,26 @@ _BRACKET = re.compile(BRACKET_PATTERN, re.ASCII)
 
 
 def read_algebra(
-    source: Source, part: AlgebraPart, system: str, scalars: Scalars | None = None
+    source: Source,
+    part: AlgebraPart | OperandPart,
+    system: str,
+    scalars: Scalars | None = None,
+    key: KeyPath = ("algebra",),
 ) -> LieAlgebra:
-    """The algebra of a spec; one declared by brackets or matrices takes the system's name.
+    """An algebra of a spec; one declared by brackets or matrices takes the system's name.
 
     Args:
         source: The text of the spec.
-        part: Its table [algebra].
+        part: The table, such as [algebra].
         system: Name of the system.
         scalars: The parameters that constants may depend on.
+        key: Where the table stands.
 
     Raises:
         AlgebraError: What is declared makes no Lie algebra, or the name is unknown.
         SpecError: A name of the basis is unknown, or a matrix has the wrong size.
     """
-    return _Algebras(source, system, scalars or Scalars()).algebra(part, ("algebra",))
+    return _Algebras(source, system, scalars or Scalars()).algebra(part, key)
 
 
 class _Algebras:

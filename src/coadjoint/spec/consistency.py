@@ -14,7 +14,7 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
 from coadjoint.spec.faults import listed
-from coadjoint.spec.model import Observable, Parameter, Variable, state_of
+from coadjoint.spec.model import Observable, Parameter, Symmetry, Variable, state_of
 from coadjoint.spec.names import derived_names, refusal
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.routes import STARTS, energies_of, kinds_of
@@ -42,7 +42,7 @@ def check_names(
     source: Source,
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Sequence[Observable] = (),
+    observables: Sequence[Observable | Symmetry] = (),
     others: Mapping[KeyPath, str] = MappingProxyType({}),
 ) -> None:
     """Every name is free and declared once, components and rates included.
@@ -51,7 +51,7 @@ def check_names(
         source: The text of the spec.
         variables: The variables.
         parameters: The parameters.
-        observables: Those whose shape is known.
+        observables: Those whose shape is known, and momentum maps.
         others: Further names at their keys, of things whose components are not known yet.
 
     Raises:
@@ -83,7 +83,7 @@ def check_names(
 def _declared(
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Sequence[Observable],
+    observables: Sequence[Observable | Symmetry],
 ) -> Iterable[_Declared]:
     for variable in variables:
         moving = variable in state_of(variables)
@@ -92,7 +92,8 @@ def _declared(
     for parameter in parameters:
         yield ("parameters", parameter.name), parameter.name, parameter.components, ()
     for entry in observables:
-        yield ("observables", entry.name), entry.name, entry.components, ()
+        table = "symmetries" if isinstance(entry, Symmetry) else "observables"
+        yield (table, entry.name), entry.name, entry.components, ()
 
 
 def check_sizes(

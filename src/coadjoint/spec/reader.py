@@ -40,8 +40,8 @@ from coadjoint.spec.model import (
     Integral,
     Observable,
     Parameter,
-    Shape,
     Spec,
+    Symmetry,
     Variable,
     state_of,
 )
@@ -52,6 +52,7 @@ from coadjoint.spec.representations import read_representations
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
 from coadjoint.spec.structure import read_parameter, read_variable
+from coadjoint.spec.symmetries import SymmetryReader, emitted_shapes
 from coadjoint.spec.validate import validate
 
 
@@ -126,7 +127,10 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     check_covered(source, file, variables, algebra)
     formulas = _Formulas(source, file, variables, parameters, definitions)
     observables = formulas.observables()
-    check_names(source, variables, parameters, observables, defined)  # now with their components
+    actions = SymmetryReader(source, state_of(variables), formulas.quantities, observables)
+    symmetries = actions.symmetries(file.symmetries, name, Scalars(parameters))
+    emitted: list[Observable | Symmetry] = [*observables, *symmetries]
+    check_names(source, variables, parameters, emitted, defined)  # now with their components
     return Spec(
         name=name,
         title=file.title,
@@ -143,10 +147,13 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         hamiltonian=formulas.hamiltonian(),
         observables=observables,
         casimirs=formulas.casimirs(),
-        conserved=formulas.conserved(observables),
+        conserved=formulas.conserved(emitted),
         path=Path(path),
         sha256=sha256(data).hexdigest(),
         definitions=definitions,
+        symmetries=symmetries,
+        transformations=actions.transformations(file.transformations),
+        brackets=actions.brackets(file.claims.brackets),
     )
 
 
@@ -211,10 +218,8 @@ class _Formulas:
         key: KeyPath = ("claims", "casimirs")
         return self._formulas(key, self.file.claims.casimirs, scope)
 
-    def conserved(self, observables: Sequence[Observable]) -> tuple[Integral, ...]:
-        named: dict[str, Shape] = {"energy": ()}
-        for entry in observables:
-            named |= {**dict.fromkeys(entry.components, ()), entry.name: entry.shape}
+    def conserved(self, emitted: Sequence[Observable | Symmetry]) -> tuple[Integral, ...]:
+        named = emitted_shapes(emitted)
         scope = make_scope("an integral", self.motion, self.quantities, named)
         found = []
         for place, part in enumerate(self.file.claims.conserved):

@@ -19,10 +19,11 @@ from pydantic_core import ErrorDetails
 
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.spec.algebra_schema import Part
 from coadjoint.spec.decimals import read_float
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.positions import KeyPath, Span
-from coadjoint.spec.schema import Part, SpecFile
+from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source, joined, shown
 
 #: Faults that one message shows at the most.

@@ -1,0 +1,265 @@
+r"""The momentum maps of declared symmetries, and the vector fields of their actions.
+
+Theorem (Holm 2011, sections 9.4.1 and 11.2): the cotangent lift of an action on positions has the
+momentum map :math:`J^\xi = \langle p, \xi_Q(q)\rangle`, and :math:`\langle p, \xi_Q\rangle - E\tau`
+where time moves, too (section 2.3.1). Actions on the whole phase space have the function whose
+Hamiltonian vector field they are.
+Comes in: a Setting, or Equations. Goes out: components by name, or a `MomentumMap` to be proved.
+Read next: `coadjoint.poisson.momentum_maps`, then `coadjoint.prove.symmetries`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.interpret import Quantity, entries
+from coadjoint.derive.setting import Setting, shaped
+from coadjoint.derive.structure import poisson_structure
+from coadjoint.errors import AlgebraError, DerivationError
+from coadjoint.exact import Element
+from coadjoint.groups.vector_fields import VectorField
+from coadjoint.groups.vectors import scale
+from coadjoint.poisson.momentum_maps import MomentumMap, generating_function, lifted
+from coadjoint.poisson.structure import PoissonStructure
+from coadjoint.spec import Formula
+from coadjoint.spec.model import Symmetry, matrix_size, unpacked
+
+#: Components that move, by name.
+Moves = Mapping[str, Element]
+_NOTHING: Mapping[str, Quantity] = MappingProxyType({})
+
+
+def momentum_maps(setting: Setting, energy: Element | None) -> dict[str, tuple[Element, ...]]:
+    """The components of each declared momentum map, by its name.
+
+    Raises:
+        DerivationError: A generator has no momentum map that could be found, or does not keep the
+            form of a matrix.
+    """
+    return {each.name: _values(setting, each, energy) for each in setting.spec.symmetries}
+
+
+def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Quantity:
+    """The components of a momentum map as what it is in formulas."""
+    if symmetry.form in ("antisymmetric", "symmetric"):
+        return unpacked(components, symmetry.form)
+    return shaped(components, symmetry.shape)
+
+
+def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
+    """A declared momentum map with the bracket and the generators that it is proved with.
+
+    The generators are as declared; of an action on positions alone the lift gives the rest where
+    momenta are canonical, and elsewhere J itself.
+    """
+    setting, structure = equations.setting, structure_of(equations)
+    values = tuple(map(equations.closed, _values(setting, symmetry, equations.exact.energy)))
+    motion = VectorField(
+        setting.field, setting.state, tuple(map(equations.closed, equations.exact.rates))
+    )
+    generators = []
+    for element, value in zip(_elements(setting, symmetry), values, strict=True):
+        X = _generator(setting, structure, symmetry, element, value)
+        if symmetry.time is not None:
+            tau = _taken(setting, symmetry.time, symmetry, element)
+            X = X - motion.like(scale(tau, motion.components))
+        generators.append(X)
+    algebra = symmetry.algebra.over(setting.taken)
+    sign = 1 if symmetry.side == "left" else -1
+    return MomentumMap(algebra, structure, tuple(generators), values, sign)
+
+
+def structure_of(equations: Equations) -> PoissonStructure:
+    """The emitted bracket, velocities put in."""
+    tensor = equations.exact.poisson_tensor
+    assert tensor is not None, "only what has a bracket is asked for it"
+    closed = tuple(tuple(map(equations.closed, row)) for row in tensor)
+    return PoissonStructure(equations.setting.field, equations.setting.state, closed)
+
+
+def positions(setting: Setting) -> tuple[str, ...]:
+    """Components whose momenta are known; empty where the bracket pairs nothing."""
+    bracket = setting.spec.poisson
+    if bracket is not None:
+        return tuple(setting.state[i] for i, _ in bracket.pairs)
+    return setting.positions
+
+
+# -- elements of the algebra and what they move ---------------------------------------------------
+
+
+def _elements(setting: Setting, symmetry: Symmetry) -> list[Quantity]:
+    """Each basis vector as formulas have it: a scalar, a vector, a matrix, or its place."""
+    field, algebra = setting.field, symmetry.algebra
+    n = algebra.dimension
+    if symmetry.linear or symmetry.as_matrix:
+        count = 1 + max(max(place) for matrix in algebra.matrices for place in matrix)
+        return [
+            tuple(
+                tuple(field.zero + setting.taken(matrix.get((r, c), 0)) for c in range(count))
+                for r in range(count)
+            )
+            for matrix in algebra.matrices
+        ]
+    if n == 1:
+        return [field.one]
+    return [field.vector(int(i == k) for i in range(n)) for k in range(n)]
+
+
+def _taken(setting: Setting, formula: Formula, symmetry: Symmetry, element: Quantity) -> Element:
+    """A scalar formula at one element."""
+    return setting.formula(formula, {symmetry.element: element})
+
+
+def _moves(setting: Setting, symmetry: Symmetry, element: Quantity) -> Moves:
+    """The components that an element moves, as declared."""
+    if symmetry.linear:
+        by_name = {variable.name: variable for variable in setting.spec.state}
+        names = [x for name in symmetry.linear for x in by_name[name].components]
+        symbols = setting.elements(names)
+        return {
+            name: setting.field.sum(a * x for a, x in zip(row, symbols, strict=True) if a)
+            for name, row in zip(names, element, strict=True)
+        }
+    return moved_components(setting, symmetry.generators, {symmetry.element: element})
+
+
+def moved_components(
+    setting: Setting, formulas: Mapping[str, Formula], known: Mapping[str, Quantity] = _NOTHING
+) -> dict[str, Element]:
+    """Values of formulas for variables of the state, by the components of these.
+
+    Raises:
+        DerivationError: A matrix is not of the form of its variable.
+    """
+    found: dict[str, Element] = {}
+    for variable in setting.spec.state:
+        formula = formulas.get(variable.name)
+        if formula is not None:
+            parts = entries(setting.value(formula, known))
+            if variable.form:
+                parts = _kept(setting, parts, variable.form, formula)
+            found |= zip(variable.components, parts, strict=True)
+    return found
+
+
+def _kept(
+    setting: Setting, parts: Sequence[Element], form: str, formula: Formula
+) -> tuple[Element, ...]:
+    """The entries that a form keeps, if the matrix is of the form."""
+    size = matrix_size(len(parts), "matrix")
+    assert size is not None, len(parts)
+    rows = [parts[n * size : (n + 1) * size] for n in range(size)]
+    kept = {
+        "antisymmetric": [rows[i][j] for i in range(size) for j in range(i + 1, size)],
+        "symmetric": [rows[i][j] for i in range(size) for j in range(i, size)],
+    }.get(form, list(parts))
+    if any(x != y for x, y in zip(entries(unpacked(kept, form)), parts, strict=True)):
+        raise _fault(setting, formula, f"the value is not {form}", "Correct the formula.")
+    return tuple(kept)
+
+
+# -- the map and the vector field -----------------------------------------------------------------
+
+
+def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tuple[Element, ...]:
+    """J of each basis vector."""
+    found = []
+    for element in _elements(setting, symmetry):
+        value = _value(setting, symmetry, element)
+        if symmetry.time is not None:
+            if energy is None:
+                problem = "time moves, and the motion has no energy"
+                raise _fault(setting, symmetry.time, problem, "Leave time out.")
+            value = value - energy * _taken(setting, symmetry.time, symmetry, element)
+        found.append(value)
+    return tuple(found)
+
+
+def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
+    """J of one element, without the part of time."""
+    if symmetry.map is not None:
+        return _taken(setting, symmetry.map, symmetry, element)
+    moves = _moves(setting, symmetry, element)
+    covector = _covector(setting)
+    if moves.keys() <= covector.keys():
+        return setting.field.sum(covector[q] * moved for q, moved in moves.items())
+    formula = next(iter(symmetry.generators.values()), None)
+    if setting.spec.poisson is None:
+        problem = "more than positions move, and their momenta are no part of the state"
+        raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
+    try:
+        structure = poisson_structure(setting)
+        return generating_function(structure, _whole(setting, moves))
+    except AlgebraError as error:
+        raise _fault(setting, formula, str(error).rstrip("."), "", symmetry) from None
+
+
+def _covector(setting: Setting) -> dict[str, Element]:
+    """What pairs with the velocity of each position; empty beside magnetic terms."""
+    field, bracket = setting.field, setting.spec.poisson
+    if bracket is None:
+        if setting.momenta:
+            return dict(zip(setting.positions, setting.elements(setting.momenta), strict=True))
+        formula = setting.spec.lagrangian
+        if formula is None:
+            return {}
+        slopes = field.gradient(setting.formula(formula), setting.velocities)
+        return dict(zip(setting.positions, slopes, strict=True))
+    if bracket.entries:
+        return {}
+    names = setting.state
+    return {
+        names[i]: field[names[j]] / weight
+        for (i, j), weight in zip(bracket.pairs, bracket.weights, strict=True)
+    }
+
+
+def _generator(
+    setting: Setting,
+    structure: PoissonStructure,
+    symmetry: Symmetry,
+    element: Quantity,
+    value: Element,
+) -> VectorField:
+    """The vector field of one element on the whole state, time standing still."""
+    moves, bracket = _moves(setting, symmetry, element), setting.spec.poisson
+    if not moves.keys() <= set(positions(setting)):
+        return _whole(setting, moves)
+    if bracket is not None and not bracket.entries:
+        pairs = [
+            (setting.state[i], setting.state[j], setting.field.number(weight))
+            for (i, j), weight in zip(bracket.pairs, bracket.weights, strict=True)
+        ]
+        return lifted(structure, pairs, moves)
+    by_map = structure.hamiltonian_vector_field(value)
+    declared = dict.fromkeys(positions(setting), setting.field.zero) | dict(moves)
+    named = dict(zip(setting.state, by_map, strict=True)) | declared
+    return VectorField(setting.field, setting.state, tuple(named[x] for x in setting.state))
+
+
+def _whole(setting: Setting, moves: Moves) -> VectorField:
+    """A vector field on the state; what is not named stands still."""
+    zero = setting.field.zero
+    return VectorField(
+        setting.field, setting.state, tuple(moves.get(x, zero) for x in setting.state)
+    )
+
+
+def _fault(
+    setting: Setting,
+    formula: Formula | None,
+    problem: str,
+    hint: str,
+    symmetry: Symmetry | None = None,
+) -> DerivationError:
+    """An error at a formula, or at a symmetry without one."""
+    path = str(setting.spec.path)
+    line = f":{formula.line}" if formula is not None else ""
+    key = formula.key if formula is not None else f"symmetries.{symmetry.name if symmetry else ''}"
+    found = formula.text if formula is not None else ""
+    return DerivationError(
+        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=found
+    )

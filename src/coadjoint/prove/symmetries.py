@@ -1,0 +1,228 @@
+"""Symmetries: what is claimed of actions, momentum maps, brackets and maps of the state.
+
+Comes in: Equations whose spec declares them. Goes out: statements with what must be zero.
+Noether's theorem is used both ways: an invariant Hamiltonian gives an integral, whose rate is then
+taken along the emitted motion; and a claimed integral gives a vector field, which must commute with
+the motion. Read next: `coadjoint.poisson.momentum_maps`.
+
+Source:
+    Holm (2011), Geometric Mechanics II, sections 2.3, 9.4.1 and 11.1 to 11.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.interpret import Quantity, entries
+from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
+from coadjoint.exact import Element, element_text
+from coadjoint.groups.vector_fields import VectorField, lie_derivative
+from coadjoint.poisson.momentum_maps import MomentumMap
+from coadjoint.prove.identities import drift
+from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
+
+#: (statement, kind, what must be zero)
+Stated = tuple[str, str, Callable[[], Sequence[Element]]]
+#: Entries of a cocycle that a statement shows.
+SHOWN = 6
+
+
+def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Stated]:
+    """All claims about symmetries.
+
+    Args:
+        first: The emitted motion.
+        known: Values of the energy, the observables and the momentum maps, which claims may use.
+    """
+    spec = first.spec
+    energy = first.exact.energy
+    if first.exact.poisson_tensor is not None and energy is not None:
+        for symmetry in spec.symmetries:
+            J = momentum_map(first, symmetry)
+            yield from _about_map(first, symmetry, J)
+            yield from _noether(first, symmetry, J, first.closed(energy))
+        yield from _about_integrals(first, known)
+        for claim in spec.brackets:
+            text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
+            yield (
+                f"{text} = {claim.value.in_one_line}",
+                "bracket",
+                partial(_claimed_bracket, first, claim, known),
+            )
+    for transformation in spec.transformations:
+        yield from _about_transformation(first, transformation, known)
+
+
+# -- momentum maps --------------------------------------------------------------------------------
+
+
+def _about_map(first: Equations, symmetry: Symmetry, J: MomentumMap) -> Iterator[Stated]:
+    """The action and its momentum map."""
+    name, algebra, kind = symmetry.name, symmetry.algebra.name, "symmetry"
+    yield (
+        f"the generators of {name} act as {algebra} from the {symmetry.side}",
+        kind,
+        J.action_defects,
+    )
+    yield f"the generators of {name} preserve the bracket", kind, J.bracket_defects
+    yield f"{name} is their momentum map: {{x, {name}}} = dx/ds", kind, J.field_defects
+    sign = "" if symmetry.side == "left" else "-"
+    law = f"{{{name}_xi, {name}_eta}} = {sign}{name}_[xi, eta]"
+    if J.cocycle:
+        yield (
+            f"{law} + Sigma(xi, eta) with the constant 2-cocycle {_cocycle(first, symmetry, J)}",
+            kind,
+            lambda: [*J.constancy_defects(), *J.cocycle_defects()],
+        )
+    else:
+        yield f"{law}: {name} is a Poisson map", kind, lambda: list(J.cocycle.values())
+
+
+def _cocycle(first: Equations, symmetry: Symmetry, J: MomentumMap) -> str:
+    """The entries of a cocycle, as far as they are shown."""
+    basis, field = symmetry.algebra.basis, first.setting.field
+    texts = [
+        f"Sigma({basis[i]}, {basis[j]}) = {element_text(field, value)}"
+        for (i, j), value in J.cocycle.items()
+    ]
+    return ", ".join(texts[:SHOWN] + ["..."] * (len(texts) > SHOWN))
+
+
+def _noether(first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element) -> Iterator[Stated]:
+    """What is conserved since h is invariant: nothing is claimed of the other components."""
+    rates = J.rates(h)
+    invariant = [n for n, rate in enumerate(rates) if rate == 0]
+    if invariant:
+        names = [symmetry.components[n] for n in invariant]
+        subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
+        yield (
+            f"{subject} is conserved by Noether's theorem, since its flow keeps h",
+            "symmetry",
+            lambda: [defect for n in invariant for defect in drift(first, J.values[n])],
+        )
+
+
+# -- integrals and their symmetries ---------------------------------------------------------------
+
+
+def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Stated]:
+    """Of each claimed integral, that its Hamiltonian vector field commutes with the motion.
+
+    On phase spaces; over an algebra the reduced space has no positions to be moved.
+    """
+    if first.spec.algebra is not None:
+        return
+    for claim in first.spec.conserved:
+        if claim.where or claim.formula.in_one_line == "energy":
+            continue
+        flows = _flows(first, claim.formula, known)
+        yield (
+            f"the flow of {claim.formula.in_one_line} takes motions to motions"
+            f"{_kind_of(first, flows)}",
+            "symmetry",
+            partial(_commutators, first, flows),
+        )
+
+
+def _flows(first: Equations, formula: Formula, known: Mapping[str, Quantity]) -> list[VectorField]:
+    """The Hamiltonian vector field of each component of an integral."""
+    structure = structure_of(first)
+    parts = map(first.closed, first.setting.components(formula, known))
+    return [
+        VectorField(structure.field, structure.names, structure.hamiltonian_vector_field(part))
+        for part in parts
+    ]
+
+
+def _kind_of(first: Equations, flows: Sequence[VectorField]) -> str:
+    """Whether positions move by themselves, or only with the momenta."""
+    space = set(positions(first.setting))
+    if not space:
+        return ""
+    moved = [
+        first.setting.field.reach(part) & set(X.names)
+        for X in flows
+        for name, part in zip(X.names, X.components, strict=True)
+        if name in space
+    ]
+    if all(names <= space for names in moved):
+        return ", a transformation of positions"
+    return ", a hidden symmetry: no transformation of positions alone"
+
+
+def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element]:
+    """``[X_h, X_F]`` with the emitted rates as X_h."""
+    setting = first.setting
+    rates = tuple(map(first.closed, first.exact.rates))
+    motion = VectorField(setting.field, setting.state, rates)
+    return [part for X in flows for part in lie_derivative(motion, X).components]
+
+
+# -- brackets and transformations -----------------------------------------------------------------
+
+
+def _claimed_bracket(
+    first: Equations, claim: ClaimedBracket, known: Mapping[str, Quantity]
+) -> list[Element]:
+    """``{left_i, right_j} - value_ij``."""
+    structure = structure_of(first)
+
+    def parts(formula: Formula) -> list[Element]:
+        return [first.closed(part) for part in first.setting.components(formula, known)]
+
+    brackets = [structure.bracket(a, b) for a in parts(claim.left) for b in parts(claim.right)]
+    return [a - b for a, b in zip(brackets, parts(claim.value), strict=True)]
+
+
+def _about_transformation(
+    first: Equations, transformation: Transformation, known: Mapping[str, Quantity]
+) -> Iterator[Stated]:
+    """That a map keeps the motion, and what it does to observables."""
+    name = transformation.name
+    goal = "its reverse" if transformation.reverses_time else "itself"
+    yield (
+        f"{name} takes the motion to {goal}",
+        "transformation",
+        lambda: _motion_defects(first, transformation),
+    )
+    for observable, formula in transformation.exchanges.items():
+        yield (
+            f"{name} takes {observable} to {formula.in_one_line}",
+            "transformation",
+            partial(_exchange_defects, first, transformation, observable, formula, known),
+        )
+
+
+def _map(first: Equations, transformation: Transformation) -> dict[str, Element]:
+    """What each component of the state becomes."""
+    setting = first.setting
+    found = {name: setting.field[name] for name in setting.state}
+    return found | moved_components(setting, transformation.map)
+
+
+def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:
+    """``D phi . X -+ X o phi``."""
+    field, phi = first.setting.field, _map(first, transformation)
+    rates = tuple(map(first.closed, first.exact.rates))
+    motion = VectorField(field, first.setting.state, rates)
+    sign = -1 if transformation.reverses_time else 1
+    return [
+        motion.derivative(phi[name]) - sign * field.substitute(rate, phi)
+        for name, rate in zip(first.setting.state, rates, strict=True)
+    ]
+
+
+def _exchange_defects(
+    first: Equations,
+    transformation: Transformation,
+    observable: str,
+    formula: Formula,
+    known: Mapping[str, Quantity],
+) -> list[Element]:
+    """``F o phi`` minus what it should be."""
+    field, phi = first.setting.field, _map(first, transformation)
+    moved = [field.substitute(first.closed(part), phi) for part in entries(known[observable])]
+    expected = [first.closed(part) for part in first.setting.components(formula, known)]
+    return [a - b for a, b in zip(moved, expected, strict=True)]
