@@ -8,7 +8,7 @@ commutators of the shipped systems are written out there and nowhere else. Where
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 from typing import Any
 
 from tests.sources.bodies import (
@@ -53,6 +53,16 @@ from tests.sources.motions import (
     sp2_momentum_rates,
     sp2_tensor,
 )
+from tests.sources.phase_spaces import (
+    ellipsoid_observables,
+    ellipsoid_rates,
+    oscillator_observables,
+    oscillator_rates,
+    paired,
+    spd_observables,
+    spd_rates,
+    spd_tensor,
+)
 
 
 def numbered(name: str, count: int) -> tuple[str, ...]:
@@ -65,6 +75,20 @@ def upper(name: str, size: int) -> tuple[str, ...]:
     return tuple(f"{name}{i}{j}" for i, j in combinations(range(1, size + 1), 2))
 
 
+def kept(name: str, size: int) -> tuple[str, ...]:
+    """``S11, S12, ..., S22, ...``: the entries on and above the diagonal, row by row."""
+    places = combinations_with_replacement(range(1, size + 1), 2)
+    return tuple(f"{name}{i}{j}" for i, j in places)
+
+
+def square(name: str, size: int) -> tuple[str, ...]:
+    """``A11, A12, ...``: all entries, row by row."""
+    places = range(1, size + 1)
+    return tuple(f"{name}{i}{j}" for i in places for j in places)
+
+
+#: Positive symmetric matrices, by their size.
+SPD = {"spd_motion": 2, "spd_motion_3": 3}
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 RATES = {
     "rigid_body": rigid_body_rates,
@@ -80,6 +104,9 @@ RATES = {
     "nambu_pendulum": rigid_body_rates,
     "affine_line": affine_line_rates,
     "sp2_momentum": sp2_momentum_rates,
+    "ellipsoidal_motion": ellipsoid_rates,
+    "c3_oscillators": oscillator_rates,
+    **{name: spd_rates(n) for name, n in SPD.items()},
     **dict.fromkeys(BODIES, so_n_rates),
 }
 OBSERVABLES = {
@@ -96,6 +123,9 @@ OBSERVABLES = {
     "nambu_pendulum": nambu_pendulum_observables,
     "affine_line": affine_line_observables,
     "sp2_momentum": sp2_momentum_observables,
+    "ellipsoidal_motion": ellipsoid_observables,
+    "c3_oscillators": oscillator_observables,
+    **{name: spd_observables(n) for name, n in SPD.items()},
     **dict.fromkeys(BODIES, so_n_observables),
 }
 #: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
@@ -113,6 +143,10 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "nambu_pendulum": nambu_pendulum_tensor,
     "affine_line": lambda x, p: [[0, -x[1]], [x[1], 0]],
     "sp2_momentum": lambda x, p: sp2_tensor(x),
+    "ellipsoidal_motion": lambda x, p: paired([1] * 9),
+    "c3_oscillators": lambda x, p: paired([1] * 3),
+    "spd_motion": lambda x, p: spd_tensor(2),
+    "spd_motion_3": lambda x, p: spd_tensor(3),
     **dict.fromkeys(BODIES, lambda x, p: minus_bracket(so_n_ad_star(len(p)), x)),
 }
 GALILEI = (*numbered("J", 3), *numbered("K", 3), *numbered("P", 3), "E")
@@ -130,6 +164,12 @@ STATES = {
     "nambu_pendulum": ("x1", "x2", "x3"),
     "affine_line": ("mu1", "mu2"),
     "sp2_momentum": ("X1", "X2", "X3"),
+    "ellipsoidal_motion": (*square("Q", 3), *square("P", 3)),
+    "c3_oscillators": (*numbered("q", 3), *numbered("p", 3)),
+    **{
+        name: (*kept("S", n), *kept("P", n), *numbered("q", n), *numbered("p", n))
+        for name, n in SPD.items()
+    },
     **{name: upper("M", n) for name, n in BODIES.items()},
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
@@ -147,5 +187,8 @@ PARAMETERS = {
     "nambu_pendulum": numbered("I", 3),
     "affine_line": (),
     "sp2_momentum": ("m", "k", "b"),
+    "ellipsoidal_motion": ("k", "b"),
+    "c3_oscillators": (*numbered("w", 3), "c", "k"),
+    **dict.fromkeys(SPD, ()),
     **{name: numbered("a", n) for name, n in BODIES.items()},
 }

@@ -41,6 +41,9 @@ def body(size):
 TWO, ONE = ("euler-poincare", "lie-poisson"), ("lie-poisson",)
 GALILEI = "J1 J2 J3 K1 K2 K3 P1 P2 P3 E"
 INERTIA = "I1 I2 I3 A1 A2 A3 B1 B2 B3 c"
+SYMMETRIC_S, SYMMETRIC_P = "S11 S12 S13 S22 S23 S33", "P11 P12 P13 P22 P23 P33"
+ROWS_Q = "Q11 Q12 Q13 Q21 Q22 Q23 Q31 Q32 Q33"
+ROWS_P = ROWS_Q.replace("Q", "P")
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
@@ -54,6 +57,10 @@ SHIPPED = {
     "nambu_body": ("x1 x2 x3", "I1 I2 I3", ("nambu", "poisson")),
     "nambu_pendulum": ("x1 x2 x3", "I1 I2 I3", ("nambu", "poisson")),
     "sp2_momentum": ("X1 X2 X3", "m k b", ("poisson",)),
+    "spd_motion": ("S11 S12 S22 P11 P12 P22 q1 q2 p1 p2", "", ("poisson",)),
+    "spd_motion_3": (f"{SYMMETRIC_S} {SYMMETRIC_P} q1 q2 q3 p1 p2 p3", "", ("poisson",)),
+    "ellipsoidal_motion": (f"{ROWS_Q} {ROWS_P}", "k b", ("poisson",)),
+    "c3_oscillators": ("q1 q2 q3 p1 p2 p3", "w1 w2 w3 c k", ("poisson",)),
     **{f"so{size}_body": body(size) for size in (5, 6, 8)},
 }
 
