@@ -78,6 +78,12 @@ BY_HAND = {
     "so5_body": 10 + 10 * (6 + 5),  # Omega_ij; n - 2 products from each side of a commutator
     "so6_body": 15 + 15 * (8 + 7),
     "so8_body": 28 + 28 * (12 + 11),
+    "c3_oscillators": 9 + 2 * (9 + 3 * 3) + 10 + 2 * 10,  # q x p; L x q, L x p; w and c; sums
+    # det Q and its square; for each entry a cofactor, b, the quotient, k Q and their difference
+    "ellipsoidal_motion": 14 + 1 + 9 * (3 + 4),
+    # S P S and P S P entry by entry, n^2 products of three; p p^T/2 and sums; S p
+    "spd_motion": 2 * 3 * (4 * 2 + 3) + 3 * 4 + 6,
+    "spd_motion_3": 2 * 6 * (9 * 2 + 8) + 6 * 4 + 15,
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
 }
 

@@ -126,11 +126,11 @@ def ellipsoid_parts(state: Vector) -> tuple[Matrix, Matrix]:
 
 
 def ellipsoid_rates(state: Vector, parameters: Vector) -> list[Any]:
-    """``dQ/dt = P``, ``dP/dt = -(2 V_1 Q + V_2 det(Q) Q^-T)`` for ``V = k s/2 + b/d^2``."""
+    """``dQ/dt = P``, ``dP/dt = -(2 V_1 Q + V_2 det(Q) Q^-T)`` for ``V = k s/2 + b/d``."""
     (Q, P), (k, b) = ellipsoid_parts(state), parameters
     cofactor = cofactors(Q)
     d = sum(x * y for x, y in zip(Q[0], cofactor[0], strict=True))
-    slope = -2 * b / d**3
+    slope = -b / d**2
     return [*flat(P), *plus(times(-k, flat(Q)), times(-slope, flat(cofactor)))]
 
 
@@ -145,7 +145,7 @@ def ellipsoid_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
         right = plus(right, cross(p, q))
     squares = sum(x**2 for x in flat(P)), sum(x**2 for x in flat(Q))
     return {
-        "energy": squares[0] / 2 + k * squares[1] / 2 + b / d**2,
+        "energy": squares[0] / 2 + k * squares[1] / 2 + b / d,
         **{f"J_L{n + 1}": x for n, x in enumerate(left)},
         **{f"J_R{n + 1}": x for n, x in enumerate(right)},
     }
