@@ -26,7 +26,9 @@ def source(text):
 def scalars():
     """A scalar, a vector and a matrix of parameters."""
     shapes = {"a": (), "I": (3,), "A": (2, 2), "w1": (2,)}
-    return Scalars([Parameter(name, shape, name == "I") for name, shape in shapes.items()])
+    plain = [Parameter(name, shape, name == "I") for name, shape in shapes.items()]
+    forms = {"N": "antisymmetric", "S": "symmetric"}
+    return Scalars([*plain, *(Parameter(name, (3,), form=form) for name, form in forms.items())])
 
 
 def combination(text, known=None):
@@ -65,6 +67,9 @@ def test_numbers_stay_fractions():
         ("I2*e1", "I2"),
         ("A[1, 2]*e1 - A21*e1", "A12 - A21"),
         ("w1[2]*e1", "w1_2"),
+        ("N[1, 2]*e1 + N13*e1", "N12 + N13"),
+        ("N[3, 2]*e1 + N[2, 2]*e1", "-N23"),
+        ("S[2, 1]*e1 + S[2, 2]*e1", "S12 + S22"),
         ("-(e1 + 0*e2)*(a - 1)", "1 - a"),
     ],
 )
@@ -92,6 +97,8 @@ def test_what_cancels_is_not_there():
         ("e1^1*a", "no linear combination"),
         ("b*e1", "'b' is not declared"),
         ("I[4]*e1", "1 to 3"),
+        ("N[2]*e1", "no linear combination"),
+        ("N21*e1", "'N21' is not declared"),
         ("a[1]*e1", "without a subscript"),
     ],
 )

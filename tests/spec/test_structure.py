@@ -3,7 +3,9 @@
 from fractions import Fraction
 
 import pytest
+import sympy
 
+from coadjoint.derive import derive
 from tests.spec.texts import BY_BRACKETS, refused
 from tests.specs import RIGID_BODY, spec
 
@@ -77,6 +79,60 @@ def test_default_that_is_not_positive_is_refused():
     """A positive parameter has a positive default."""
     error = refused(("[1, 2, 3]", "[1, -2.5, 3]"), text=RIGID_BODY)
     assert error.found == "-5/2"
+
+
+def test_parameter_may_be_a_matrix_of_a_form():
+    """Its components are the entries that it keeps; in formulas it is the whole matrix."""
+    text = RIGID_BODY.replace(
+        "[lagrangian]",
+        'N = { shape = [3], form = "antisymmetric", default = [1, 2, 3] }\n'
+        'S = { shape = [6], form = "symmetric", positive = true, default = 1 }\n'
+        'J = { form = "antisymmetric", default = -1 }\n'
+        '[observables]\nx = "dot(Pi, N*S*Pi) + N[3, 1] + S[3, 2] + N12 + S33 + J[2, 1]"\n'
+        "[lagrangian]",
+    )
+    declared = spec(text)
+    _, N, S, J = declared.parameters
+    assert (N.shape, N.value_shape, N.components) == ((3,), (3, 3), ("N12", "N13", "N23"))
+    assert S.components == ("S11", "S12", "S13", "S22", "S23", "S33")
+    assert (J.components, J.default) == (("J12",), (-1,))
+    value = derive(declared).observables["x"]
+    n, s, p = (
+        sympy.symbols(names) for names in ("N12 N13 N23", "S11 S12 S13 S22 S23 S33", "Pi1 Pi2 Pi3")
+    )
+    antisymmetric = sympy.Matrix([[0, n[0], n[1]], [-n[0], 0, n[2]], [-n[1], -n[2], 0]])
+    symmetric = sympy.Matrix([s[:3], [s[1], *s[3:5]], [s[2], s[4], s[5]]])
+    Pi = sympy.Matrix(p)
+    by_hand = (Pi.T * antisymmetric * symmetric * Pi)[0] - n[1] + s[4] + n[0] + s[5]
+    assert sympy.expand(value - by_hand + sympy.Symbol("J12")) == 0
+
+
+@pytest.mark.parametrize(
+    ("declared", "key", "found", "said"),
+    [
+        ('shape = [4], form = "antisymmetric"', "parameters.A.form", 4, "n(n - 1)/2"),
+        ('shape = [3, 3], form = "antisymmetric"', "parameters.A.form", 9, "n(n - 1)/2"),
+        ('shape = [2], form = "symmetric"', "parameters.A.form", 2, "n(n + 1)/2"),
+        ('shape = [3], form = "matrix"', "parameters.A.form", "matrix", "'antisymmetric' or"),
+        (
+            'shape = [3], form = "symmetric", default = [[1, 2], [2, 3]]',
+            "parameters.A.default",
+            "a list of 2 lists of 2",
+            "a list of 3 numbers",
+        ),
+        (
+            'shape = [3], form = "symmetric", positive = true, default = [1, 0, 1]',
+            "parameters.A.default",
+            "0",
+            "positive",
+        ),
+    ],
+)
+def test_parameter_that_fills_no_matrix_is_refused(declared, key, found, said):
+    """The kept entries are a list, as many as a matrix of the form has."""
+    error = refused(("[lagrangian]", f"A = {{ {declared} }}\n[lagrangian]"), text=RIGID_BODY)
+    assert (error.key, said in str(error)) == (key, True), str(error)
+    assert error.found == found
 
 
 # -- matrices -------------------------------------------------------------------------------------

@@ -35,6 +35,9 @@ Pi = {{ role = "momentum", unit = "kg m^2/s", doc = "body angular momentum" }}
 [parameters]
 I = {{ shape = [3], positive = true, default = [1, 2, 3], unit = "kg m^2", doc = "inertia" }}
 
+# [definitions] # short names for expressions, with arguments or without
+# "potential(z)" = "9.81*z"
+
 [lagrangian] # quadratic in the velocities
 l = "dot(Omega, diag(I)*Omega)/2"
 

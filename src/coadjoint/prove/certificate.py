@@ -114,7 +114,8 @@ class Certificate:
 def _refutation(claim: Claim) -> str:
     """A refuted claim for people."""
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
+    found = f"At {point} the difference" if point else f"By {claim.method} what is left"
     return (
-        f"refuted: {claim.statement}. At {point} the difference is {claim.defect}; expected 0. "
+        f"refuted: {claim.statement}. {found} is {claim.defect}; expected 0. "
         "Correct the claim, or the Lagrangian or Hamiltonian that contradicts it."
     )

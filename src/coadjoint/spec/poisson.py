@@ -134,6 +134,7 @@ class _Reading:
     def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
         """The places of positions and momenta with their brackets; all coordinates are in pairs."""
         weights: dict[tuple[int, int], Fraction] = {}
+        paired: list[int] = []
         for number, pair in enumerate(names):
             key: KeyPath = ("poisson", "canonical", number)
             q, p = (self._places((*key, side), name) for side, name in enumerate(pair))
@@ -148,8 +149,9 @@ class _Reading:
                     found=listed(pair),
                     expected="a position and a momentum of one shape and form",
                 )
+            paired += (*q, *p)
             weights |= zip(zip(q, p, strict=True), _weights(len(q), forms[0]), strict=True)
-        self._check_single([place for pair in weights for place in pair])
+        self._check_single(paired)
         return weights
 
     def _places(self, key: KeyPath, name: str) -> tuple[int, ...]:

@@ -26,7 +26,7 @@ class Node:
 
     start: int = field(compare=False, kw_only=True, default=0)
     end: int = field(compare=False, kw_only=True, default=0)
-    within: str = field(compare=False, kw_only=True, default="")
+    within: str = field(compare=False, kw_only=True, default="", repr=False)
 
 
 @dataclass(frozen=True)

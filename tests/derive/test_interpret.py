@@ -1,0 +1,78 @@
+"""Interpretation: trees become elements, vectors and matrices as a book would write them out."""
+
+import pytest
+
+from coadjoint.derive.interpret import entries, interpret
+from coadjoint.exact import Field
+from coadjoint.spec.definitions import expand, functions
+from coadjoint.spec.expressions import read_expression
+from coadjoint.spec.model import Definition
+
+FIELD = Field(["a1", "a2", "b1", "b2", "b3", "A11", "A12", "A21", "A22"])
+x = {name: FIELD[name] for name in FIELD.names}
+VALUES = {
+    **x,
+    "a": (x["a1"], x["a2"]),
+    "b": (x["b1"], x["b2"], x["b3"]),
+    "A": ((x["A11"], x["A12"]), (x["A21"], x["A22"])),
+}
+
+
+def value(text, definitions=()):
+    """The value of a text, with definitions put in."""
+    known = {d.name: d for d in definitions}
+    tree = expand(read_expression(text, functions(known)), known)
+    return interpret(tree, VALUES, FIELD)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (
+            "outer(a, b)",
+            (
+                (x["a1"] * x["b1"], x["a1"] * x["b2"], x["a1"] * x["b3"]),
+                (x["a2"] * x["b1"], x["a2"] * x["b2"], x["a2"] * x["b3"]),
+            ),
+        ),
+        ("outer(a, b)*b/dot(b, b) - a", (FIELD.zero, FIELD.zero)),
+        ("rows(a, 2*a)", ((x["a1"], x["a2"]), (2 * x["a1"], 2 * x["a2"]))),
+        ("rows(b)", ((x["b1"], x["b2"], x["b3"]),)),
+        ("A[2]", (x["A21"], x["A22"])),
+        ("rows(A[2], A[1])*a", (x["A21"] * x["a1"] + x["A22"] * x["a2"],
+                                x["A11"] * x["a1"] + x["A12"] * x["a2"])),
+        ("det(rows(A[1], A[2])) - det(A)", FIELD.zero),
+        ("A[1, 2] - dot(A[1], a)", x["A12"] - x["A11"] * x["a1"] - x["A12"] * x["a2"]),
+    ],
+)  # fmt: skip
+def test_matrices_are_put_together_and_taken_apart(text, expected):
+    """outer, rows and a single subscript, component by component."""
+    assert value(text) == expected
+    assert value(text) != value("A + A")
+
+
+def test_components_of_what_is_put_in_are_its_components():
+    """u[2] of u = A a is the second component of the product; p[1] of an argument, of that."""
+    u = Definition("u", (), "", read_expression("A*a"), (2,))
+    first = Definition("f", ("p",), "", read_expression("p[1]*p[2]"), None)
+    lower = x["A21"] * x["a1"] + x["A22"] * x["a2"]
+    upper = x["A11"] * x["a1"] + x["A12"] * x["a2"]
+    assert value("u[2]", [u]) == lower
+    assert value("f(A*a)", [first]) == upper * lower
+    assert value("f(u)", [first, u]) == upper * lower != lower * lower
+
+
+def test_deep_trees_do_not_exhaust_the_stack():
+    """1000 signs in a row, which definitions can pile up, have a value."""
+    tree = read_expression("a1")
+    for _ in range(999):
+        tree = expand(read_expression("-n"), {"n": Definition("n", (), "", tree, ())})
+    assert interpret(tree, VALUES, FIELD) == -x["a1"]
+
+
+def test_entries_are_read_row_by_row():
+    """Scalars, vectors and matrices as a list of components."""
+    names = ["A11", "A12", "A21", "A22"]
+    assert entries(VALUES["A"]) == tuple(x[name] for name in names)
+    assert entries(VALUES["a"]) == (x["a1"], x["a2"])
+    assert entries(x["a1"]) == (x["a1"],)
