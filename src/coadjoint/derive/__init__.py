@@ -8,7 +8,17 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from coadjoint.callable_module import make_callable
-from coadjoint.derive import euler_poincare, legendre, lie_poisson, nambu, poisson, setting
+from coadjoint.derive import (
+    complexification,
+    euler_poincare,
+    kaluza_klein,
+    legendre,
+    lie_poisson,
+    nambu,
+    newton_euler,
+    poisson,
+    setting,
+)
 from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
@@ -31,13 +41,18 @@ ROUTES: Mapping[str, Callable[[Spec | Setting], Equations]] = MappingProxyType(
     {
         "euler-poincare": euler_poincare.derive,
         "lie-poisson": lie_poisson.derive,
+        "complexification": complexification.derive,
+        "kaluza-klein": kaluza_klein.derive,
         "nambu": nambu.derive,
+        "newton-euler": newton_euler.derive,
         "poisson": poisson.derive,
     }
 )
 
 #: Names that a route needs beyond those of the spec, for its own variables.
-SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType({})
+SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType(
+    {"kaluza-klein": kaluza_klein.symbols}
+)
 
 
 def make_setting(spec: Spec) -> Setting:

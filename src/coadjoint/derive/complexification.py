@@ -1,0 +1,163 @@
+r"""The complexification route: a real Hamiltonian on g*, continued to complex momenta.
+
+Theorem (Holm 2011, appendix C.1.2): if :math:`h(x)` generates :math:`\dot x =
+\mathrm{ad}^*_{\partial h/\partial x} x` on the dual of a real Lie algebra, its analytic
+continuation to :math:`L = x + i y` generates
+
+.. math::
+    \dot L = \mathrm{ad}^*_{\partial h(L)/\partial L} L,
+
+whose real and imaginary parts are the motion of :math:`\mathrm{Re}\, h(x + i y)` on the dual of the
+algebra taken as a real one of twice the dimension. The pairing is :math:`\mathrm{Re} \langle L,
+\zeta \rangle = x \cdot \xi - y \cdot \eta` for :math:`\zeta = \xi + i \eta`, so the velocity that
+belongs to y is :math:`-\eta`; since h has real coefficients, complex conjugation changes nothing.
+Comes in: a Setting on the complexification of an algebra, with a Hamiltonian; only its values at
+y = 0 and the constants of the real algebra are used. Goes out: Equations, worked out with complex
+numbers over the field. Read next: `coadjoint.groups.complex_numbers`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
+from operator import add
+
+from coadjoint.algebra import LieAlgebra, complexification, same_constants
+from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.observables import observables
+from coadjoint.derive.refusals import refusal
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.structure import poisson_structure
+from coadjoint.exact import Element
+from coadjoint.groups.complex_numbers import Complex
+from coadjoint.groups.vectors import identity
+from coadjoint.spec import Spec
+
+ROUTE = "complexification"
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion as real and imaginary parts of complex ones.
+
+    Raises:
+        DerivationError: The algebra is no complexification, something is advected, or the
+            Hamiltonian calls functions that complex numbers here do not have.
+    """
+    setting = setting_of(given)
+    real = real_algebra(setting)
+    formula = setting.spec.hamiltonian
+    assert formula is not None, "the reader asks for a Hamiltonian on this route"
+    h = _at_real(setting, setting.formula(formula), real)
+    L = _momenta(setting, real)
+    slopes = setting.field.gradient(h, setting.momenta[: real.dimension])
+    zeta = tuple(_continued(setting, slope, L) for slope in slopes)
+    moved = tuple(_paired(L, real.bracket(zeta, eta)) for eta in identity(real.dimension))
+    parts = (*(z.re for z in moved), *(z.im for z in moved))
+    rates = setting.in_state_order([setting.sign * part for part in parts], {})
+    energy = setting.field.zero + _continued(setting, h, L).re
+    halves = (*(z.re for z in zeta), *(-z.im for z in zeta))
+    pairs = zip(setting.velocities, setting.field.vector(halves), strict=bool(setting.velocities))
+    tensor = poisson_structure(setting).tensor
+    exact = Exact(tuple(pairs), rates, energy, observables(setting, energy), tensor)
+    return Equations(setting, ROUTE, exact, _steps(setting, h, zeta, rates))
+
+
+def real_algebra(setting: Setting) -> LieAlgebra:
+    """The algebra whose complexification a spec is on: the first half of its basis.
+
+    Raises:
+        DerivationError: There is none, or the algebra acts on something advected.
+    """
+    algebra = setting.algebra
+    half = algebra.dimension // 2
+    if setting.advected:
+        name = setting.advected[0].name
+        raise refusal(
+            setting,
+            ROUTE,
+            f"{name} is advected",
+            name,
+            "momenta alone",
+            "Put the advected quantity into the algebra: a semidirect product has a "
+            "complexification, too.",
+        )
+    inner = {pair: row for pair, row in algebra.constants.items() if max(*pair, *row) < half}
+    real = LieAlgebra(f"real part of {algebra.name}", algebra.basis[:half], inner)
+    if not same_constants(complexification(real), algebra):
+        raise refusal(
+            setting,
+            ROUTE,
+            f"{algebra.name} is not the complexification of the span of its first {half} vectors",
+            algebra.name,
+            "an algebra such as so(3) (x) C",
+            'Write [algebra] complexification = "so(3)".',
+        )
+    return real
+
+
+def _at_real(setting: Setting, h: Element, real: LieAlgebra) -> Element:
+    """The Hamiltonian of the real system: h at y = 0."""
+    still = dict.fromkeys(setting.momenta[real.dimension :], setting.field.zero)
+    found = setting.field.substitute(h, still)
+    if not setting.field.function_free(found):
+        raise refusal(
+            setting,
+            ROUTE,
+            "the Hamiltonian calls an elementary function",
+            str(setting.spec.hamiltonian and setting.spec.hamiltonian.text),
+            "a rational function of the momenta",
+            "Remove the route.",
+        )
+    return found
+
+
+def _momenta(setting: Setting, real: LieAlgebra) -> tuple[Complex, ...]:
+    """``L = x + i y`` along the basis of the real algebra."""
+    values = setting.elements(setting.momenta)
+    pairs = zip(values[: real.dimension], values[real.dimension :], strict=True)
+    return tuple(Complex(x, y) for x, y in pairs)
+
+
+def _continued(setting: Setting, function: Element, L: tuple[Complex, ...]) -> Complex:
+    """A function of x at the complex momenta."""
+    field = setting.field
+    values = {name: Complex(field[name], field.zero) for name in field.names}
+    values |= dict(zip(setting.momenta[: len(L)], L, strict=True))
+    return field.evaluate(function, values, lambda number: Complex(field.number(number)), _no_call)
+
+
+def _no_call(function: str, argument: Complex) -> Complex:
+    raise AssertionError(f"{function}({argument}) in a rational Hamiltonian")
+
+
+def _paired(L: Sequence[Complex], zeta: Sequence[Complex | int]) -> Complex:
+    """``<L, zeta>``, linear over the complex numbers."""
+    return reduce(add, (a * b for a, b in zip(L, zeta, strict=True)), Complex(0))
+
+
+def _steps(
+    setting: Setting, h: Element, zeta: Sequence[Complex], rates: tuple[Element, ...]
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    turn = "" if setting.sign == 1 else "-"
+    names = setting.momenta[: len(zeta)]
+    slopes = [
+        (partial(f"{part} h", name), setting.field.zero + getattr(z, attribute))
+        for part, attribute in (("Re", "re"), ("Im", "im"))
+        for name, z in zip(names, zeta, strict=True)
+    ]
+    return (
+        Step("Hamiltonian of the real system", "h(x)", "h(x)", ((symbol("h"), h),)),
+        Step(
+            "Velocity at complex momenta L = x + i y",
+            "zeta = dh/dx at x + i y",
+            r"\zeta = (\partial h / \partial x)(x + i y)",
+            tuple(slopes),
+        ),
+        Step(
+            "Real and imaginary parts",
+            f"dx/dt + i dy/dt = {turn}ad*_zeta (x + i y)",
+            rf"\dot x + i \dot y = {turn}\mathrm{{ad}}^*_\zeta (x + i y)",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+    )
