@@ -10,87 +10,34 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import combinations, combinations_with_replacement, product
-from math import isqrt
 from pathlib import Path
-from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
+from coadjoint.spec.components import FORMS, Shape, component_names, matrix_size, unpacked
 from coadjoint.spec.tree import Node
 
-Shape = tuple[int, ...]
-
-
-#: How a matrix is kept as a list: the entries above the diagonal, those with the diagonal, or all.
-FORMS = ("antisymmetric", "symmetric", "matrix")
-
-
-def component_names(name: str, shape: Shape, form: str = "") -> tuple[str, ...]:
-    """Names of the components of a quantity, as books write them, row by row.
-
-    >>> component_names("Pi", (3,))
-    ('Pi1', 'Pi2', 'Pi3')
-    >>> component_names("A", (2, 2))
-    ('A11', 'A12', 'A21', 'A22')
-    >>> component_names("M", (3,), "antisymmetric")
-    ('M12', 'M13', 'M23')
-    >>> component_names("Pi1", (2,))  # a digit at the end would run into the index
-    ('Pi1_1', 'Pi1_2')
-    """
-    if not shape:
-        return (name,)
-    if form:
-        shape = (matrix_size(shape[0], form) or 0,) * 2
-    indices = _places(shape[0], form) if form else product(*map(range, shape))
-    joint = "_" if len(shape) == 2 and max(shape) > 9 else ""
-    lead = name + "_" if name[-1].isdigit() or joint else name
-    return tuple(lead + joint.join(str(n + 1) for n in index) for index in indices)
-
-
-def _places(size: int, form: str) -> list[tuple[int, int]]:
-    """Rows and columns, from 0, of the entries that a form keeps."""
-    match form:
-        case "antisymmetric":
-            return list(combinations(range(size), 2))
-        case "symmetric":
-            return list(combinations_with_replacement(range(size), 2))
-    return [(i, j) for i in range(size) for j in range(size)]
-
-
-def matrix_size(count: int, form: str) -> int | None:
-    """Rows of the matrix of a form that has ``count`` entries to keep; None if there is none.
-
-    >>> matrix_size(28, "antisymmetric"), matrix_size(6, "symmetric"), matrix_size(6, "matrix")
-    (8, 3, None)
-    """
-    near = isqrt(2 * count) if form != "matrix" else isqrt(count)
-    sizes = (size for size in (near, near + 1) if len(_places(size, form)) == count > 0)
-    return next(sizes, None)
-
-
-def unpacked(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
-    """The rows of the matrix that the kept entries stand for.
-
-    Args:
-        values: The kept entries, of any kind that negates and multiplies by 0.
-        form: ``"antisymmetric"``, ``"symmetric"`` or ``"matrix"``.
-
-    >>> unpacked([3, -2, 1], "antisymmetric")
-    ((0, 3, -2), (-3, 0, 1), (2, -1, 0))
-    >>> unpacked([1, 2, 3], "symmetric")
-    ((1, 2), (2, 3))
-    """
-    size = matrix_size(len(values), form)
-    assert size is not None, (len(values), form)
-    entries = dict(zip(_places(size, form), values, strict=True))
-    zero = 0 * values[0]
-    for (i, j), value in list(entries.items()):
-        if form == "antisymmetric":
-            entries[j, i] = -value
-        elif form == "symmetric":
-            entries[j, i] = value
-    return tuple(tuple(entries.get((i, j), zero) for j in range(size)) for i in range(size))
+__all__ = [
+    "FORMS",
+    "ClaimedBracket",
+    "Definition",
+    "Force",
+    "Formula",
+    "Integral",
+    "Lax",
+    "Observable",
+    "Parameter",
+    "Poisson",
+    "Shape",
+    "Spec",
+    "Symmetry",
+    "Transformation",
+    "Variable",
+    "component_names",
+    "matrix_size",
+    "state_of",
+    "unpacked",
+]
 
 
 @dataclass(frozen=True)
@@ -405,10 +352,12 @@ class Spec:
         sha256: Hash of the file's bytes.
         lax: The declared Lax pair, or None.
         newton: Declared forces, one for each coordinate; empty if none.
+        clebsch: How the algebra acts on a pair of its own of the route clebsch, or None.
         definitions: Short names in declared order; formulas hold them no more.
         symmetries: Declared actions; their momentum maps are emitted after the observables.
         transformations: Maps that are claimed to keep the motion.
         brackets: Claimed brackets of observables, momentum maps and state.
+        galilean: Whether Newton's law is claimed to be that of every Galilean observer.
     """
 
     name: str
@@ -431,10 +380,12 @@ class Spec:
     sha256: str
     lax: Lax | None = None
     newton: tuple[Force, ...] = ()
+    clebsch: Representation | None = None
     definitions: tuple[Definition, ...] = ()
     symmetries: tuple[Symmetry, ...] = ()
     transformations: tuple[Transformation, ...] = ()
     brackets: tuple[ClaimedBracket, ...] = ()
+    galilean: bool = False
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
