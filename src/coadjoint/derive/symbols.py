@@ -1,0 +1,32 @@
+"""Symbols: free names for the variables that a route needs beyond those of a spec.
+
+Comes in: a Spec and the names that a reader would like to see. Goes out: these names, or ones near
+them where the spec has taken some. Read next: `coadjoint.derive.clebsch`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import count
+
+from coadjoint.spec import Spec
+
+
+def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
+    """The names, or all of them with one ending if the spec has one of them already.
+
+    >>> from coadjoint.spec import read_spec
+    >>> from coadjoint.resources import derivations_folder
+    >>> spec = read_spec(derivations_folder() / "rigid_body.toml")
+    >>> fresh(spec, ["Q1", "Q2"]), fresh(spec, ["I0", "I1"])
+    (('Q1', 'Q2'), ('I0_0', 'I1_0'))
+    """
+    taken = {name for each in (*spec.variables, *spec.parameters) for name in each.components}
+    taken |= {each.name for each in (*spec.variables, *spec.parameters)}
+    if not taken & set(names):
+        return tuple(names)
+    for n in count():
+        found = [f"{name}_{n}" for name in names]
+        if not taken & set(found):
+            return tuple(found)
+    raise AssertionError("some number is free")
