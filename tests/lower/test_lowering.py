@@ -127,17 +127,20 @@ def test_parameter_statements_read_parameters_alone(system):
 
 
 def test_jacobian_equals_divided_differences_exactly(system):
-    """For rates quadratic in the state, central differences are exact: another road."""
+    """For rates quadratic in each component, central differences are exact: another road."""
     programs = lower(derive(shipped(system)))
     rhs, jacobian = programs["rhs"], programs["jacobian"]
     (point,) = rational_points((*rhs.state, *rhs.parameters), 1, seed=5)
     found = run(jacobian, point, Fraction, None)
-    n, h = len(rhs.state), Fraction(1, 7)
+    n, h, slack = len(rhs.state), Fraction(1, 7), Fraction(0)
+    if system in textbook.QUOTIENTS:
+        h, slack = Fraction(1, 10**20), Fraction(1, 10**30)  # the error is of the order of h^2
     for j, name in enumerate(rhs.state):
         up = run(rhs, {**point, name: point[name] + h}, Fraction, None)
         down = run(rhs, {**point, name: point[name] - h}, Fraction, None)
         slopes = [(a - b) / (2 * h) for a, b in zip(up, down, strict=True)]
-        assert [found[i * n + j] for i in range(n)] == slopes
+        for i, slope in enumerate(slopes):
+            assert abs(found[i * n + j] - slope) <= slack * abs(slope)
 
 
 def test_programs_give_the_book_formulas(system):

@@ -89,6 +89,8 @@ def square(name: str, size: int) -> tuple[str, ...]:
 
 #: Positive symmetric matrices, by their size.
 SPD = {"spd_motion": 2, "spd_motion_3": 3}
+#: Systems whose rates are quotients, which no central difference meets exactly.
+QUOTIENTS = ("ellipsoidal_motion",)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 RATES = {
     "rigid_body": rigid_body_rates,

@@ -110,7 +110,17 @@ def _elements(setting: Setting, symmetry: Symmetry) -> list[Quantity]:
 
 def _taken(setting: Setting, formula: Formula, symmetry: Symmetry, element: Quantity) -> Element:
     """A scalar formula at one element."""
-    return setting.formula(formula, {symmetry.element: element})
+    return setting.formula(formula, _named(symmetry, element))
+
+
+def _named(symmetry: Symmetry, element: Quantity) -> dict[str, Quantity]:
+    """An element, and its parts along the blocks of the algebra, by the names in formulas."""
+    named = {symmetry.element: element}
+    if not symmetry.as_matrix and isinstance(element, tuple):
+        for block, places in symmetry.algebra.blocks.items():
+            part = tuple(element[place] for place in places)
+            named[f"{symmetry.element}_{block}"] = part if len(part) > 1 else part[0]
+    return named
 
 
 def _moves(setting: Setting, symmetry: Symmetry, element: Quantity) -> Moves:
@@ -123,7 +133,7 @@ def _moves(setting: Setting, symmetry: Symmetry, element: Quantity) -> Moves:
             name: setting.field.sum(a * x for a, x in zip(row, symbols, strict=True) if a)
             for name, row in zip(names, element, strict=True)
         }
-    return moved_components(setting, symmetry.generators, {symmetry.element: element})
+    return moved_components(setting, symmetry.generators, _named(symmetry, element))
 
 
 def moved_components(

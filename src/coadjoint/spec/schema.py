@@ -152,6 +152,12 @@ class NewtonPart(Part):
     force: str = Field(description="the force, of the shape of the coordinate")
 
 
+class ClebschPart(Part):
+    """A canonical pair of the route clebsch, beside those of the advected quantities."""
+
+    representation: str = Field(description="how the algebra acts on it, such as 'adjoint'")
+
+
 class ObservablePart(Part):
     """A scalar, vector or matrix emitted beside the dynamics."""
 
@@ -172,7 +178,9 @@ class SymmetryPart(Part):
 
     algebra: OperandPart = Field(description="the algebra that acts: its name, or a table")
     vector: str | None = Field(
-        None, description="name of an element of the algebra, as its coefficients along the basis"
+        None,
+        description="name of an element of the algebra, as its coefficients along the basis; with "
+        "_ and the name of a block, those along the block, as xi_rotation",
     )
     matrix: str | None = Field(
         None, description="name of an element of the algebra, as a matrix of the algebra"
@@ -251,6 +259,9 @@ class ClaimsPart(Part):
         description="brackets such as '{L, A}' = '-hat(A)', of two expressions that are scalars or "
         "vectors",
     )
+    galilean: bool = Field(
+        False, description="whether every Galilean transformation takes Newton's law to itself"
+    )
 
 
 RouteName = Literal[
@@ -276,7 +287,7 @@ RouteName = Literal[
 
 
 def _no_claims() -> ClaimsPart:
-    return ClaimsPart(casimirs=[], conserved=[], brackets={})
+    return ClaimsPart(casimirs=[], conserved=[], brackets={}, galilean=False)
 
 
 class SpecFile(Part):
@@ -313,6 +324,9 @@ class SpecFile(Part):
     )
     lagrangian: LagrangianPart | None = Field(None, description="the reduced Lagrangian")
     hamiltonian: HamiltonianPart | None = Field(None, description="the reduced Hamiltonian")
+    clebsch: ClebschPart | None = Field(
+        None, description="a canonical pair of its own for the route clebsch"
+    )
     lax: LaxPart | None = Field(None, description="a Lax pair of the motion")
     newton: Annotated[dict[str, NewtonPart], Field(min_length=1)] | None = Field(
         None, description="Newton's law, by the names of coordinates", json_schema_extra=named()

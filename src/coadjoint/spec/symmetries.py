@@ -109,11 +109,11 @@ class SymmetryReader:
         if part.linear is not None:
             self._check_linear(key, part.linear, algebra)
         generators = {
-            variable: self._moves(key, variable, text, shapes, element)
+            variable: self._moves(key, variable, text, shapes)
             for variable, text in (part.generators or {}).items()
         }
         scalar = {
-            table: self._scalar((*key, table), getattr(part, table), shapes, element)
+            table: self._scalar((*key, table), getattr(part, table), shapes)
             for table in ("time", "map")
             if getattr(part, table) is not None
         }
@@ -133,11 +133,12 @@ class SymmetryReader:
         )
 
     def _element(self, part: SymmetryPart, key: KeyPath, algebra: LieAlgebra) -> dict[str, Shape]:
-        """The name of the generic element with its shape."""
+        """The name of the generic element and those of its blocks, with their shapes."""
         way = "vector" if part.vector is not None else "matrix"
         name = getattr(part, way)
         taken = {x for q in self.quantities for x in (q.name, *getattr(q, "components", ()))}
-        if not NAME.fullmatch(name) or name in taken or name in self.named:
+        names = {name, *(f"{name}_{block}" for block in algebra.blocks)}
+        if not NAME.fullmatch(name) or names & (taken | self.named.keys()):
             raise self.source.fault(
                 (*key, way),
                 f"{name!a} cannot name an element of {algebra.name}",
@@ -145,7 +146,9 @@ class SymmetryReader:
                 expected="a name that nothing else has, such as 'xi'",
             )
         if way == "vector":
-            return {name: (algebra.dimension,) if algebra.dimension > 1 else ()}
+            parts = {f"{name}_{block}": len(run) for block, run in algebra.blocks.items()}
+            counts = {name: algebra.dimension, **parts}
+            return {each: (count,) if count > 1 else () for each, count in counts.items()}
         self._check_matrices((*key, way), algebra)
         return {name: (size(algebra.matrices),) * 2}
 
@@ -186,13 +189,11 @@ class SymmetryReader:
             )
         return self.state[name]
 
-    def _moves(
-        self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape], element: str
-    ) -> Formula:
+    def _moves(self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape]) -> Formula:
         """How a variable moves under the element."""
         key = (*key, "generators", name)
         formula = self._fitting(key, name, text, "a generator", shapes)
-        return self._linear(key, formula, element)
+        return self._linear(key, formula, shapes)
 
     def _fitting(
         self, key: KeyPath, name: str, text: str, kind: str, others: Mapping[str, Shape]
@@ -209,16 +210,15 @@ class SymmetryReader:
         found = words(formula.shape)
         return self.source.fault(key, f"the value is {found}", found=found, expected=expected)
 
-    def _scalar(
-        self, key: KeyPath, text: str, shapes: Mapping[str, Shape], element: str
-    ) -> Formula:
+    def _scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
         scope = make_scope(f"a {key[-1]} of a symmetry", self.roles, self.quantities, shapes)
-        return self._linear(key, read_formula(self.source, key, text, scope), element)
+        return self._linear(key, read_formula(self.source, key, text, scope), shapes)
 
-    def _linear(self, key: KeyPath, formula: Formula, element: str) -> Formula:
+    def _linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
         """The formula, if it is linear in the element."""
+        element, *_ = names
         try:
-            degree = degree_in(formula.tree, element)
+            degree = degree_in(formula.tree, tuple(names))
             if degree != 1:
                 raise ExpressionError(
                     f"the value is of degree {degree} in {element!r}",
@@ -338,28 +338,28 @@ class SymmetryReader:
         return formula
 
 
-def degree_in(tree: Node, name: str) -> int:
-    """The degree of an expression in a name, if all its terms have the same.
+def degree_in(tree: Node, names: Sequence[str]) -> int:
+    """The degree of an expression in some names, if all its terms have the same.
 
     Raises:
-        ExpressionError: They do not, or the name stands in a divisor or a function.
+        ExpressionError: They do not, or a name stands in a divisor or a function.
 
     >>> from coadjoint.spec.expressions import read_expression
-    >>> degree_in(read_expression("cross(xi, r) + 2*xi"), "xi")
+    >>> degree_in(read_expression("cross(xi, r) + 2*xi"), ["xi"])
     1
     """
     degrees: dict[int, int] = {}
     for node in walk_up(tree):
         below = [degrees[id(child)] for child in children(node)]
-        degrees[id(node)] = _degree(node, below, name)
+        degrees[id(node)] = _degree(node, below, names)
     return degrees[id(tree)]
 
 
-def _degree(node: Node, below: Sequence[int], name: str) -> int:
+def _degree(node: Node, below: Sequence[int], names: Sequence[str]) -> int:
     """The degree of a node by the degrees of its parts."""
     match node:
         case Name(name=found) | Index(name=found):
-            return int(found == name)
+            return int(found in names)
         case Binary(operator="*"):
             return sum(below)
         case Call(function=function) if function in _MULTILINEAR:
@@ -374,8 +374,8 @@ def _degree(node: Node, below: Sequence[int], name: str) -> int:
     if any(below) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
         raise fault_at(
             node,
-            f"this is not linear in {name!r}",
-            found=name,
-            expected=f"sums of terms that are linear in {name}",
+            f"this is not linear in {names[0]!r}",
+            found=names[0],
+            expected=f"sums of terms that are linear in {names[0]}",
         )
     return below[0] if below else 0
