@@ -26,6 +26,7 @@ from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.reference import Reference
+from coadjoint.exact import Element
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
@@ -34,7 +35,7 @@ from coadjoint.render.kernels import KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Parameter, Spec, Variable
 from coadjoint.spec.model import Shape, component_names
-from coadjoint.spec.units import parse_unit, unit_of, unit_text
+from coadjoint.spec.units import Unit, parse_unit, product_of, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
@@ -117,7 +118,7 @@ def kernel_context(equations: Equations, programs: dict[str, Program]) -> Kernel
         equations=equation_lines(equations),
         state=tuple(map(_quantity, spec.state)),
         parameters=tuple(map(_quantity, spec.parameters)),
-        observables=_observables(spec),
+        observables=_observables(equations),
         programs=tuple(programs.values()),
     )
 
@@ -147,8 +148,9 @@ def _quantity(declared: Variable | Parameter) -> Quantity:
     )
 
 
-def _observables(spec: Spec) -> tuple[Quantity, ...]:
+def _observables(equations: Equations) -> tuple[Quantity, ...]:
     """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
+    spec, found = equations.spec, equations.setting.integrals
     stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
     energy = _emitted("energy", _unit(spec, spec.hamiltonian or spec.lagrangian), conserved=True)
     casimirs = [
@@ -163,7 +165,22 @@ def _observables(spec: Spec) -> tuple[Quantity, ...]:
         Quantity(each.name, each.shape, each.unit, each.components, conserved=each.name in stated)
         for each in spec.symmetries
     ]
-    return (energy, *casimirs, *map(_quantity, spec.defined), *declared, *maps)
+    of_pair = [
+        _emitted(name, _unit_of_value(equations, value), conserved=True)
+        for name, value in (found.named if found is not None else ())
+    ]
+    of_space = [
+        Quantity(
+            each.name,
+            each.momentum.shape,
+            each.momentum.unit,
+            each.components,
+            conserved=each.conserved,
+        )
+        for each in spec.spatial
+    ]
+    velocities = map(_quantity, spec.defined)
+    return (energy, *casimirs, *velocities, *declared, *maps, *of_pair, *of_space)
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:
@@ -173,13 +190,27 @@ def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Qua
 def _unit(spec: Spec, formula: Formula | None) -> str:
     """The unit of a formula, as far as the declared units tell."""
     assert formula is not None, "the reader asks for a Lagrangian or a Hamiltonian"
+    return unit_text(unit_of(formula.tree, _units(spec)))
+
+
+def _unit_of_value(equations: Equations, element: Element) -> str:
+    """The unit of an element, as its first addend tells it."""
+    field, units = equations.setting.field, _units(equations.spec)
+    written = field.quotients(field.terms(element)[0])[0]
+    factors = [power for monomial in written.monomials for power in monomial.powers]
+    if written.divisors or not all(name in units for name, _ in factors):
+        return ""
+    return unit_text(product_of(units, factors))
+
+
+def _units(spec: Spec) -> dict[str, Unit | None]:
+    """The unit of every declared name."""
     quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
-    units = {
+    return {
         name: parse_unit(quantity.unit)
         for quantity in quantities
         for name in (quantity.name, *quantity.components)
     }
-    return unit_text(unit_of(formula.tree, units))
 
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:

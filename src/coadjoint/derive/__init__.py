@@ -9,14 +9,26 @@ from types import MappingProxyType
 
 from coadjoint.callable_module import make_callable
 from coadjoint.derive import (
+    alignment,
+    canonical,
+    cayley_klein,
+    clebsch,
     complexification,
+    euler_lagrange,
     euler_poincare,
+    hamilton_pontryagin,
     kaluza_klein,
+    lax,
     legendre,
     lie_poisson,
+    manakov,
+    matrix_euler_poincare,
     nambu,
+    newton,
     newton_euler,
+    poincare,
     poisson,
+    reductions,
     setting,
 )
 from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
@@ -41,17 +53,37 @@ ROUTES: Mapping[str, Callable[[Spec | Setting], Equations]] = MappingProxyType(
     {
         "euler-poincare": euler_poincare.derive,
         "lie-poisson": lie_poisson.derive,
+        "hamilton-pontryagin": hamilton_pontryagin.derive,
+        "cayley-klein": cayley_klein.derive,
+        "clebsch": clebsch.derive,
         "complexification": complexification.derive,
         "kaluza-klein": kaluza_klein.derive,
+        "lax": lax.derive,
+        "manakov": lax.derive_found,
+        "matrix-euler-poincare": matrix_euler_poincare.derive,
         "nambu": nambu.derive,
+        "poincare": poincare.derive,
         "newton-euler": newton_euler.derive,
         "poisson": poisson.derive,
+        "euler-lagrange": euler_lagrange.derive,
+        "canonical": canonical.derive,
+        "newton": newton.derive,
+        "alignment": alignment.derive,
     }
 )
 
 #: Names that a route needs beyond those of the spec, for its own variables.
 SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType(
-    {"kaluza-klein": kaluza_klein.symbols}
+    {
+        "alignment": alignment.symbols,
+        "canonical": canonical.symbols,
+        "cayley-klein": cayley_klein.symbols,
+        "clebsch": clebsch.symbols,
+        "hamilton-pontryagin": hamilton_pontryagin.symbols,
+        "kaluza-klein": kaluza_klein.symbols,
+        "lax": lax.symbols,
+        "manakov": manakov.symbols,
+    }
 )
 
 
@@ -79,7 +111,10 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
             f"{', '.join(spec.routes)}. Add it to routes to have it proved too.",
             found=chosen,
         )
-    return ROUTES[chosen](setting or make_setting(spec))
+    given = setting or make_setting(spec)
+    if spec.reduction is not None:
+        return reductions.restricted(given, ROUTES[chosen])
+    return ROUTES[chosen](given)
 
 
 make_callable(__name__, "derive")

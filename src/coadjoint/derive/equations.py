@@ -14,7 +14,9 @@ from functools import cached_property
 import sympy
 from sympy.printing.mathml import mathml
 
+from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.setting import Setting
+from coadjoint.derive.solver import Solve, is_intermediate
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -88,11 +90,13 @@ class Exact:
 
     Attributes:
         definitions: Velocities by name, each in terms of the state; rates and observables may use
-            these names. In the order in which they can be computed.
+            these names. In the order in which they can be computed. Names with a leading underscore
+            are intermediates of a solve in the kernel (`coadjoint.derive.solver`).
         rates: Time derivative of each state component.
         energy: The Hamiltonian, in terms of the state; None for forces without a potential.
         observables: Name and value of each scalar emitted beside the dynamics, energy included.
         poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
+        solves: Linear equations that definitions solve in the kernel, in that order.
     """
 
     definitions: tuple[tuple[str, Element], ...]
@@ -100,6 +104,7 @@ class Exact:
     energy: Element | None
     observables: tuple[tuple[str, Element], ...]
     poisson_tensor: tuple[tuple[Element, ...], ...] | None
+    solves: tuple[Solve, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -143,6 +148,7 @@ class Equations:
         steps: The derivation, step by step.
         chart: The route's own variables and the map to the declared state; None if that is what
             the route moves.
+        pair: The Lax pair by which the route goes, if it is one of those.
     """
 
     setting: Setting
@@ -150,6 +156,7 @@ class Equations:
     exact: Exact
     steps: tuple[Step, ...]
     chart: Chart | None = None
+    pair: LaxPair | None = None
 
     @property
     def spec(self) -> Spec:
@@ -188,7 +195,7 @@ class Equations:
 
     @cached_property
     def velocities(self) -> dict[str, sympy.Expr]:
-        """Velocities in state and parameters alone."""
+        """Velocities in state and parameters alone, or as the kernel solves for them."""
         return {name: self._sympy(value) for name, value in self.exact.definitions}
 
     @cached_property
@@ -200,15 +207,37 @@ class Equations:
         return sympy.ImmutableMatrix([[self._sympy(entry) for entry in row] for row in tensor])
 
     def closed(self, element: Element) -> Element:
-        """An element with the definitions substituted: in state and parameters alone."""
+        """An element with the definitions substituted: in state and parameters alone.
+
+        The names of `kept` stay, where the kernel solves for velocities.
+        """
         return self.setting.field.substitute(element, self._closed_definitions)
 
     @cached_property
     def _closed_definitions(self) -> dict[str, Element]:
         known: dict[str, Element] = {}
         for name, value in self.exact.definitions:
-            known[name] = self.setting.field.substitute(value, known)
+            if name not in self.kept:
+                known[name] = self.setting.field.substitute(value, known)
         return known
+
+    @cached_property
+    def kept(self) -> tuple[str, ...]:
+        """Definitions without a closed form: intermediates of a solve, and what rests on them."""
+        names: list[str] = []
+        for name, value in self.exact.definitions:
+            if is_intermediate(name) or self.setting.field.reach(value) & set(names):
+                names.append(name)
+        return tuple(names)
+
+    @cached_property
+    def moving(self) -> frozenset[str]:
+        """Names whose values depend on the member: the state, and definitions that rest on it."""
+        names = {*self.setting.state, *self.setting.velocities}
+        for name, value in self.exact.definitions:
+            if self.setting.field.reach(value) & names:
+                names.add(name)
+        return frozenset(names)
 
     def _sympy(self, element: Element) -> sympy.Expr:
         return self.setting.field.to_sympy(self.closed(element))

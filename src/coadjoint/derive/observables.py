@@ -1,13 +1,15 @@
 """What is emitted beside the dynamics, the same for every route.
 
 Comes in: a Setting and a route's energy. Goes out: components by name: the energy, the claimed
-Casimirs, the velocities, and what the spec declares.
+Casimirs, the velocities, what the spec declares, the integrals of a Lax pair, and momenta as seen
+from space where the state has the attitude.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from coadjoint.derive.reconstruction import spatial_momentum
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symmetries import momentum_maps
 from coadjoint.exact import Element
@@ -15,7 +17,7 @@ from coadjoint.spec import Formula
 from coadjoint.spec.model import component_names
 
 
-def observables(setting: Setting, energy: Element) -> tuple[tuple[str, Element], ...]:
+def observables(setting: Setting, energy: Element | None) -> tuple[tuple[str, Element], ...]:
     """Name and value of each component, in the order in which kernels return them."""
     spec = setting.spec
     casimirs = [
@@ -37,7 +39,20 @@ def observables(setting: Setting, energy: Element) -> tuple[tuple[str, Element],
         for symmetry in spec.symmetries
         for part in zip(symmetry.components, values[symmetry.name], strict=True)
     ]
-    return (("energy", energy), *casimirs, *velocities, *declared, *maps)
+    of_pair = setting.integrals.named if setting.integrals is not None else ()
+    first = () if energy is None else (("energy", energy),)
+    of_space = _spatial(setting) if spec.spatial else ()
+    return (*first, *casimirs, *velocities, *declared, *maps, *of_pair, *of_space)
+
+
+def _spatial(setting: Setting) -> list[tuple[str, Element]]:
+    """The components of the momenta as seen from space."""
+    seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
+    return [
+        (name, seen[inner])
+        for each in setting.spec.spatial
+        for name, inner in zip(each.components, each.momentum.components, strict=True)
+    ]
 
 
 def _named(

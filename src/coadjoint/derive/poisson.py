@@ -14,7 +14,7 @@ from itertools import combinations
 from coadjoint.derive.equations import Equations, Exact, Step, bracket, partial, rate, symbol
 from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting, setting_of
-from coadjoint.derive.solver import Definition
+from coadjoint.derive.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -37,7 +37,7 @@ def derive(given: Spec | Setting) -> Equations:
 
 
 def hamiltonian_equations(
-    setting: Setting, route: str, h: Element, law: Law, solved: tuple[Definition, ...] = ()
+    setting: Setting, route: str, h: Element, law: Law, solves: tuple[Solve, ...] = ()
 ) -> Equations:
     """``dx/dt = {x, h}`` by the bracket of the state.
 
@@ -48,24 +48,21 @@ def hamiltonian_equations(
         route: Name of the route.
         h: The Hamiltonian, stationary in the velocities that it names.
         law: What the step says that states the bracket.
-        solved: Definitions of these velocities.
+        solves: What the kernel solves for these velocities.
     """
     field, tensor = setting.field, poisson_structure(setting).tensor
     gradient = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
     given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
     pairs = dict(zip(setting.momenta, given, strict=bool(given)))
-    known = dict(solved)
-    definitions = (
-        *solved,
-        *((xi, gradient[momentum]) for momentum, xi in pairs.items() if xi not in known),
-    )
-    named = gradient | {momentum: field[velocity] for momentum, velocity in pairs.items()}
+    weights = dict(zip(setting.momenta, setting.weights, strict=True))
+    definitions = velocities_of(setting, h, solves)
+    named = gradient | {mu: field[xi] * (1 / weights[mu]) for mu, xi in pairs.items()}
     slopes = [named[x] for x in setting.state]
     rates = field.vector(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
         for row in tensor
     )
-    exact = Exact(definitions, rates, h, observables(setting, h), tensor)
+    exact = Exact(definitions, rates, h, observables(setting, h), tensor, solves)
     brackets = tuple(
         (bracket(a, b), tensor[i][j])
         for (i, a), (j, b) in combinations(enumerate(setting.state), 2)
@@ -77,6 +74,30 @@ def hamiltonian_equations(
         *_motion(setting, gradient, rates),
     )
     return Equations(setting, route, exact, steps)
+
+
+def velocities_of(
+    setting: Setting, h: Element, solves: tuple[Solve, ...] = ()
+) -> tuple[Definition, ...]:
+    """``xi = dh/dmu`` for the velocities that the spec names, or what the kernel solves for them.
+
+    Args:
+        setting: The spec and the field.
+        h: The Hamiltonian, stationary in the velocities that it names.
+        solves: What the kernel solves for these.
+    """
+    field = setting.field
+    given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
+    solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    known = {name for name, _ in solved}
+    return (
+        *solved,
+        *(
+            (xi, weight * field.derivative(h, mu))
+            for mu, weight, xi in zip(setting.momenta, setting.weights, given, strict=bool(given))
+            if xi not in known
+        ),
+    )
 
 
 def _motion(

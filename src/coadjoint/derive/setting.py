@@ -13,14 +13,20 @@ from fractions import Fraction
 from functools import cached_property
 from random import Random
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Formula, Spec, tree
+from coadjoint.spec.components import FORMS
 from coadjoint.spec.model import Parameter, Shape, Variable, unpacked
+from coadjoint.spec.poisson import pairing_weights
 from coadjoint.spec.shapes import ELEMENTARY
+
+if TYPE_CHECKING:
+    from coadjoint.derive.integrals import Integrals
 
 #: The functions for which the field needs room; the others are sums and products.
 _ADJOINED = (*ELEMENTARY, "norm")
@@ -62,6 +68,14 @@ class Setting:
     def momenta(self) -> tuple[str, ...]:
         """Name of the momentum along each basis vector, or of each position; empty without any."""
         return self._along_basis("momentum")
+
+    @cached_property
+    def weights(self) -> tuple[Fraction, ...]:
+        """What ``{q, p}`` is for each momentum: 1, or 1/2 beside the diagonal of symmetric ones."""
+        coordinates = self.spec.having_role("coordinate") if self.spec.algebra is None else ()
+        partners = [self.spec.partner("momentum", variable.name) for variable in coordinates]
+        found = [w for p in partners if p for w in pairing_weights(len(p.components), p.form)]
+        return tuple(found) or (Fraction(1),) * len(self.momenta)
 
     @cached_property
     def advected(self) -> tuple[Variable, ...]:
@@ -121,6 +135,13 @@ class Setting:
             for place, name in zip(variable.block, variable.components, strict=True)
         }
         return tuple(places[place] for place in sorted(places))
+
+    @cached_property
+    def integrals(self) -> Integrals | None:
+        """What the Lax pair of the system, declared or found, keeps; None without one."""
+        from coadjoint.derive.integrals import lax_integrals  # which starts from a Setting
+
+        return lax_integrals(self)
 
     # -- elements -----------------------------------------------------------------------
 
@@ -204,7 +225,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     field = Field([*names, *symbols], room, positive)
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
-        values[quantity.name] = _shaped(quantity, values)
+        values[quantity.name] = whole(quantity, values)
     return Setting(spec, field, values)
 
 
@@ -221,7 +242,7 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))
             values.setdefault(name, field.number(number))
-        values[quantity.name] = _shaped(quantity, values)
+        values[quantity.name] = whole(quantity, values)
     return Setting(spec, field, values)
 
 
@@ -230,6 +251,9 @@ def formulas(spec: Spec) -> tuple[Formula, ...]:
     stated = [formula for formula in (spec.lagrangian, spec.hamiltonian) if formula is not None]
     if spec.poisson is not None:
         stated += [*spec.poisson.functions, *(formula for *_, formula in spec.poisson.entries)]
+    if spec.lax is not None:
+        stated += [spec.lax.L, spec.lax.M]
+    stated += [formula for law in spec.newton for formula in (law.mass, law.force)]
     declared = [observable.formula for observable in spec.observables]
     claimed = [f for claim in spec.conserved for f in (claim.formula, *claim.where)]
     for symmetry in spec.symmetries:
@@ -247,10 +271,11 @@ def _function_calls(spec: Spec) -> int:
     return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
 
 
-def _shaped(quantity: Variable | Parameter, values: Mapping[str, Quantity]) -> Quantity:
+def whole(quantity: Variable | Parameter, values: Mapping[str, Quantity]) -> Quantity:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
-    return unpacked(parts, quantity.form) if quantity.form else shaped(parts, quantity.shape)
+    whole = quantity.form in FORMS
+    return unpacked(parts, quantity.form) if whole else shaped(parts, quantity.shape)
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

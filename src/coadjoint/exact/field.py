@@ -226,6 +226,39 @@ class Field:
         """Whether no adjoined function occurs, so that the normal form decides both ways."""
         return not any(name in self.adjoined for name in self.names_in(element))
 
+    def coefficients(self, element: Element, name: str) -> dict[int, Element]:
+        """The coefficients of an element that is a (Laurent) polynomial in a symbol, by its powers.
+
+        Raises:
+            ValueError: The symbol stands in a sum in a denominator, or in a function.
+
+        >>> field = Field(["x", "a"])
+        >>> field.coefficients(field["a"] * field["x"] ** 2 + 3 - 1 / field["x"], "x")
+        {-1: -1, 0: 3, 2: a}
+        """
+        place, found = self._position[name], dict[int, list[Element]]()
+        if any(name in self.reach(self.adjoined[g].argument) for g in self._needed(element)):
+            raise ValueError(f"{name} occurs in a function")
+        for quotient in element.parts:
+            lowered, powers = 0, {}
+            for number, exponent in quotient.powers.items():
+                factor = self._factors.known[number]
+                if factor == self._ring.gens[place]:
+                    lowered = exponent
+                elif factor.degree(self._ring.gens[place]) > 0:
+                    raise ValueError(f"{name} stands in a sum in a denominator")
+                else:
+                    powers[number] = exponent
+            parts: dict[int, dict[tuple[int, ...], Any]] = {}
+            for monomial, number in quotient.numer.terms():
+                rest = (*monomial[:place], 0, *monomial[place + 1 :])
+                parts.setdefault(monomial[place] - lowered, {})[rest] = number
+            for power, part in parts.items():
+                whole = Element(self._factors, [(self._ring.from_dict(part), powers)])
+                found.setdefault(power, []).append(whole)
+        sums = {power: self.sum(found[power]) for power in sorted(found)}
+        return {power: value for power, value in sums.items() if value}
+
     def functions_in(self, element: Element) -> frozenset[str]:
         """Generators of the functions that occur in an element or in their arguments."""
         found = set(self._needed(element))

@@ -10,7 +10,7 @@ that it bounds nothing. The points are the same in every run.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -42,6 +42,9 @@ class Residue:
     def __mul__(self, other: Residue) -> Residue:
         return Residue(self.value * other.value % PRIME)
 
+    def __neg__(self) -> Residue:
+        return Residue(-self.value % PRIME)
+
     def __truediv__(self, other: Residue) -> Residue:
         if not other.value:
             raise ZeroDivisionError(f"division by zero modulo {PRIME}")
@@ -66,6 +69,29 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
         return _largest(map(rank_modulo, islice(_sampled(field, rows), POINTS)), len(rows))
     with mpmath.workdps(DIGITS):
         return _largest(map(_rank_of_values, islice(_valued(field, rows), POINTS)), len(rows))
+
+
+def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> list[int]:
+    """Places of the rows that do not depend on those before them, at almost every point.
+
+    >>> field = Field(["x", "y"])
+    >>> x, y = field["x"], field["y"]
+    >>> independent_rows(field, [{0: x}, {0: x * y}, {0: x, 1: y}])
+    [0, 2]
+    """
+    if is_exact(field, (entry for row in rows for entry in row.values())):
+        return _greedy(next(_sampled(field, rows)), rank_modulo)
+    with mpmath.workdps(DIGITS):
+        return _greedy(next(_valued(field, rows)), _rank_of_values)
+
+
+def _greedy(rows: Sequence[dict[int, Any]], rank: Callable[[list[dict[int, Any]]], int]) -> list[int]:
+    """Places of rows of numbers, each of which raises the rank of those chosen before."""
+    chosen: list[int] = []
+    for place, row in enumerate(rows):
+        if rank([*(rows[n] for n in chosen), row]) > len(chosen):
+            chosen.append(place)
+    return chosen
 
 
 def _largest(ranks: Iterable[int], most: int) -> int:

@@ -28,7 +28,7 @@ class Claim:
 
     Attributes:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
-        kind: ``algebra``, ``jacobi``, ``legendre``, ``casimir``, ``conserved`` or ``equivalence``.
+        kind: ``algebra``, ``jacobi``, ``legendre``, ``casimir``, ``conserved``, ``lax`` or ``equivalence``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.

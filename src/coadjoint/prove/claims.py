@@ -31,6 +31,8 @@ from coadjoint.prove.identities import (
     drift,
     hamiltonian_defects,
 )
+from coadjoint.prove.lax import about_pairs
+from coadjoint.prove.reductions import about_reduction
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
@@ -89,9 +91,11 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from _about_structure(first)
     if first.spec.lagrangian is not None:
         yield from _about_legendre(routes)
+    yield from about_reduction(first)
     for other in routes[1:]:
         yield from _about_equality(first, other)
     yield from _about_motion(first)
+    yield from about_pairs(routes)
 
 
 def _about_structure(first: Equations) -> Iterator[Examined]:
@@ -243,6 +247,14 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
             partial(_integral, first, claim),
         )
     yield from about_symmetries(first, _emitted(first))
+    for seen in spec.spatial:
+        if seen.conserved:
+            parts = [dict(first.exact.observables)[name] for name in seen.components]
+            yield f"{seen.name} is conserved", "conserved", partial(_drifts, first, parts)
+
+
+def _drifts(first: Equations, parts: Sequence[Element]) -> list[Element]:
+    return [rate for part in parts for rate in drift(first, part)]
 
 
 def _casimir(first: Equations, casimir: Formula) -> list[Element]:
@@ -278,7 +290,7 @@ def _vanishing(claim: Integral) -> str:
 def _rates(first: Equations, formula: Formula) -> list[Element]:
     """Time derivatives of the components of a formula, which may name what is emitted."""
     parts = first.setting.components(formula, _emitted(first))
-    return [rate for part in parts for rate in drift(first, part)]
+    return _drifts(first, parts)
 
 
 def _about_completeness(first: Equations) -> Iterator[Examined]:

@@ -56,7 +56,7 @@ _OURS = _words(
     rhs jacobian energy observables poisson_tensor constraint_residual target time t drift
     """
 )
-_OURS_PATTERN = re.compile(r"casimir\d+(_\d+)?|COADJOINT(_.*)?")
+_OURS_PATTERN = re.compile(r"(casimir|integral)\d+(_\d+)?|COADJOINT(_.*)?")
 
 _BETTER = MappingProxyType({"lambda": "lam", "t": "tau", "norm": "length", "np": "n_p"})
 _MODULES = sys.stdlib_module_names | _words(

@@ -25,6 +25,7 @@ from coadjoint.spec.algebras import read_algebra
 from coadjoint.spec.coefficients import Scalars
 from coadjoint.spec.consistency import (
     check_blocks,
+    check_claims,
     check_covered,
     check_names,
     check_routes,
@@ -34,10 +35,13 @@ from coadjoint.spec.consistency import (
 from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.lax import read_lax
 from coadjoint.spec.model import (
     Definition,
+    Force,
     Formula,
     Integral,
+    Lax,
     Observable,
     Parameter,
     Spec,
@@ -46,9 +50,10 @@ from coadjoint.spec.model import (
     state_of,
 )
 from coadjoint.spec.names import system_refusal
+from coadjoint.spec.newton import read_newton
 from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
-from coadjoint.spec.representations import read_representations
+from coadjoint.spec.representations import read_representations, representation_of
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
 from coadjoint.spec.structure import read_parameter, read_variable
@@ -111,7 +116,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     )
     check_sizes(source, (), parameters)
     check_names(source, (), parameters)  # the algebra may depend on them
-    algebra, variables = _read_structure(source, file, name, Scalars(parameters))
+    algebra, variables, pair = _read_structure(source, file, name, Scalars(parameters))
     check_sizes(source, variables, parameters)
     defined = defined_names(source, file.definitions)
     named: dict[KeyPath, str] = {("observables", each): each for each in file.observables}
@@ -125,13 +130,14 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         poisson = read_poisson(source, file.poisson, state_of(variables), constants)
     check_routes(source, file)
     check_covered(source, file, variables, algebra)
+    check_claims(source, file, variables)
     formulas = _Formulas(source, file, variables, parameters, definitions)
     observables = formulas.observables()
     actions = SymmetryReader(source, state_of(variables), formulas.quantities, observables)
     symmetries = actions.symmetries(file.symmetries, name, Scalars(parameters))
     emitted: list[Observable | Symmetry] = [*observables, *symmetries]
     check_names(source, variables, parameters, emitted, defined)  # now with their components
-    return Spec(
+    spec = Spec(
         name=name,
         title=file.title,
         source=file.source,
@@ -150,26 +156,39 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         conserved=formulas.conserved(emitted),
         path=Path(path),
         sha256=sha256(data).hexdigest(),
+        lax=formulas.lax(),
+        clebsch=pair,
+        newton=formulas.newton(variables),
+        galilean=file.claims.galilean,
         definitions=definitions,
         symmetries=symmetries,
         transformations=actions.transformations(file.transformations),
         brackets=actions.brackets(file.claims.brackets),
     )
+    check_names(source, variables, parameters, [*emitted, *spec.spatial], defined)
+    return spec
 
 
 def _read_structure(
     source: Source, file: SpecFile, name: str, scalars: Scalars
-) -> tuple[LieAlgebra | None, tuple[Variable, ...]]:
-    """The algebra, where there is one, and the variables over it."""
-    algebra, representations = None, dict[str, Representation]()
+) -> tuple[LieAlgebra | None, tuple[Variable, ...], Representation | None]:
+    """The algebra, where there is one, the variables over it, and the pair of the route clebsch."""
+    algebra, representations, pair = None, dict[str, Representation](), None
     if file.algebra is not None:
         algebra = read_algebra(source, file.algebra, name, scalars)
         representations = read_representations(source, file.representations, algebra, scalars)
+        if file.clebsch is not None:
+            at: KeyPath = ("clebsch", "representation")
+            named = file.clebsch.representation
+            pair = representation_of(source, at, algebra, named, representations)
+    invariance = file.algebra.invariance if file.algebra is not None else "left"
     variables = tuple(
-        read_variable(source, variable, part, algebra, representations, file.variables)
+        read_variable(
+            source, variable, part, algebra, representations, file.variables, invariance
+        )
         for variable, part in file.variables.items()
     )
-    return algebra, variables
+    return algebra, variables, pair
 
 
 class _Formulas:
@@ -202,6 +221,16 @@ class _Formulas:
         scope = make_scope("a Hamiltonian", self.state, self.quantities)
         return read_formula(self.source, ("hamiltonian", "h"), self.file.hamiltonian.h, scope)
 
+    def lax(self) -> Lax | None:
+        if self.file.lax is None:
+            return None
+        return read_lax(self.source, self.file.lax, self.state, self.quantities)
+
+    def newton(self, variables: Sequence[Variable]) -> tuple[Force, ...]:
+        if self.file.newton is None:
+            return ()
+        return read_newton(self.source, self.file.newton, variables, self.quantities)
+
     def observables(self) -> tuple[Observable, ...]:
         scope, found = make_scope("an observable", self.motion, self.quantities), []
         for name, part in self.file.observables.items():
@@ -220,6 +249,8 @@ class _Formulas:
 
     def conserved(self, emitted: Sequence[Observable | Symmetry]) -> tuple[Integral, ...]:
         named = emitted_shapes(emitted)
+        if self.file.hamiltonian is None and self.file.lagrangian is None:
+            del named["energy"]
         scope = make_scope("an integral", self.motion, self.quantities, named)
         found = []
         for place, part in enumerate(self.file.claims.conserved):

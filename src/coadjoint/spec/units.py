@@ -9,7 +9,7 @@ for the units of energy and Casimirs.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from coadjoint.spec import tree
@@ -67,6 +67,20 @@ def unit_of(node: tree.Node, units: Mapping[str, Unit | None]) -> Unit | None:
     for part in tree.walk_up(node):
         found[id(part)] = _unit(part, [found[id(child)] for child in tree.children(part)], units)
     return found[id(node)]
+
+
+def product_of(
+    units: Mapping[str, Unit | None], powers: Iterable[tuple[str, int]]
+) -> Unit | None:
+    """The unit of a product of powers of names; None if one is not known.
+
+    >>> unit_text(product_of({"M": parse_unit("kg m^2/s"), "a": {}}, [("M", 2), ("a", 1)]))
+    'kg^2 m^4/s^2'
+    """
+    whole: Unit | None = {}
+    for name, exponent in powers:
+        whole = _combined("*", whole, _raised(units.get(name), Fraction(exponent)))
+    return whole
 
 
 def _unit(

@@ -1,0 +1,134 @@
+r"""Integrals of a Lax pair: the coefficients of :math:`\mathrm{tr}\, L^k`, an independent set.
+
+Theorem (Lax 1968; Holm 2011, sections 2.4.4 and 2.4.5): if :math:`\dot L = [L, M]` for every value
+of the spectral parameter, then :math:`\frac{d}{dt} \mathrm{tr}\, L^k = k\, \mathrm{tr}(L^{k-1}
+[L, M]) = 0`, power by power of the parameter.
+Comes in: a Setting whose spec declares a pair, or a route that finds one. Goes out: the
+coefficients that depend on the state, and which of them are emitted: as many as there are
+independent ones beside the claimed Casimirs, the shortest first.
+Read next: `coadjoint.prove.lax`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from math import gcd, lcm
+
+from coadjoint.derive.manakov import find_pair
+from coadjoint.derive.pairs import LaxPair, Matrix, declared_pair, diagonal, multiplied
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element, Field
+from coadjoint.poisson.ranks import independent_rows
+
+
+@dataclass(frozen=True)
+class Coefficient:
+    """What depends on the state in the coefficient of a power of the spectral parameter.
+
+    Attributes:
+        trace: The power k of L.
+        power: The power of the spectral parameter.
+        scale: What the coefficient of the trace is multiplied by.
+        value: The scaled coefficient without addends of parameters alone.
+    """
+
+    trace: int
+    power: int
+    scale: Fraction
+    value: Element
+
+
+@dataclass(frozen=True)
+class Integrals:
+    """The integrals of a Lax pair.
+
+    Attributes:
+        pair: The pair.
+        coefficients: All coefficients that depend on the state.
+        emitted: Those that become observables ``integral1``, ``integral2``, ...
+    """
+
+    pair: LaxPair
+    coefficients: tuple[Coefficient, ...]
+    emitted: tuple[Coefficient, ...]
+
+    @property
+    def named(self) -> tuple[tuple[str, Element], ...]:
+        """Name and value of each one that is emitted."""
+        return tuple((f"integral{n}", each.value) for n, each in enumerate(self.emitted, 1))
+
+
+def pair_of(setting: Setting) -> LaxPair | None:
+    """The declared pair of a system, or else the one that the route manakov finds."""
+    if setting.spec.lax is not None:
+        return declared_pair(setting)
+    return find_pair(setting) if "manakov" in setting.spec.routes else None
+
+
+def lax_integrals(setting: Setting) -> Integrals | None:
+    """The integrals that a system has by its Lax pair; None without one."""
+    pair = pair_of(setting)
+    if pair is None:
+        return None
+    coefficients = tuple(expanded_traces(setting, pair))
+    return Integrals(pair, coefficients, tuple(_chosen(setting, coefficients)))
+
+
+def expanded_traces(setting: Setting, pair: LaxPair) -> Iterator[Coefficient]:
+    """The coefficients of ``tr L^k``, k = 1 to the size of L, that depend on the state."""
+    field = setting.field
+    for k, trace in enumerate(traces(field, pair.L), 1):
+        for power, whole in field.coefficients(trace, pair.spectral).items():
+            moving = field.sum(_moving(setting, whole))
+            if moving:
+                scale = _scale(field, moving)
+                yield Coefficient(k, power, scale, moving * scale)
+
+
+def traces(field: Field, L: Matrix) -> Iterator[Element]:
+    """``tr L``, ``tr L^2``, ... up to the size of L."""
+
+    @cache
+    def raised(k: int) -> Matrix:
+        if k == 0:
+            return diagonal(field, [field.one] * len(L))
+        return L if k == 1 else multiplied(field, raised(k // 2), raised(k - k // 2))
+
+    for k in range(1, len(L) + 1):
+        a, b = raised(k // 2), zip(*raised(k - k // 2), strict=True)
+        pairs = ((x, y) for p, q in zip(a, b, strict=True) for x, y in zip(p, q, strict=True))
+        yield field.sum(x * y for x, y in pairs if x and y)
+
+
+def _moving(setting: Setting, element: Element) -> Iterable[Element]:
+    """The addends of an element in which the state occurs."""
+    state = set(setting.state)
+    return (term for term in setting.field.terms(element) if setting.field.reach(term) & state)
+
+
+def _scale(field: Field, element: Element) -> Fraction:
+    """What makes the numbers in an element whole, without common factor and the first positive."""
+    numbers = [monomial.number for part in field.quotients(element) for monomial in part.monomials]
+    common = lcm(*(number.denominator for number in numbers))
+    shared = gcd(*(int(number * common) for number in numbers))
+    return Fraction(common if numbers[0] > 0 else -common, shared)
+
+
+def _chosen(setting: Setting, coefficients: Iterable[Coefficient]) -> Iterator[Coefficient]:
+    """Coefficients independent of the claimed Casimirs and of each other, the shortest first."""
+    field = setting.field
+    known = [part for casimir in setting.spec.casimirs for part in setting.components(casimir)]
+    ordered = sorted(coefficients, key=lambda each: len(field.terms(each.value)))
+    slopes = [slope_row(setting, value) for value in (*known, *(each.value for each in ordered))]
+    for place in independent_rows(field, slopes):
+        if place >= len(known):
+            yield ordered[place - len(known)]
+
+
+def slope_row(setting: Setting, function: Element) -> dict[int, Element]:
+    """The nonzero derivatives of a function by the state."""
+    slopes = setting.field.gradient(function, setting.state)
+    return {n: slope for n, slope in enumerate(slopes) if slope}

@@ -1,0 +1,168 @@
+r"""Lax pairs as matrices of elements: what :math:`\dot L = [L, M]` says, power by power.
+
+Comes in: a Setting and a pair, declared or found. Goes out: one linear equation in the rates of the
+state for each entry of each power of the spectral parameter, and the rates that solve them. An
+equation too many is not used here; whether all of them hold is a claim of the certificate.
+Read next: `coadjoint.derive.lax` and `coadjoint.derive.manakov`, the routes, and
+`coadjoint.derive.integrals`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from coadjoint.algebra.linear import Span
+from coadjoint.derive.refusals import refusal
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element, Field
+from coadjoint.spec.faults import listed
+
+Matrix = tuple[tuple[Element, ...], ...]
+
+
+@dataclass(frozen=True)
+class LaxPair:
+    """Two square matrices with ``dL/dt = [L, M]`` for every value of the spectral parameter.
+
+    Attributes:
+        spectral: Name of the spectral parameter, a symbol of the field.
+        L: Affine in the state.
+        M: How L turns; it may name velocities.
+        texts: L and M as people write them.
+    """
+
+    spectral: str
+    L: Matrix
+    M: Matrix
+    texts: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class LaxEquation:
+    """One entry of one power: ``sum of slopes[x] * dx/dt = right``.
+
+    Attributes:
+        entry: Row and column, from 1.
+        power: Power of the spectral parameter.
+        slopes: Coefficients of the rates, by component of the state.
+        right: The entry of ``[L, M]`` at that power.
+    """
+
+    entry: tuple[int, int]
+    power: int
+    slopes: dict[str, Element]
+    right: Element
+
+
+def declared_pair(setting: Setting) -> LaxPair:
+    """The pair of the table [lax]."""
+    lax = setting.spec.lax
+    assert lax is not None, "the reader asks for a table [lax] on this route"
+    spectral = {lax.spectral: setting.field[lax.spectral]}
+    L, M = setting.value(lax.L, spectral), setting.value(lax.M, spectral)
+    return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
+
+
+def multiplied(field: Field, a: Matrix, b: Matrix) -> Matrix:
+    """``a b``, zeros passed over."""
+    columns = list(zip(*b, strict=True))
+    return tuple(
+        tuple(field.sum(x * y for x, y in zip(row, c, strict=True) if x and y) for c in columns)
+        for row in a
+    )
+
+
+def bracket(field: Field, a: Matrix, b: Matrix) -> Matrix:
+    """``a b - b a``."""
+    ab, ba = multiplied(field, a, b), multiplied(field, b, a)
+    return tuple(
+        tuple(x - y for x, y in zip(p, q, strict=True)) for p, q in zip(ab, ba, strict=True)
+    )
+
+
+def lax_equations(setting: Setting, pair: LaxPair) -> Iterator[LaxEquation]:
+    """Every equation that ``dL/dt = [L, M]`` stands for, the powers ascending in each entry."""
+    field = setting.field
+    turned = bracket(field, pair.L, pair.M)
+    for i, row in enumerate(pair.L):
+        for j, entry in enumerate(row):
+            moving = [name for name in setting.state if name in field.reach(entry)]
+            parts = {
+                name: field.coefficients(field.derivative(entry, name), pair.spectral)
+                for name in moving
+            }
+            rights = field.coefficients(turned[i][j], pair.spectral)
+            for power in sorted(rights.keys() | {p for part in parts.values() for p in part}):
+                slopes = {name: part[power] for name, part in parts.items() if power in part}
+                right = rights.get(power, field.zero)
+                yield LaxEquation((i + 1, j + 1), power, slopes, right)
+
+
+def rates_of(setting: Setting, pair: LaxPair, route: str) -> tuple[Element, ...]:
+    """The rates of the state by the equations that determine them, as few as there need be.
+
+    Raises:
+        DerivationError: L is not affine in the state, or does not determine some component.
+    """
+    field, rows = setting.field, list[LaxEquation]()
+    span = Span()
+    for equation in lax_equations(setting, pair):
+        _check_affine(setting, equation, route)
+        if equation.slopes:
+            span.add(equation.slopes)
+            rows.append(equation)  # the span numbers dependent equations, too
+    found: dict[str, Element] = {}
+    for name in setting.state:
+        combination = span.coordinates({name: field.one})
+        if combination is not None:
+            found[name] = field.sum(rows[n].right * value for n, value in combination.items())
+    missing = [name for name in setting.state if name not in found]
+    if missing:
+        raise refusal(
+            setting,
+            route,
+            f"L does not determine {listed(missing)}",
+            listed(missing),
+            "an L in which every component of the state occurs, independently of the others",
+            "Put it into L, or take the route lie-poisson.",
+        )
+    return tuple(found[name] for name in setting.state)
+
+
+def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:
+    """The derivatives of L by the state are constants of the motion: parameters alone."""
+    for name, slope in equation.slopes.items():
+        inside = setting.field.reach(slope) & set(setting.state)
+        if inside:
+            row, column = equation.entry
+            raise refusal(
+                setting,
+                route,
+                f"the entry ({row}, {column}) of L is not affine in the state: its derivative by "
+                f"{name} depends on {listed(sorted(inside))}",
+                listed(sorted(inside)),
+                "an L that is affine in the state",
+                "Choose the entries of L as variables, or take the route lie-poisson.",
+            )
+
+
+def text_of_entry(entry: tuple[int, int], power: int, spectral: str) -> str:
+    """``the entry (1, 2) at lambda^2``."""
+    return f"the entry ({entry[0]}, {entry[1]}) at {spectral}^{power}"
+
+
+def diagonal(field: Field, values: Sequence[Element]) -> Matrix:
+    """The diagonal matrix of some values."""
+    return tuple(
+        tuple(x if i == j else field.zero for j in range(len(values))) for i, x in enumerate(values)
+    )
+
+
+def combined(field: Field, *terms: tuple[Element, Matrix]) -> Matrix:
+    """A sum of multiples of matrices."""
+    size = range(len(terms[0][1]))
+    return tuple(
+        tuple(field.sum(factor * matrix[i][j] for factor, matrix in terms) for j in size)
+        for i in size
+    )
