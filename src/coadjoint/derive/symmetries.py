@@ -16,14 +16,15 @@ from types import MappingProxyType
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Quantity, entries
 from coadjoint.derive.setting import Setting, shaped
-from coadjoint.derive.structure import poisson_structure
+from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
 from coadjoint.groups.vector_fields import VectorField
 from coadjoint.groups.vectors import scale
-from coadjoint.poisson.momentum_maps import MomentumMap, generating_function, lifted
+from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_function, lifted
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
+from coadjoint.spec.components import FORMS
 from coadjoint.spec.model import Symmetry, matrix_size, unpacked
 
 #: Components that move, by name.
@@ -149,7 +150,7 @@ def moved_components(
         formula = formulas.get(variable.name)
         if formula is not None:
             parts = entries(setting.value(formula, known))
-            if variable.form:
+            if variable.form in FORMS:
                 parts = _kept(setting, parts, variable.form, formula)
             found |= zip(variable.components, parts, strict=True)
     return found
@@ -197,8 +198,8 @@ def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
     if moves.keys() <= covector.keys():
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())
     formula = next(iter(symmetry.generators.values()), None)
-    if setting.spec.poisson is None:
-        problem = "more than positions move, and their momenta are no part of the state"
+    if not has_structure(setting):
+        problem = "the motion has no bracket in which something could generate it"
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
         structure = poisson_structure(setting)
@@ -207,24 +208,31 @@ def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
         raise _fault(setting, formula, str(error).rstrip("."), "", symmetry) from None
 
 
+def _pairs(setting: Setting) -> list[Pair]:
+    """Positions with canonical momenta; empty beside magnetic terms, and without momenta."""
+    bracket, field, names = setting.spec.poisson, setting.field, setting.state
+    if bracket is None:
+        weights = setting.weights if setting.momenta else ()
+        return [
+            (q, p, field.zero + weight)
+            for q, p, weight in zip(setting.positions, setting.momenta, weights, strict=False)
+        ]
+    if bracket.entries:
+        return []
+    return [
+        (names[i], names[j], field.number(weight))
+        for (i, j), weight in zip(bracket.pairs, bracket.weights, strict=True)
+    ]
+
+
 def _covector(setting: Setting) -> dict[str, Element]:
     """What pairs with the velocity of each position; empty beside magnetic terms."""
-    field, bracket = setting.field, setting.spec.poisson
-    if bracket is None:
-        if setting.momenta:
-            return dict(zip(setting.positions, setting.elements(setting.momenta), strict=True))
-        formula = setting.spec.lagrangian
-        if formula is None:
-            return {}
-        slopes = field.gradient(setting.formula(formula), setting.velocities)
-        return dict(zip(setting.positions, slopes, strict=True))
-    if bracket.entries:
-        return {}
-    names = setting.state
-    return {
-        names[i]: field[names[j]] / weight
-        for (i, j), weight in zip(bracket.pairs, bracket.weights, strict=True)
-    }
+    field, formula = setting.field, setting.spec.lagrangian
+    pairs = _pairs(setting)
+    if pairs or setting.spec.poisson is not None or formula is None:
+        return {q: field[p] / weight for q, p, weight in pairs}
+    slopes = field.gradient(setting.formula(formula), setting.velocities)
+    return dict(zip(setting.positions, slopes, strict=True))
 
 
 def _generator(
@@ -235,14 +243,10 @@ def _generator(
     value: Element,
 ) -> VectorField:
     """The vector field of one element on the whole state, time standing still."""
-    moves, bracket = _moves(setting, symmetry, element), setting.spec.poisson
+    moves, pairs = _moves(setting, symmetry, element), _pairs(setting)
     if not moves.keys() <= set(positions(setting)):
         return _whole(setting, moves)
-    if bracket is not None and not bracket.entries:
-        pairs = [
-            (setting.state[i], setting.state[j], setting.field.number(weight))
-            for (i, j), weight in zip(bracket.pairs, bracket.weights, strict=True)
-        ]
+    if pairs:
         return lifted(structure, pairs, moves)
     by_map = structure.hamiltonian_vector_field(value)
     declared = dict.fromkeys(positions(setting), setting.field.zero) | dict(moves)

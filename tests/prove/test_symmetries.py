@@ -1,0 +1,174 @@
+"""Symmetries of integrals, of configuration spaces, and what has no bracket."""
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.errors import DerivationError
+from coadjoint.prove import prove
+from tests.specs import spec
+
+KEPLER = """
+title = "Kepler"
+routes = ["poisson"]
+[poisson]
+canonical = [["r", "v"]]
+[variables]
+r = { role = "coordinate", shape = [3] }
+v = { role = "coordinate", shape = [3] }
+[parameters]
+mu = { positive = true, default = 1 }
+lam = { default = 1 }
+[hamiltonian]
+h = "dot(v, v)/2 - mu/norm(r)"
+[observables]
+A = "cross(v, cross(r, v)) - mu*r/norm(r)"
+[symmetries.L]
+algebra    = "so(3)"
+vector     = "xi"
+generators = { r = "cross(xi, r)" }
+[transformations.reversal]
+map           = { v = "-v" }
+reverses_time = true
+exchanges     = { L = "-L", A = "A" }
+[claims]
+conserved = ["energy", "L", "A"]
+[claims.brackets]
+"{L, A}" = "-hat(A)"
+"{A, A}" = "2*energy*hat(L)"
+"""
+MONOPOLE = (
+    (
+        '[["r", "v"]]',
+        '[["r", "v"]]\nmagnetic = { "{v1, v2}" = "lam*r3/norm(r)^3", '
+        '"{v2, v3}" = "lam*r1/norm(r)^3", "{v3, v1}" = "lam*r2/norm(r)^3" }',
+    ),
+    ('mu/norm(r)"\n[obs', 'mu/norm(r) + lam^2/(2*dot(r, r))"\n[obs'),
+    ("cross(v, cross(r, v)) -", "cross(v, cross(r, v) - lam*r/norm(r)) -"),
+    (
+        '{ r = "cross(xi, r)" }',
+        '{ r = "cross(xi, r)", v = "cross(xi, v)" }\nmap = "dot(cross(r, v) - lam*r/norm(r), xi)"',
+    ),
+)
+#: The monopole force is odd in v: reversal fails, which is not the question here.
+WITHOUT_REVERSAL = (
+    '[transformations.reversal]\nmap           = { v = "-v" }\nreverses_time = true\n'
+    'exchanges     = { L = "-L", A = "A" }\n',
+    "",
+)
+
+
+def statements(certificate):
+    """What is claimed."""
+    return [claim.statement for claim in certificate.claims]
+
+
+def test_the_eccentricity_vector_is_a_hidden_symmetry():
+    """L comes from turning positions; the flow of A commutes with the motion, and moves q by p."""
+    found = statements(prove(spec(KEPLER)).require())
+    assert "the flow of L takes motions to motions, a transformation of positions" in found
+    hidden = "a hidden symmetry: no transformation of positions alone"
+    assert f"the flow of A takes motions to motions, {hidden}" in found
+    assert "reversal takes the motion to its reverse" in found
+
+
+@pytest.mark.parametrize(
+    ("change", "culprit"),
+    [
+        (('"2*energy*hat(L)"', '"-2*energy*hat(L)"'), "{A, A} = -2*energy*hat(L)"),
+        (('mu/norm(r)"\n[obs', 'mu/dot(r, r)"\n[obs'), "the flow of A takes motions to motions"),
+        (('A = "A" }', 'A = "-A" }'), "reversal takes A to -A"),
+        (("reverses_time = true", ""), "reversal takes the motion to itself"),
+    ],
+)
+def test_a_wrong_claim_is_refuted(change, culprit):
+    """A sign of {A, A}, another force, and what reversal does to A are seen."""
+    refuted = [claim.statement for claim in prove(spec(KEPLER, change)).refuted]
+    assert any(culprit in statement for statement in refuted), refuted
+
+
+def test_the_monopole_has_a_declared_map():
+    """L - lam r/|r| generates rotations of r and v in the magnetic bracket, and is conserved."""
+    found = statements(prove(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL)).require())
+    assert "L is their momentum map: {x, L} = dx/ds" in found
+    assert "L is conserved by Noether's theorem, since its flow keeps h" in found
+
+
+def test_the_monopole_sees_a_wrong_sign_of_its_spin():
+    """With + lam r/|r| the map does not generate the rotations of v."""
+    change = ("cross(r, v) - lam*r/norm(r), xi", "cross(r, v) + lam*r/norm(r), xi")
+    wrong = prove(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, change))
+    assert "L is their momentum map: {x, L} = dx/ds" in statements_of_refuted(wrong)
+
+
+def statements_of_refuted(certificate):
+    """What is refuted."""
+    return [claim.statement for claim in certificate.refuted]
+
+
+def test_a_map_that_cannot_be_found_is_asked_for():
+    """Rotations of r and v with the square root of a monopole need a declared map."""
+    text = ('\nmap = "dot(cross(r, v) - lam*r/norm(r), xi)"', "")
+    with pytest.raises(DerivationError, match=r"symmetries.L|generators.r") as caught:
+        prove(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, text))
+    assert "expected the momentum map beside it" in str(caught.value)
+
+
+def test_a_generator_that_leaves_the_form_is_refused():
+    """A symmetric S cannot move by A S."""
+    text = KEPLER.replace("shape = [3] }", 'shape = [3], form = "symmetric" }', 2)
+    text = text.replace("dot(v, v)/2 - mu/norm(r)", "trace(v*v)/2 + mu*det(r) + lam")
+    text = text[: text.index("[observables]")] + (
+        '[symmetries.J]\nalgebra = "gl(2,R)"\nmatrix = "B"\ngenerators = { r = "B*r" }\n'
+    )
+    with pytest.raises(DerivationError, match=r"generators.r: the value is not symmetric"):
+        prove(spec(text))
+
+
+#: A charge in the field B w: its state is (q, v), or (q, p) with a momentum declared.
+CHARGE = """
+title = "charge"
+routes = ["euler-lagrange"]
+[variables]
+q = { role = "coordinate", shape = [3] }
+v = { role = "velocity", of = "q" }
+[parameters]
+m = { positive = true, default = 1 }
+w = { shape = [3], default = [0, 0, 1] }
+B = { default = 1 }
+[lagrangian]
+l = "m*dot(v, v)/2 + B*dot(v, cross(w, q))/2 - dot(q, q)^2"
+[symmetries.J]
+algebra    = "so(2)"
+vector     = "phi"
+generators = { q = "phi*cross(w, q)" }
+[claims]
+conserved = ["J"]
+"""
+WITH_MOMENTUM = (
+    ('routes = ["euler-lagrange"]', 'routes = ["canonical"]'),
+    ("[parameters]", 'p = { role = "momentum", of = "q" }\n[parameters]'),
+)
+
+
+@pytest.mark.parametrize("changes", [(), WITH_MOMENTUM], ids=["velocities", "momenta"])
+def test_noether_on_configuration_spaces(changes):
+    """J = dl/dv . (w x q), in velocities m v . (w x q) + B |w x q|^2/2, in momenta p . (w x q)."""
+    declared = spec(CHARGE, *changes)
+    w, q, v, p = (sympy.Matrix(sympy.symbols(f"{name}1:4")) for name in "wqvp")
+    m, B = sympy.symbols("m B")
+    turned = w.cross(q)
+    expected = p.dot(turned) if changes else m * v.dot(turned) + B * turned.dot(turned) / 2
+    assert sympy.expand(derive(declared).observables["J"] - expected) == 0
+    found = statements(prove(declared).require())
+    assert "J is their momentum map: {x, J} = dx/ds" in found
+    assert "J is conserved by Noether's theorem, since its flow keeps h" in found
+    assert "the flow of J takes motions to motions, a transformation of positions" in found
+
+
+@pytest.mark.parametrize("changes", [(), WITH_MOMENTUM], ids=["velocities", "momenta"])
+def test_noether_on_configuration_spaces_sees_a_potential(changes):
+    """A potential that turns with nothing breaks the claim."""
+    wrong = prove(spec(CHARGE, *changes, ("dot(q, q)^2", "q1*q2")))
+    assert "J is conserved" in statements_of_refuted(wrong)
+    assert not any("Noether" in statement for statement in statements(wrong))
