@@ -253,6 +253,8 @@ def formulas(spec: Spec) -> tuple[Formula, ...]:
         stated += [*spec.poisson.functions, *(formula for *_, formula in spec.poisson.entries)]
     if spec.lax is not None:
         stated += [spec.lax.L, spec.lax.M]
+    if spec.reduction is not None:
+        stated += spec.reduction.section.values()
     stated += [formula for law in spec.newton for formula in (law.mass, law.force)]
     declared = [observable.formula for observable in spec.observables]
     claimed = [f for claim in spec.conserved for f in (claim.formula, *claim.where)]

@@ -1,4 +1,4 @@
-"""The Poisson structure of a system: that of an algebra's dual, or a declared one.
+"""The Poisson structure of a system: that of an algebra's dual, a declared or a canonical one.
 
 Comes in: a Setting. Goes out: the bracket ``{x_i, x_j}`` of the state. For an algebra it is the
 minus (left) or plus (right) Lie-Poisson bracket of the semidirect product of the algebra with the
@@ -10,8 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra, semidirect_product
+from coadjoint.derive.configuration import mechanics
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import AlgebraError
+from coadjoint.groups.vectors import matmul
 from coadjoint.poisson import PoissonStructure, declared, lie_poisson, magnetic, nambu
 from coadjoint.spec.model import Poisson
 
@@ -35,11 +37,44 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
     bracket = setting.spec.poisson
     if bracket is not None:
         return _declared(setting, bracket)
+    if setting.spec.algebra is None:
+        return _of_configuration(setting)
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = (*setting.momenta, *advected)
     sign = -setting.sign  # minus for left-invariant systems
     whole = lie_poisson(momentum_algebra(setting), setting.field, coordinates, sign)
     return _reordered(whole, setting.state)
+
+
+def has_structure(setting: Setting) -> bool:
+    """Whether a spec says enough for a bracket: velocities have one through a Lagrangian alone."""
+    spec = setting.spec
+    return spec.kind != "configuration" or bool(setting.momenta) or spec.lagrangian is not None
+
+
+def _of_configuration(setting: Setting) -> PoissonStructure:
+    """The canonical bracket of coordinates and momenta, or what it is in velocities.
+
+    With ``p = dl/dv``, the brackets {q, q}, {q, p} and {p, p} are canonical if
+
+        {q, v} = M^-1,   {v, v} = M^-1 (A^T - A) M^-1,   M = dp/dv,  A = dp/dq.
+
+    Raises:
+        DerivationError: The mass matrix M cannot be inverted.
+    """
+    field, q = setting.field, setting.positions
+    if setting.momenta:
+        pairs = list(zip(q, setting.momenta, strict=True))
+        return _reordered(magnetic(field, pairs, {}, setting.weights), setting.state)
+    known = mechanics(setting)
+    W, A = known.inverse_mass, known.mixed
+    turning = tuple(tuple(A[j][i] - A[i][j] for j in range(len(q))) for i in range(len(q)))
+    velocities = matmul(matmul(W, turning), W)
+    zero = (field.zero,) * len(q)
+    rows = [(*zero, *row) for row in W]
+    rows += [(*(-w for w in column), *row) for column, row in zip(W, velocities, strict=True)]
+    names = (*q, *setting.velocities)
+    return _reordered(PoissonStructure(field, names, tuple(rows), setting.spec.name), setting.state)
 
 
 def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:

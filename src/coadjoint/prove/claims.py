@@ -23,7 +23,9 @@ from coadjoint.exact import Element
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
+from coadjoint.prove.duality import about_duality
 from coadjoint.prove.equivalence import LegendreMap, in_velocities
+from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import (
     antisymmetry_defects,
@@ -150,6 +152,7 @@ def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
         lambda: _invertible(pulled),
     )
     for equations in routes:
+        yield from about_duality(equations)
         if equations.chart is not None or equations.exact.energy is None:
             continue
         if equations.kept:
@@ -246,6 +249,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
             "conserved",
             partial(_integral, first, claim),
         )
+    yield from about_galilean(first)
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
         if seen.conserved:

@@ -14,7 +14,14 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
 from coadjoint.spec.faults import listed
-from coadjoint.spec.model import Observable, Parameter, Symmetry, Variable, state_of
+from coadjoint.spec.model import (
+    Observable,
+    Parameter,
+    SpatialMomentum,
+    Symmetry,
+    Variable,
+    state_of,
+)
 from coadjoint.spec.names import derived_names, refusal
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.routes import STARTS, energies_of, kinds_of
@@ -42,7 +49,7 @@ def check_names(
     source: Source,
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Sequence[Observable | Symmetry] = (),
+    observables: Sequence[Observable | Symmetry | SpatialMomentum] = (),
     others: Mapping[KeyPath, str] = MappingProxyType({}),
 ) -> None:
     """Every name is free and declared once, components and rates included.
@@ -83,7 +90,7 @@ def check_names(
 def _declared(
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Sequence[Observable | Symmetry],
+    observables: Sequence[Observable | Symmetry | SpatialMomentum],
 ) -> Iterable[_Declared]:
     for variable in variables:
         moving = variable in state_of(variables)
@@ -92,6 +99,9 @@ def _declared(
     for parameter in parameters:
         yield ("parameters", parameter.name), parameter.name, parameter.components, ()
     for entry in observables:
+        if isinstance(entry, SpatialMomentum):
+            yield ("variables", entry.momentum.name), entry.name, entry.components, ()
+            continue
         table = "symmetries" if isinstance(entry, Symmetry) else "observables"
         yield (table, entry.name), entry.name, entry.components, ()
 
@@ -226,13 +236,13 @@ def _check_use(source: Source, file: SpecFile) -> None:
     """A Hamiltonian, a Lagrangian or another table that no route reads is a mistake."""
     kinds = kinds_of(file)
     used = {table for route in file.routes for table in energies_of(route, kinds)}
-    used |= {STARTS[route].table for route in file.routes}
-    for table in ("hamiltonian", "lagrangian", "lax", "newton"):
+    used |= {name for each in file.routes for name in (STARTS[each].table, STARTS[each].option)}
+    for table in ("hamiltonian", "lagrangian", "lax", "newton", "clebsch"):
         if getattr(file, table) is not None and table not in used:
             readers = [
                 name
                 for name, start in STARTS.items()
-                if table in (*energies_of(name, kinds), start.table)
+                if table in (*energies_of(name, kinds), start.table, start.option)
                 and set(start.kinds) & set(kinds)
             ]
             raise source.fault(
@@ -291,6 +301,37 @@ def _check_partners(source: Source, file: SpecFile, variables: Sequence[Variable
                 "momenta of all coordinates or of none",
                 "",
             )
+
+
+def check_claims(source: Source, file: SpecFile, variables: Sequence[Variable]) -> None:
+    """What is claimed of a bracket has one, and Galilean relativity has particles.
+
+    Raises:
+        SpecError: Neither an energy nor momenta give a bracket, or no law of particles is there.
+    """
+    claims = file.claims
+    bare = file.algebra is None and file.poisson is None and file.lagrangian is None
+    if bare and not any(variable.role == "momentum" for variable in variables):
+        for table in ("casimirs", "brackets"):
+            if getattr(claims, table):
+                raise source.fault(
+                    ("claims", table),
+                    f"there are {table} without a bracket",
+                    found=table,
+                    expected="a Lagrangian, momenta or [poisson] that give a bracket",
+                    hint=f"Remove {table}, or declare [lagrangian].",
+                )
+    particles = [variable for variable in variables if variable.role == "coordinate"]
+    flat = [q for q in particles if q.value_shape not in ((3,), (3, 3)) or q.form == "symmetric"]
+    if claims.galilean and (file.newton is None or flat):
+        found = flat[0].name if flat else "newton"
+        raise source.fault(
+            ("claims", "galilean"),
+            f"the coordinate {found!r} is no particle in space" if flat else "there is no [newton]",
+            found=found,
+            expected="laws in [newton] of coordinates with shape = [3], one for each particle, or "
+            'of one with shape = [9] and form = "matrix", a row for each particle',
+        )
 
 
 def _missing(source: Source, problem: str, table: str) -> CoadjointError:

@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
+from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.components import FORMS, Shape, component_names, matrix_size, unpacked
-from coadjoint.spec.tree import Node
+from coadjoint.spec.tree import Node, walk
 
 __all__ = [
     "FORMS",
@@ -303,6 +304,29 @@ class Symmetry:
 
 
 @dataclass(frozen=True)
+class SpatialMomentum:
+    """A momentum as seen from space, emitted where the state has the attitude: ``Pi_spatial``.
+
+    Attributes:
+        momentum: What it is in the body.
+        conserved: Whether the energy knows nothing that is advected, so that it stays what it is.
+    """
+
+    momentum: Variable
+    conserved: bool
+
+    @property
+    def name(self) -> str:
+        """Name of the observable."""
+        return f"{self.momentum.name}_spatial"
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, along the basis of the algebra."""
+        return component_names(self.name, self.momentum.shape, self.momentum.form)
+
+
+@dataclass(frozen=True)
 class Transformation:
     """A map of the state that keeps the motion.
 
@@ -326,6 +350,21 @@ class ClaimedBracket:
     left: Formula
     right: Formula
     value: Formula
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A submanifold of a system, on which some of its variables follow from the others.
+
+    Attributes:
+        whole: The system before.
+        section: What these variables are, by name.
+        where: Functions of all variables that vanish on the submanifold.
+    """
+
+    whole: Spec
+    section: Mapping[str, Formula]
+    where: tuple[Formula, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -358,6 +397,7 @@ class Spec:
         transformations: Maps that are claimed to keep the motion.
         brackets: Claimed brackets of observables, momentum maps and state.
         galilean: Whether Newton's law is claimed to be that of every Galilean observer.
+        reduction: The submanifold to which a motion is restricted, whose state this is, or None.
     """
 
     name: str
@@ -386,6 +426,7 @@ class Spec:
     transformations: tuple[Transformation, ...] = ()
     brackets: tuple[ClaimedBracket, ...] = ()
     galilean: bool = False
+    reduction: Reduction | None = None
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
@@ -410,6 +451,26 @@ class Spec:
         """The velocity or momentum of a coordinate; None if none is declared."""
         found = (variable for variable in self.having_role(role) if variable.of == coordinate)
         return next(found, None)
+
+    @property
+    def attitude(self) -> Variable | None:
+        """The group element in the state, as a matrix or a unit quaternion; None without one."""
+        advected = ((v, v.representation) for v in self.having_role("advected"))
+        return next((v for v, action in advected if action and action.name in ATTITUDES), None)
+
+    @property
+    def spatial(self) -> tuple[SpatialMomentum, ...]:
+        """The momenta seen from space; empty without an attitude that can be inverted."""
+        if self.attitude is None or self.algebra is None:
+            return ()
+        if self.attitude.form != "quaternion" and not inverse_by(self.algebra):
+            return ()
+        advected = self.having_role("advected")
+        names = {name for each in advected for name in (each.name, *each.components)}
+        energies = [f.tree for f in (self.lagrangian, self.hamiltonian) if f is not None]
+        used = {getattr(node, "name", "") for tree in energies for node in walk(tree)}
+        momenta = self.having_role("momentum")
+        return tuple(SpatialMomentum(each, not names & used) for each in momenta)
 
     @property
     def kind(self) -> str:

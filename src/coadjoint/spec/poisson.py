@@ -150,7 +150,7 @@ class _Reading:
                     expected="a position and a momentum of one shape and form",
                 )
             paired += (*q, *p)
-            weights |= zip(zip(q, p, strict=True), _weights(len(q), forms[0]), strict=True)
+            weights |= zip(zip(q, p, strict=True), pairing_weights(len(q), forms[0]), strict=True)
         self._check_single(paired)
         return weights
 
@@ -185,7 +185,7 @@ def _like(count: int, form: str) -> str:
     return f"has {count} components" + (f" of the form {form!r}" if form else "")
 
 
-def _weights(count: int, form: str) -> list[Fraction]:
+def pairing_weights(count: int, form: str) -> list[Fraction]:
     """``{q, p}`` of each component, by the pairing ``tr(P dS/dt)`` of symmetric matrices.
 
     Antisymmetric ones are paired by ``tr(P^T dQ/dt)/2``, others by ``tr(P^T dQ/dt)``: all 1.

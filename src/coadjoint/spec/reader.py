@@ -53,6 +53,7 @@ from coadjoint.spec.names import system_refusal
 from coadjoint.spec.newton import read_newton
 from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
+from coadjoint.spec.reductions import restricted
 from coadjoint.spec.representations import read_representations, representation_of
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
@@ -166,7 +167,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         brackets=actions.brackets(file.claims.brackets),
     )
     check_names(source, variables, parameters, [*emitted, *spec.spatial], defined)
-    return spec
+    return spec if file.reduction is None else restricted(source, file.reduction, spec)
 
 
 def _read_structure(
@@ -183,9 +184,7 @@ def _read_structure(
             pair = representation_of(source, at, algebra, named, representations)
     invariance = file.algebra.invariance if file.algebra is not None else "left"
     variables = tuple(
-        read_variable(
-            source, variable, part, algebra, representations, file.variables, invariance
-        )
+        read_variable(source, variable, part, algebra, representations, file.variables, invariance)
         for variable, part in file.variables.items()
     )
     return algebra, variables, pair

@@ -158,6 +158,16 @@ class ClebschPart(Part):
     representation: str = Field(description="how the algebra acts on it, such as 'adjoint'")
 
 
+class ReductionPart(Part):
+    """A submanifold that the motion keeps, on which some variables follow from the others."""
+
+    section: Annotated[dict[str, str], Field(min_length=1)] = Field(
+        description="what variables are there, as y = 'cross(x, K*x)'; they are no state any more",
+        json_schema_extra=named(),
+    )
+    where: list[str] = Field([], description="functions of all variables that vanish there")
+
+
 class ObservablePart(Part):
     """A scalar, vector or matrix emitted beside the dynamics."""
 
@@ -330,6 +340,9 @@ class SpecFile(Part):
     lax: LaxPart | None = Field(None, description="a Lax pair of the motion")
     newton: Annotated[dict[str, NewtonPart], Field(min_length=1)] | None = Field(
         None, description="Newton's law, by the names of coordinates", json_schema_extra=named()
+    )
+    reduction: ReductionPart | None = Field(
+        None, description="the submanifold to which the motion is restricted"
     )
     observables: dict[str, ObservablePart] = Field(
         {}, description="what is emitted beside the dynamics", json_schema_extra=named()

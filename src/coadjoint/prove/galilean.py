@@ -1,0 +1,82 @@
+r"""Galilean relativity of a declared law: whether all observers in uniform motion share it.
+
+Comes in: Equations whose spec claims it of the forces in [newton]. Goes out: a claim for each of
+the four subgroups, whose transformations make the whole group
+
+.. math:: r \mapsto R r + v t + r_0,\quad t \mapsto t + \tau.
+
+A law that names a point or a direction of space, or a velocity by itself, is refuted by the
+transformation that shows it, at a point. Read next: `coadjoint.groups.galilean`.
+
+Source:
+    Holm (2011), Geometric Mechanics II, sections 1.1 and 1.2.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+from coadjoint.derive import Equations, Setting
+from coadjoint.derive.forces import accelerations
+from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.setting import whole
+from coadjoint.exact import Element
+from coadjoint.groups.galilean import (
+    Galilean,
+    Particles,
+    particles,
+    subgroups,
+    transformation_defects,
+)
+from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.spec.model import Parameter, Variable
+
+Examined = tuple[str, str, Callable[[], Decision]]
+
+
+def about_galilean(first: Equations) -> Iterator[Examined]:
+    """One claim for each subgroup, if the spec claims Galilean relativity."""
+    if not first.spec.galilean:
+        return
+    system, names = _particles(first.setting)
+    moved = accelerations(_with_names(first.setting, system, names))
+    laws = [moved[n : n + 3] for n in range(0, len(moved), 3)]
+    for name, g in subgroups(system).items():
+        yield (
+            f"Newton's law is the same after a {name} of space and time",
+            "galilean",
+            partial(_decision, system, laws, g, names),
+        )
+
+
+def _decision(
+    system: Particles,
+    laws: Sequence[Sequence[Element]],
+    g: Galilean,
+    names: Mapping[str, str],
+) -> Decision:
+    """Whether accelerations are carried along; a counter-example has the names of the spec."""
+    found = decide_zero(transformation_defects(system, laws, g), system.field)
+    spoken = {inner: name for name, inner in names.items()}
+    return replace(found, point={spoken.get(n, n): value for n, value in found.point.items()})
+
+
+def _particles(setting: Setting) -> tuple[Particles, dict[str, str]]:
+    """Particles for the rows of all coordinates, and what the names of the spec are there."""
+    positions, velocities = setting.positions, setting.velocities
+    inner = {name: f"{name} of the spec" for name in setting.parameters}
+    system = particles(len(positions) // 3, tuple(inner.values()), len(setting.field.adjoined))
+    for letter, given in (("r", positions), ("v", velocities)):
+        inner |= {name: f"{letter}{n // 3 + 1}_{n % 3 + 1}" for n, name in enumerate(given)}
+    return system, inner
+
+
+def _with_names(setting: Setting, system: Particles, names: Mapping[str, str]) -> Setting:
+    """The Setting with the symbols of the particles in the place of its own."""
+    values: dict[str, Quantity] = {name: system.field[inner] for name, inner in names.items()}
+    quantities: list[Variable | Parameter] = [*setting.spec.state, *setting.spec.parameters]
+    for quantity in quantities:
+        values[quantity.name] = whole(quantity, values)
+    return Setting(setting.spec, system.field, values)
