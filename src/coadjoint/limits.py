@@ -77,7 +77,7 @@ COUPLED_VELOCITIES = 12
 #: Operations of one function after lowering.
 OPERATIONS = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
-C_STATEMENTS = 2000
+C_STATEMENTS = 1000
 
 # -- children -------------------------------------------------------------------------------------
 

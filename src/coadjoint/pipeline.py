@@ -127,6 +127,8 @@ def _origin(spec: Spec) -> str:
     """Where the bracket of a system comes from, for the head of its files."""
     if spec.algebra is not None:
         return f"on {spec.algebra.name}, {spec.invariance} invariant"
+    if spec.reduction is not None:
+        return f"{_origin(spec.reduction.whole)}, restricted"
     assert spec.poisson is not None, "the reader asks for an algebra or a bracket"
     return {
         "nambu": "with the Nambu bracket of its distinguished functions",

@@ -14,6 +14,7 @@ from difflib import get_close_matches
 from functools import cache
 
 from coadjoint.algebra import families
+from coadjoint.algebra.attitudes import attitude, quaternion
 from coadjoint.algebra.lie_algebra import LieAlgebra, check_size
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import (
@@ -21,6 +22,7 @@ from coadjoint.algebra.representation import (
     adjoint,
     coadjoint,
     columns,
+    rows,
     defining,
     symmetric,
     trivial,
@@ -167,12 +169,20 @@ _REPRESENTATIONS: dict[str, Callable[[LieAlgebra], Representation]] = {
     "coadjoint": coadjoint,
     "symmetric": symmetric,
     "columns": columns,
+    "rows": rows,
     "trivial": trivial,
 }
-REPRESENTATIONS = tuple(_REPRESENTATIONS)
+#: The group element itself, which is seen from one side.
+ATTITUDES: dict[str, Callable[[LieAlgebra, str], Representation]] = {
+    "attitude": attitude,
+    "quaternion": quaternion,
+}
+REPRESENTATIONS = (*_REPRESENTATIONS, *ATTITUDES)
 
 
-def representation_by_name(algebra: LieAlgebra, name: str) -> Representation:
+def representation_by_name(
+    algebra: LieAlgebra, name: str, invariance: str = "left"
+) -> Representation:
     """A representation that every algebra has, by the name a spec uses.
 
     - ``vector``: the rotation block on R^n for so(n), se(n), g(3) and bargmann (all else acts as
@@ -181,11 +191,16 @@ def representation_by_name(algebra: LieAlgebra, name: str) -> Representation:
     - ``adjoint``, ``coadjoint``: on the algebra and on its dual;
     - ``symmetric``: ``S -> X S + S X^T`` for the defining X, components S_ij, i <= j, row by row;
     - ``columns``: ``A -> X A`` on square matrices A, row by row;
-    - ``trivial``: zero on R.
+    - ``rows``: ``A -> -A X`` on square matrices A, row by row;
+    - ``trivial``: zero on R;
+    - ``attitude``: ``g -> -g X`` on the group element itself, row by row (``X g`` if the motion is
+      right-invariant); ``quaternion``: the same on the unit quaternions of so(3) and su(2).
 
     Raises:
         AlgebraError: No such representation, or it wants matrices and there are none.
     """
+    if name in ATTITUDES:
+        return ATTITUDES[name](algebra, invariance)
     if name in _REPRESENTATIONS:
         return _REPRESENTATIONS[name](algebra)
     near = get_close_matches(name, REPRESENTATIONS, n=1)
@@ -204,6 +219,23 @@ def _vector(algebra: LieAlgebra) -> Representation:
     turning = algebra.blocks["rotation"]
     matrices = tuple(m if i in turning else {} for i, m in enumerate(algebra.matrices))
     return Representation(algebra, "vector", size(matrices), matrices)
+
+
+def inverse_by(algebra: LieAlgebra) -> str:
+    """How the inverse of an attitude is written out: the algebra must be kept by all such matrices.
+
+    Returns:
+        ``"transpose"`` for so(n), ``"motion"`` for se(n), ``"cofactors"`` for small linear groups;
+        "" for others, whose matrices are the group's on some surface alone.
+    """
+    if not _is_named(algebra):
+        return ""
+    kinds = {
+        r"so\(\d+\)": "transpose",
+        r"se\(\d+\)": "motion",
+        r"aff\(1\)|[gs]l\([123](,R)?\)": "cofactors",
+    }
+    return next((kind for form, kind in kinds.items() if re.fullmatch(form, algebra.name)), "")
 
 
 def _is_named(algebra: LieAlgebra) -> bool:

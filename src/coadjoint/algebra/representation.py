@@ -143,6 +143,45 @@ def columns(algebra: LieAlgebra) -> Representation:
     return Representation(algebra, "columns", n * n, matrices)
 
 
+def rows(algebra: LieAlgebra) -> Representation:
+    """``A -> -A X`` on n x n matrices A, row by row: the dual action on each row.
+
+    The attitude of a left-invariant system moves so: ``dA/dt = -rho(xi) A = A xi``.
+    """
+    return two_sided(algebra, "rows", (), defining(algebra, "rows").matrices)
+
+
+def two_sided(
+    algebra: LieAlgebra,
+    name: str,
+    left: Sequence[SparseMatrix],
+    right: Sequence[SparseMatrix],
+) -> Representation:
+    """``A -> L A - A R`` on matrices A, row by row: how ``A = A1^-1 A2`` sees both bodies turn.
+
+    Args:
+        algebra: The acting algebra.
+        name: Name of the representation.
+        left: L of each basis vector, or none: A is square then.
+        right: R of each basis vector, or none.
+
+    >>> from coadjoint.algebra import algebra_by_name
+    >>> turn = algebra_by_name("so(2)").matrices
+    >>> two_sided(algebra_by_name("so(2)"), "both", turn, turn).act([1], [1, 0, 0, 1])
+    (0, 0, 0, 0)
+    """
+    height, width = size(left or right), size(right or left)
+    ones = {n: {(i, i): 1 for i in range(n)} for n in (height, width)}
+    matrices: list[Matrix] = [{} for _ in algebra.basis]
+    for matrix, L in zip(matrices, left, strict=False):
+        matrix.update(kronecker(L, ones[width], width))
+    for matrix, R in zip(matrices, right, strict=False):
+        for place, value in kronecker(ones[height], {(c, r): -v for (r, c), v in R.items()}, width).items():
+            matrix[place] = matrix.get(place, 0) + value
+    clean = tuple({place: v for place, v in matrix.items() if v != 0} for matrix in matrices)
+    return Representation(algebra, name, height * width, clean)
+
+
 def symmetric(algebra: LieAlgebra) -> Representation:
     """``S -> X S + S X^T`` on symmetric matrices, components ``S_ij``, i <= j, row by row.
 

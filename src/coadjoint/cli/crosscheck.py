@@ -48,7 +48,7 @@ def command(system: str, points: int, as_json: bool) -> None:
 def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """Figures of the ladder as JSON values; runs in a bounded child."""
     from coadjoint.crosscheck.ladder import crosscheck
-    from coadjoint.crosscheck.reference import Reference
+    from coadjoint.derive.reference import Reference
     from coadjoint.derive import derive
     from coadjoint.lower.lowering import lower
     from coadjoint.solve.system import load_folder

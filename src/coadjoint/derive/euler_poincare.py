@@ -40,7 +40,9 @@ def derive(given: Spec | Setting) -> Equations:
     velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
     energy = setting.field.substitute(transform.energy, velocities)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(transform.definitions, rates, energy, observables(setting, energy), tensor)
+    exact = Exact(
+        transform.definitions, rates, energy, observables(setting, energy), tensor, transform.solves
+    )
     return Equations(
         setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
     )

@@ -19,7 +19,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.legendre import legendre_transform
 from coadjoint.derive.poisson import hamiltonian_equations
 from coadjoint.derive.setting import Setting, setting_of
-from coadjoint.derive.solver import Definition
+from coadjoint.derive.solver import Solve
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -38,17 +38,17 @@ def derive(given: Spec | Setting) -> Equations:
         f"{{x_i, x_j}} = {sign}c_ij^k x_k",
         rf"\{{x_i, x_j\}} = {sign}c_{{ij}}^k x_k",
     )
-    h, solved = hamiltonian(setting)
-    return hamiltonian_equations(setting, "lie-poisson", h, law, solved)
+    h, solves = hamiltonian(setting)
+    return hamiltonian_equations(setting, "lie-poisson", h, law, solves)
 
 
-def hamiltonian(setting: Setting) -> tuple[Element, tuple[Definition, ...]]:
+def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
     """The declared Hamiltonian, or the Legendre transform of the declared Lagrangian.
 
     Returns:
-        h, and the definitions of the velocities that keep their names in it because the kernel
-        solves for them. Partial derivatives of such an h at fixed velocities are those of h, since
-        ``<mu, xi> - l`` is stationary in xi.
+        h, and what the kernel solves for velocities, which keep their names in h. Partial
+        derivatives of such an h at fixed velocities are those of h, since ``<mu, xi> - l`` is
+        stationary in xi.
     """
     spec = setting.spec
     if spec.hamiltonian is not None:
@@ -56,4 +56,4 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Definition, ...]]:
     assert spec.lagrangian is not None, "the reader asks for a Hamiltonian or a Lagrangian"
     transform = legendre_transform(setting, setting.formula(spec.lagrangian))
     velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    return setting.field.substitute(transform.energy, velocities), transform.solved
+    return setting.field.substitute(transform.energy, velocities), transform.solves

@@ -1,9 +1,10 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
-Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian``, ``energy``, ``observables`` and
-``poisson_tensor``. An element becomes a sum of products in the order of the field; what depends on
-parameters alone is gathered into the coefficients, equal coefficients are factored out, and pairs
-of factors that recur are shared. Definitions keep their names: a kernel reads like the book.
+Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
+them, ``energy``, ``observables`` and ``poisson_tensor``. An element becomes a sum of products in
+the order of the field; what depends on parameters alone is gathered into the coefficients, equal
+coefficients are factored out, and pairs of factors that recur are shared. Definitions keep their
+names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
 
@@ -18,6 +19,7 @@ from coadjoint.derive import Equations
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
 from coadjoint.lower.graph import Graph
+from coadjoint.lower.jacobian import jacobian, residual_slopes
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
@@ -53,7 +55,7 @@ class Lowering:
     def __init__(self, equations: Equations, elements: Iterable[Element]) -> None:
         self.field: Field = equations.setting.field
         self.graph = Graph()
-        self._members = frozenset((*equations.setting.state, *equations.setting.velocities))
+        self._members = equations.moving
         self._forms: dict[tuple[int, bool], Form] = {}
         self._marks: set[Any] = set()
         self._kept: list[Element] = []
@@ -256,21 +258,23 @@ def lower(equations: Equations) -> dict[str, Program]:
     """
     setting, exact = equations.setting, equations.exact
     n = len(setting.state)
-    rhs = _program(
-        equations, "rhs", [(f"d{x}/dt", r) for x, r in zip(setting.state, exact.rates, strict=True)]
-    )
-    brackets = [
-        (f"{{{a}, {b}}}", exact.poisson_tensor[i][j])
-        for i, a in enumerate(setting.state)
-        for j, b in enumerate(setting.state)
-    ]
-    return {
-        "rhs": rhs,
-        "jacobian": _jacobian(rhs),
-        "energy": _program(equations, "energy", [("energy", exact.energy)], ()),
-        "observables": _program(equations, "observables", exact.observables),
-        "poisson_tensor": _program(equations, "poisson_tensor", brackets, (n, n)),
-    }
+    rates = [(f"d{x}/dt", rate) for x, rate in zip(setting.state, exact.rates, strict=True)]
+    rhs = _program(equations, "rhs", rates)
+    slopes = residual_slopes(equations)
+    wide = _program(equations, "rhs", [*rates, *slopes]) if slopes else rhs
+    programs = {"rhs": rhs, "jacobian": jacobian(wide, equations)}
+    if exact.energy is not None:
+        programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
+    if exact.observables:
+        programs["observables"] = _program(equations, "observables", exact.observables)
+    if exact.poisson_tensor is not None:
+        brackets = [
+            (f"{{{a}, {b}}}", entry)
+            for a, row in zip(setting.state, exact.poisson_tensor, strict=True)
+            for b, entry in zip(setting.state, row, strict=True)
+        ]
+        programs["poisson_tensor"] = _program(equations, "poisson_tensor", brackets, (n, n))
+    return programs
 
 
 def _program(
@@ -297,7 +301,7 @@ def _shorter(equations: Equations, element: Element) -> Element:
     parameters alone: half the operations, and again what the book writes.
     """
     field, closed = equations.setting.field, equations.closed(element)
-    members = frozenset((*equations.setting.state, *equations.setting.velocities))
+    members = equations.moving
 
     def terms(of: Element) -> int:
         products = {
@@ -310,28 +314,3 @@ def _shorter(equations: Equations, element: Element) -> Element:
     divisors = (divisor for written in field.quotients(closed) for divisor, _ in written.divisors)
     moving = any(field.reach(divisor) & members for divisor in divisors)
     return closed if terms(closed) < terms(element) and not moving else element
-
-
-def _jacobian(rhs: Program) -> Program:
-    """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program."""
-    graph, n = Graph(), len(rhs.state)
-    slopes = {graph.symbol(name): {name: graph.number(1)} for name in rhs.state}
-    slopes |= {graph.symbol(name): {} for name in rhs.parameters}
-    temporaries: dict[str, int] = {}
-    definitions: list[tuple[str, int]] = []
-    for statement in rhs.statements:
-        value = graph.insert(statement.value, temporaries)
-        if statement.name.startswith("_"):  # temporaries are found anew where they are still shared
-            temporaries[statement.name] = value
-        else:
-            definitions.append((statement.name, value))
-            slopes[graph.symbol(statement.name)] = graph.derivative(value, slopes)
-    outputs = []
-    for output in rhs.outputs:
-        slope = graph.derivative(graph.insert(output.value, temporaries), slopes)
-        outputs += [
-            (f"d({output.label})/d{name}", slope.get(name, graph.number(0))) for name in rhs.state
-        ]
-    return Naming(graph, definitions, outputs, rhs.parameters).program(
-        "jacobian", rhs.state, rhs.parameters, (n, n)
-    )

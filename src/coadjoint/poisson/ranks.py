@@ -85,7 +85,9 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
         return _greedy(next(_valued(field, rows)), _rank_of_values)
 
 
-def _greedy(rows: Sequence[dict[int, Any]], rank: Callable[[list[dict[int, Any]]], int]) -> list[int]:
+def _greedy(
+    rows: Sequence[dict[int, Any]], rank: Callable[[list[dict[int, Any]]], int]
+) -> list[int]:
     """Places of rows of numbers, each of which raises the rank of those chosen before."""
     chosen: list[int] = []
     for place, row in enumerate(rows):

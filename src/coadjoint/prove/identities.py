@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.derive import Equations
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
+from coadjoint.prove.equivalence import in_velocities, kept_velocities
 
 Tensor = Sequence[Sequence[Element]]
 
@@ -30,28 +32,51 @@ def casimir_defects(
             Jacobi identity C commutes with ``{x_i, x_j}`` where it commutes with both.
     """
     field = equations.setting.field
-    gradient = field.gradient(equations.closed(function), equations.setting.state)
     tensor = equations.exact.poisson_tensor
     assert tensor is not None, "only a bracket has Casimirs"
     places = range(len(tensor)) if coordinates is None else coordinates
-    return [_dot(field, tensor[i], gradient) for i in places]
+    slopes = gradient(equations, function)
+    return [_dot(field, in_velocities(equations, tensor[i]), slopes) for i in places]
 
 
 def drift(equations: Equations, function: Element) -> list[Element]:
     """Time derivative of a function of the state along the motion."""
-    field, state = equations.setting.field, equations.setting.state
-    gradient = field.gradient(equations.closed(function), state)
-    return [_dot(field, gradient, [equations.closed(rate) for rate in equations.exact.rates])]
+    rates = in_velocities(equations, equations.exact.rates)
+    return [_dot(equations.setting.field, gradient(equations, function), rates)]
 
 
 def hamiltonian_defects(equations: Equations, energy: Element, tensor: Tensor) -> list[Element]:
     """``dx/dt - {x, h}`` for every state component."""
-    field, state = equations.setting.field, equations.setting.state
-    gradient = field.gradient(equations.closed(energy), state)
+    field, slopes = equations.setting.field, gradient(equations, energy)
+    rates = in_velocities(equations, equations.exact.rates)
     return [
-        equations.closed(rate) - _dot(field, row, gradient)
-        for rate, row in zip(equations.exact.rates, tensor, strict=True)
+        rate - _dot(field, in_velocities(equations, row), slopes)
+        for rate, row in zip(rates, tensor, strict=True)
     ]
+
+
+def gradient(equations: Equations, function: Element) -> list[Element]:
+    """Derivatives of a function by the state.
+
+    Where the kernel solves for velocities, the function must be stationary in them at fixed state,
+    as the energy ``<mu, xi> - l`` is: their own derivatives are not needed then.
+
+    Raises:
+        DerivationError: It is not.
+    """
+    field, closed = equations.setting.field, equations.closed(function)
+    solved = kept_velocities(equations)
+    inner = in_velocities(equations, field.gradient(closed, solved))
+    named = [xi for xi, slope in zip(solved, inner, strict=True) if not field.is_zero(slope)]
+    if named:
+        path = equations.spec.path
+        raise DerivationError(
+            f"{path}: a claimed integral or Casimir names the velocities {', '.join(named)}, which "
+            "the kernel solves for; expected a function of momenta. Write it with momenta.",
+            path=str(path),
+            found=named[0],
+        )
+    return in_velocities(equations, field.gradient(closed, equations.setting.state))
 
 
 def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
