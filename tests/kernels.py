@@ -79,6 +79,8 @@ class TextSystem:
 class ProgramReference:
     """Programs in place of equations, for tests of the comparison itself."""
 
+    deep = False
+
     def __init__(self, programs):
         self.programs = {program.name: program for program in programs}
 

@@ -26,6 +26,8 @@ pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this mach
 class TopReference:
     """The heavy top as in the book, dPi/dt = Pi x Omega + m g Gamma x chi, by vectors."""
 
+    deep = False
+
     def evaluate(self, function, inputs, number, call):
         """All outputs of one function."""
 

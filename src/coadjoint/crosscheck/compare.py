@@ -73,12 +73,21 @@ class _Roundings:
         return self
 
 
-def most_roundings(program: Program) -> int:
+class _Levels(_Roundings):
+    """The same where envelopes are tracked to first order: the larger of two everywhere."""
+
+    def __add__(self, other: _Roundings) -> _Roundings:
+        return _Levels(max(self.count, other.count) + 1)
+
+    __mul__ = __add__
+    __truediv__ = __add__
+
+
+def most_roundings(program: Program, deep: bool = False) -> int:
     """The most roundings that the error bound of any output of a Program counts."""
-    inputs = dict.fromkeys((*program.state, *program.parameters), _Roundings(0))
-    outputs = run(
-        program, inputs, lambda _: _Roundings(0), lambda _, argument: _Roundings(argument.count + 1)
-    )
+    kind = _Levels if deep else _Roundings
+    inputs = dict.fromkeys((*program.state, *program.parameters), kind(0))
+    outputs = run(program, inputs, lambda _: kind(0), lambda _, of: kind(of.count + 1))
     return max(output.count for output in outputs)
 
 
@@ -110,7 +119,8 @@ class Subject:
         A k above the number of roundings is impossible to first order; errors that large are rare,
         so short formulas are held to less.
         """
-        roundings = max(map(most_roundings, self.programs.values()))
+        deep = self.reference.deep
+        roundings = max(most_roundings(program, deep) for program in self.programs.values())
         allowed = K_ELEMENTARY if self.elementary else K_ARITHMETIC
         return allowed if roundings <= SHORT else max(allowed, float(roundings))
 

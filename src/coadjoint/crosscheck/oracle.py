@@ -39,7 +39,13 @@ _FLOOR: Final = Decimal(2.0**-1074)
 
 
 class Reference(Protocol):
-    """Evaluates the equations, not the Program, in any arithmetic that has ``+ * /`` and ``-u``."""
+    """Evaluates the equations, not the Program, in any arithmetic that has ``+ * /`` and ``-u``.
+
+    Attributes:
+        deep: Whether definitions rest on one another over many levels, as those of a solve do.
+    """
+
+    deep: bool
 
     def evaluate(
         self,
@@ -85,6 +91,33 @@ class Bounded:
         return Bounded(-self.value, self.envelope)
 
 
+class Tracked(Bounded):
+    """The same to first order: errors of factors add, and their envelopes are not multiplied.
+
+    The product of envelopes is simpler and, over the few levels of most formulas, as good. Through
+    the levels of a solve it grows as a power of a power: of 92 points, 29 were left.
+    """
+
+    __slots__ = ()
+
+    def __add__(self, other: Bounded) -> Tracked:
+        return Tracked(self.value + other.value, self.envelope + other.envelope)
+
+    def __mul__(self, other: Bounded) -> Tracked:
+        mine, theirs = abs(self.value) * other.envelope, abs(other.value) * self.envelope
+        return Tracked(self.value * other.value, mine + theirs)
+
+    def __truediv__(self, other: Bounded) -> Tracked:
+        size = abs(other.value)
+        if other.envelope >= LARGEST_CONDITION * size:
+            raise OutsideDomain
+        value = self.value / other.value
+        return Tracked(value, (self.envelope + abs(value) * other.envelope) / size)
+
+    def __neg__(self) -> Tracked:
+        return Tracked(-self.value, self.envelope)
+
+
 def exact(value: float | Fraction) -> Bounded:
     """A double or a rational constant in this arithmetic.
 
@@ -111,6 +144,16 @@ def call(function: str, argument: Bounded) -> Bounded:
         raise OutsideDomain
     value, slope = _FUNCTIONS[function](u)
     return Bounded(value, abs(value) + abs(slope) * argument.envelope)
+
+
+def tracked(value: float | Fraction) -> Tracked:
+    """The same for formulas of many levels.
+
+    >>> tracked(3.0) * tracked(-2.0)
+    Tracked(value=Decimal('-6'), envelope=Decimal('12'))
+    """
+    taken = exact(value)
+    return Tracked(taken.value, taken.envelope)
 
 
 def _sqrt(u: Decimal) -> tuple[Decimal, Decimal]:
@@ -145,11 +188,19 @@ def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> 
         OutsideDomain: The equations have no value there.
     """
     with localcontext(_CONTEXT):
-        known = {name: exact(value) for name, value in inputs.items()}
         try:
+            if reference.deep:
+                own = {name: tracked(value) for name, value in inputs.items()}
+                return [*reference.evaluate(function, own, tracked, _tracked_call)]
+            known = {name: exact(value) for name, value in inputs.items()}
             return reference.evaluate(function, known, exact, call)
         except ArithmeticError as error:  # e.g. the exponential of 1e300
             raise OutsideDomain from error
+
+
+def _tracked_call(function: str, argument: Tracked) -> Tracked:
+    found = call(function, argument)
+    return Tracked(found.value, found.envelope)
 
 
 def error_in_envelopes(computed: float, bounded: Bounded) -> float:

@@ -33,6 +33,7 @@ class Reference:
         self.equations = equations
         self.state = equations.setting.state
         self.parameters = equations.setting.parameters
+        self.deep = bool(equations.kept)
 
     def evaluate(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
