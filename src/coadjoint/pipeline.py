@@ -129,7 +129,8 @@ def _origin(spec: Spec) -> str:
         return f"on {spec.algebra.name}, {spec.invariance} invariant"
     if spec.reduction is not None:
         return f"{_origin(spec.reduction.whole)}, restricted"
-    assert spec.poisson is not None, "the reader asks for an algebra or a bracket"
+    if spec.poisson is None:
+        return "on the space of " + ", ".join(q.name for q in spec.having_role("coordinate"))
     return {
         "nambu": "with the Nambu bracket of its distinguished functions",
         "brackets": "with the declared brackets",

@@ -135,8 +135,8 @@ def mass_points(setting: Setting, lagrangian: Element) -> MassPoints:
     half = trace(inertia) / 2
     second = combine(tuple(scale(half, axis) for axis in AXES), inertia, -1)
     total, first = setting.field.zero, (setting.field.zero,) * 3
-    if len(mass) == 6:  # Omega . D V is V . Omega x c for D_ij = epsilon_ijk c_k
-        total, first = mass[3][3], (mass[1][5], mass[2][3], mass[0][4])
+    if len(mass) == 6:  # Omega . D V is V . Omega x c for D_ij = -epsilon_ijk c_k
+        total, first = mass[3][3], (mass[2][4], mass[0][5], mass[1][3])
     points = MassPoints(total, first, second)
     _check_points(setting, lagrangian, points)
     return points
@@ -148,14 +148,15 @@ def _check_points(setting: Setting, lagrangian: Element, points: MassPoints) -> 
     advected = {name for variable in setting.advected for name in variable.components}
     rest = lagrangian - _at_rest(setting, lagrangian) - _kinetic_energy(setting, points)
     moving = set(setting.velocities) | advected
-    moments = (points.mass, *points.first, *(x for row in points.second for x in row))
-    bad = [rest] if rest != 0 else [x for x in moments if field.reach(field.zero + x) & moving]
-    if bad:
-        term = element_text(field, bad[0])
+    moments = [points.mass, *points.first, *(x for row in points.second for x in row)]
+    problems = [(rest, "is left over")] if rest != 0 else []
+    problems += [(x, "is not constant") for x in moments if field.reach(field.zero + x) & moving]
+    if problems:
+        term, what = element_text(field, problems[0][0]), problems[0][1]
         raise refusal(
             setting,
             ROUTE,
-            f"no points fixed in a body have this kinetic energy: {term} is left over",
+            f"no points fixed in a body have this kinetic energy: {term} {what}",
             term,
             "m*dot(v, v)/2 + dot(v, cross(Omega, c)) + dot(Omega, J*Omega)/2 with constant m, c, J",
             "A mass that depends on the direction is that of a fluid, too: remove the route.",
@@ -174,7 +175,8 @@ def _kinetic_energy(setting: Setting, points: MassPoints) -> Element:
     moving = points.mass * dot(v, v) / 2
     both = dot(v, points.weighed(lambda x: cross(omega, x)))
     turning = points.squared(lambda x, y: (dot(cross(omega, x), cross(omega, y)),))
-    return setting.field.zero + moving + both + turning[0] / 2
+    energy: Element = moving + both + turning[0] / 2
+    return energy
 
 
 # -- the motion -----------------------------------------------------------------------------------

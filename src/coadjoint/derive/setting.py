@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from coadjoint.algebra import LieAlgebra, Representation
+from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
@@ -276,8 +277,20 @@ def _function_calls(spec: Spec) -> int:
 def whole(quantity: Variable | Parameter, values: Mapping[str, Quantity]) -> Quantity:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
+    if isinstance(quantity, Variable) and quantity.elements:
+        return weighted(parts, quantity.elements)
     whole = quantity.form in FORMS
     return unpacked(parts, quantity.form) if whole else shaped(parts, quantity.shape)
+
+
+def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
+    """``sum x_i e_i`` for matrices e_i."""
+    rows = range(size(matrices))
+    entries: dict[tuple[int, int], Element] = {}
+    for x, matrix in zip(parts, matrices, strict=True):
+        for place, value in matrix.items():
+            entries[place] = entries.get(place, 0) + x * value
+    return tuple(tuple(entries.get((i, j), 0 * parts[0]) for j in rows) for i in rows)
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
-from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.components import FORMS, Shape, component_names, matrix_size, unpacked
 from coadjoint.spec.tree import Node, walk
@@ -55,6 +55,8 @@ class Variable:
         doc: Free text for documents.
         form: One of `FORMS` if the components are the entries of a matrix, else "".
         of: The coordinate whose velocity or momentum it is; "" over an algebra.
+        elements: Matrices of which a velocity is the sum, weighted by its components, in formulas;
+            empty where the form says it all.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Variable:
     doc: str = ""
     form: str = ""
     of: str = ""
+    elements: tuple[SparseMatrix, ...] = ()
 
     @property
     def components(self) -> tuple[str, ...]:

@@ -1,0 +1,115 @@
+r"""Restricted motions: any route on a whole system, restricted to a section that the motion keeps.
+
+If the motion :math:`\dot x = X(x, y), \dot y = Y(x, y)` keeps the submanifold :math:`y = s(x)`,
+that is :math:`Ds(x)\, X(x, s(x)) = Y(x, s(x))`, then on it :math:`\dot x = X(x, s(x))`.
+Comes in: a Setting of what is left, and a route. Goes out: Equations of what is left, derived by
+that route for the whole system in a field of its own. What must hold for it is proved in
+`coadjoint.prove.reductions`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+from coadjoint.derive.equations import Equations, Exact, Step, rate, symbol
+from coadjoint.derive.interpret import entries
+from coadjoint.derive.observables import observables
+from coadjoint.derive.refusals import refusal
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+Route = Callable[[Spec | Setting], Equations]
+
+
+class Restriction:
+    """A whole system on the section, in the field of what is left; y keeps its name there.
+
+    Args:
+        setting: Of what is left.
+        whole: The equations of the whole system.
+    """
+
+    def __init__(self, setting: Setting, whole: Equations) -> None:
+        reduction = setting.spec.reduction
+        assert reduction is not None, f"{setting.spec.name} is not restricted"
+        self.setting, self.whole = setting, whole
+        self.section: dict[str, Element] = {}
+        for variable in setting.spec.defined:
+            values = entries(setting.value(reduction.section[variable.name]))
+            self.section |= dict(zip(variable.components, values, strict=True))
+
+    def __call__(self, function: Element) -> Element:
+        """A function of the whole state."""
+        field, own = self.setting.field, self.whole.setting
+        values = {name: field[name] for name in (*own.state, *own.parameters)}
+        return own.field.evaluate(self.whole.closed(function), values, field.number, field.call)
+
+    @cached_property
+    def rates(self) -> dict[str, Element]:
+        """Rates of the whole state, by name."""
+        pairs = zip(self.whole.setting.state, self.whole.exact.rates, strict=True)
+        return {name: self(value) for name, value in pairs}
+
+
+def restricted(setting: Setting, route: Route) -> Equations:
+    """The equations of what is left, by a route for the whole system.
+
+    Raises:
+        DerivationError: The route cannot be followed, or moves in variables of its own.
+    """
+    restriction = Restriction(setting, whole_equations(setting, route))
+    whole, rates = restriction.whole, restriction.rates
+    assert whole.exact.energy is not None, "the reader asks for a Hamiltonian"
+    energy = restriction(whole.exact.energy)
+    kept = tuple(rates[name] for name in setting.state)
+    section = tuple(restriction.section.items())
+    exact = Exact(section, kept, energy, observables(setting, energy), None)
+    return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
+
+
+def whole_equations(setting: Setting, route: Route) -> Equations:
+    """The equations of the system before the restriction, in a field of its own."""
+    reduction = setting.spec.reduction
+    assert reduction is not None, f"{setting.spec.name} is not restricted"
+    whole = route(reduction.whole)
+    if whole.chart is not None:
+        raise refusal(
+            setting,
+            whole.route,
+            "it moves in variables of its own, and the section is one over the state",
+            whole.route,
+            "a route on the declared state, such as lie-poisson",
+            "Remove the route.",
+        )
+    return whole
+
+
+def _steps(
+    restriction: Restriction, energy: Element, rates: tuple[Element, ...]
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    setting, route = restriction.setting, restriction.whole.route
+    whole = ((rate(name), value) for name, value in restriction.rates.items())
+    return (
+        Step(
+            f"Motion of the whole system by the route {route}",
+            "dx/dt = X(x, y),  dy/dt = Y(x, y)",
+            r"\dot x = X(x, y), \quad \dot y = Y(x, y)",
+            tuple(whole),
+        ),
+        Step(
+            "Section that it keeps",
+            "y = s(x)",
+            "y = s(x)",
+            tuple((symbol(name), value) for name, value in restriction.section.items()),
+        ),
+        Step("Hamiltonian on it", "h(x, y)", "h(x, y)", ((symbol("h"), energy),)),
+        Step(
+            "Motion on it",
+            "dx/dt = X(x, y)",
+            r"\dot x = X(x, y)",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+    )
