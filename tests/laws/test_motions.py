@@ -104,6 +104,10 @@ def test_motions_are_hamiltonian(name, route):
 def test_brackets_satisfy_jacobi(name, route):
     """Every triple of coordinates, at a point; two coordinates have no triple."""
     equations = derive(shipped(name), route)
+    tensor = equations.poisson_tensor
+    if not any(entry.free_symbols for entry in tensor):
+        assert tensor.det() != 0  # canonical: nothing to differentiate, and no Casimir
+        return
     check_jacobi(tensor_of(equations), slopes_of(equations))
 
 

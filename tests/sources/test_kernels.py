@@ -78,11 +78,14 @@ def test_jacobian_is_the_derivative_of_the_book_formula(built, target):
     state, parameters = inputs(built.name, shared=False)
     found = built.jacobian(state, parameters, target=target)
     for n, x, p in members(state, parameters):
+        slopes = []
         for j in range(len(x)):
             step = [size * (i == j) for i in range(len(x))]
             up = textbook.RATES[built.name]([a + b for a, b in zip(x, step, strict=True)], p)
             down = textbook.RATES[built.name]([a - b for a, b in zip(x, step, strict=True)], p)
-            check(found[:, j, n], [(a - b) / (2 * size) for a, b in zip(up, down, strict=True)])
+            slopes.append([(a - b) / (2 * size) for a, b in zip(up, down, strict=True)])
+        # rates need not depend on every component, but they do on some
+        check(found[:, :, n].ravel(), [row[i] for i in range(len(x)) for row in slopes])
 
 
 @pytest.mark.parametrize("target", TARGETS)

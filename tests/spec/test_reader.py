@@ -39,6 +39,7 @@ def body(size):
 
 
 TWO, ONE = ("euler-poincare", "lie-poisson"), ("lie-poisson",)
+CANONICAL = ("canonical", "poisson")
 GALILEI = "J1 J2 J3 K1 K2 K3 P1 P2 P3 E"
 INERTIA = "I1 I2 I3 A1 A2 A3 B1 B2 B3 c"
 SYMMETRIC_S, SYMMETRIC_P = "S11 S12 S13 S22 S23 S33", "P11 P12 P13 P22 P23 P33"
@@ -57,10 +58,10 @@ SHIPPED = {
     "nambu_body": ("x1 x2 x3", "I1 I2 I3", ("nambu", "poisson")),
     "nambu_pendulum": ("x1 x2 x3", "I1 I2 I3", ("nambu", "poisson")),
     "sp2_momentum": ("X1 X2 X3", "m k b", ("poisson",)),
-    "spd_motion": ("S11 S12 S22 P11 P12 P22 q1 q2 p1 p2", "", ("poisson",)),
-    "spd_motion_3": (f"{SYMMETRIC_S} {SYMMETRIC_P} q1 q2 q3 p1 p2 p3", "", ("poisson",)),
-    "ellipsoidal_motion": (f"{ROWS_Q} {ROWS_P}", "k b", ("poisson",)),
-    "c3_oscillators": ("q1 q2 q3 p1 p2 p3", "w1 w2 w3 c k", ("poisson",)),
+    "spd_motion": ("S11 S12 S22 P11 P12 P22 q1 q2 p1 p2", "", CANONICAL),
+    "spd_motion_3": (f"{SYMMETRIC_S} {SYMMETRIC_P} q1 q2 q3 p1 p2 p3", "", CANONICAL),
+    "ellipsoidal_motion": (f"{ROWS_Q} {ROWS_P}", "k b", CANONICAL),
+    "c3_oscillators": ("q1 q2 q3 p1 p2 p3", "w1 w2 w3 c k", CANONICAL),
     **{f"so{size}_body": body(size) for size in (5, 6, 8)},
 }
 
@@ -75,7 +76,8 @@ def test_shipped_specs_have_the_state_and_parameters_of_the_books(system):
     assert spec.license == "BSD-3-Clause"
     assert all(p.default is not None and p.doc and p.unit for p in spec.parameters)
     assert all(v.doc and v.unit for v in spec.variables)
-    assert spec.casimirs or system == "affine_line"
+    canonical = spec.poisson is not None and spec.poisson.kind == "canonical"
+    assert spec.casimirs or canonical or system == "affine_line"
     assert spec.conserved[0].formula.text == "energy"
     assert "Holm" in spec.source
 
