@@ -63,7 +63,30 @@ def test_relation_that_is_linear_in_nothing_still_proves():
     assert decide_zero([c**4 - (1 - s**2) ** 2], field, circle).verdict is Verdict.PROVED
     refuted = decide_zero([c**3 - c], field, circle)
     assert refuted.verdict is Verdict.REFUTED
-    assert refuted.defect == "-c*s^2"
+    c_value, s_value = (float(refuted.point[name]) for name in "cs")
+    assert c_value**2 + s_value**2 == pytest.approx(1, abs=1e-14)
+    assert c_value**3 - c_value == pytest.approx(float(refuted.defect), abs=1e-14)
+
+
+def test_real_zero_sets_may_be_smaller_than_ideals_tell():
+    """Where x^2 + y^2 = 0 both vanish, though the ideal holds neither: supported, not refuted."""
+    field = Field(["x", "y"])
+    x, y = field["x"], field["y"]
+    point = Ideal(field, [x**2 + y**2], "x^2 + y^2 = 0")
+    decision = decide_zero([x], field, point)
+    assert decision.verdict is Verdict.SUPPORTED
+    assert "points where x^2 + y^2 = 0" in decision.method
+    assert decide_zero([x + 1], field, point).verdict is Verdict.REFUTED
+
+
+def test_empty_zero_set_proves_nothing():
+    """Nothing real satisfies x^2 + 1 = 0, and a remainder is shown."""
+    field = Field(["x"])
+    empty = Ideal(field, [field["x"] ** 2 + 1], "x^2 + 1 = 0")
+    decision = decide_zero([field["x"]], field, empty)
+    assert decision.verdict is Verdict.REFUTED
+    assert "no real point" in decision.method
+    assert decision.defect == "x"
 
 
 def test_several_relations_are_reduced_together():

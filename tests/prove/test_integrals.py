@@ -97,13 +97,24 @@ def test_on_an_empty_level_set_nothing_is_proved():
     assert "Pi1 = 0, Pi1 - 1 = 0 holds nowhere" in found.method
 
 
-def test_what_no_point_refutes_is_refuted_by_its_remainder():
-    """A level set that is linear in nothing: the message has the remainder in a point's place."""
+def test_a_level_set_that_is_linear_in_nothing_has_points_too():
+    """Pi3 moves on the sphere Pi . Pi = 1, and the point that shows it lies there."""
     claim = 'conserved = [{ integral = "Pi3", where = ["dot(Pi, Pi) - 1"] }]'
     declared = spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
     (found,) = prove(declared).refuted
+    length = sum(float(found.counterexample[f"Pi{n}"]) ** 2 for n in (1, 2, 3))
+    assert length == pytest.approx(1, abs=1e-13)
+    with pytest.raises(ClaimError, match="where dot"):
+        prove(declared).require()
+
+
+def test_what_no_point_refutes_is_refuted_by_its_remainder():
+    """A level set without real points: the message has the remainder in a point's place."""
+    claim = 'conserved = [{ integral = "Pi3", where = ["dot(Pi, Pi) + 1"] }]'
+    declared = spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
+    (found,) = prove(declared).refuted
     assert found.counterexample == {}
-    assert "remainder modulo the ideal of dot(Pi, Pi) - 1 = 0" in found.method
+    assert "remainder modulo the ideal of dot(Pi, Pi) + 1 = 0" in found.method
     with pytest.raises(ClaimError, match=r"remainder modulo .* what is left is .*Pi1\*Pi2"):
         prove(declared).require()
 

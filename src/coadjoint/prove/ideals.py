@@ -8,14 +8,20 @@ refutes it. Read next: `coadjoint.prove.zero`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
+import mpmath
 from sympy.polys.groebnertools import groebner
 from sympy.polys.rings import PolyElement
 
 from coadjoint.exact import Element, Field
+
+#: Steps of Newton's method; it halves an error at least, also where the zero set is singular.
+STEPS = 150
 
 
 class Ideal:
@@ -99,6 +105,49 @@ class Ideal:
             for name, root in self.solved.items()
         }
         return {**point, **values}
+
+    def near(self, starts: Iterable[Mapping[str, Fraction]]) -> Iterator[dict[str, Any]]:
+        """Points of the zero set, to the working precision of mpmath, near rational ones.
+
+        Newton's method along the gradients of the relations; starts from which it does not
+        converge, or leaves the domain of a function, are passed over.
+        """
+        slopes = [self.field.gradient(relation, self.names) for relation in self.relations]
+        for start in starts:
+            point = {name: mpmath.mpf(x.numerator) / x.denominator for name, x in start.items()}
+            with suppress(ZeroDivisionError, ValueError):
+                for _ in range(STEPS):
+                    rest = mpmath.matrix([self._value(each, point) for each in self.relations])
+                    if mpmath.norm(rest, mpmath.inf) < mpmath.mpf(10) ** -(mpmath.mp.dps - 5):
+                        yield point
+                        break
+                    turn = mpmath.matrix([[self._value(s, point) for s in row] for row in slopes])
+                    step = turn.T * mpmath.lu_solve(turn * turn.T, rest)
+                    moved = zip(self.names, step, strict=True)
+                    point = point | {name: point[name] - by for name, by in moved}
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The variables that occur in the relations, in the order of the field."""
+        present = frozenset[str]().union(*map(self.field.reach, self.relations))
+        return tuple(name for name in self.field.names if name in present & self._variables)
+
+    def _value(self, element: Element, point: Mapping[str, Any]) -> Any:
+        """The value of an element at a real point, functions included."""
+        return self.field.evaluate(
+            element, point, lambda x: mpmath.mpf(x.numerator) / x.denominator, real_function
+        )
+
+
+def real_function(function: str, argument: Any) -> Any:
+    """A real elementary function, to the working precision of mpmath.
+
+    Raises:
+        ValueError: The argument is outside the real domain.
+    """
+    if (argument < 0 and function in ("sqrt", "log")) or (argument == 0 and function == "log"):
+        raise ValueError(f"{function} of {argument}")
+    return getattr(mpmath, function)(argument)
 
 
 def _numerator(element: Element) -> PolyElement:
