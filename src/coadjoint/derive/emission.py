@@ -1,4 +1,4 @@
-"""Emission: what a route that starts from a Lagrangian over an algebra hands over, beside its rates.
+"""Emission: what a route from a Lagrangian over an algebra hands over beside its rates.
 
 Comes in: the rates of the declared state, and the Legendre transform. Goes out: the `Exact` part of
 its Equations: velocities, energy, observables and the bracket, the same on every such route.

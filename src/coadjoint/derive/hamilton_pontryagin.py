@@ -86,7 +86,7 @@ def _action(setting: Setting, lagrangian: Element) -> _Action:
         change = setting.actions[variable.name].act(eps, a)
         pairs = zip(variable.components, a, change, strict=True)
         moved |= {name: x - setting.sign * dx for name, x, dx in pairs}
-    turning = setting.algebra.bracket(eps, deps)
+    turning = field.vector(setting.algebra.bracket(eps, deps))
     constraint = [
         rate - setting.sign * turn / 2 - xi
         for rate, turn, xi in zip(deps, turning, setting.elements(setting.velocities), strict=True)

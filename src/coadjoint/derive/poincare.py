@@ -121,7 +121,8 @@ def _steps(
         ),
         Step(
             "Poincare's equations",
-            f"d/dt dT/deta_s = {sign}sum c_ks^i eta_k dT/deta_i + X_s (T + U),  da/dt = eta_s X_s a",
+            f"d/dt dT/deta_s = {sign}sum c_ks^i eta_k dT/deta_i + X_s (T + U),  "
+            "da/dt = eta_s X_s a",
             r"\frac{d}{dt} \frac{\partial T}{\partial \eta_s} = "
             rf"{sign}\sum c_{{ks}}^i \eta_k \frac{{\partial T}}{{\partial \eta_i}} + X_s (T + U), "
             r"\qquad \dot a = \eta_s X_s a",

@@ -15,6 +15,7 @@ from time import perf_counter
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.reconstruction import fixed_row
 from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.derive.symmetries import in_formulas
@@ -44,7 +45,7 @@ from coadjoint.prove.zero import (
     decide_zero,
 )
 from coadjoint.spec import Formula, Spec
-from coadjoint.spec.model import Integral
+from coadjoint.spec.model import Integral, SpatialMomentum
 
 #: (statement, kind, what must be zero or a decision already made)
 Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
@@ -253,8 +254,20 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
         if seen.conserved:
-            parts = [dict(first.exact.observables)[name] for name in seen.components]
-            yield f"{seen.name} is conserved", "conserved", partial(_drifts, first, parts)
+            yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, first, seen)
+
+
+def _seen_from_space(first: Equations, seen: SpatialMomentum) -> Decision:
+    """The rates of a momentum as seen from space, at matrices of the group's form."""
+    emitted = dict(first.exact.observables)
+    fixed = fixed_row(first.setting)
+    where = Ideal(
+        first.setting.field,
+        [relation.element for relation in fixed],
+        ", ".join(relation.text for relation in fixed),
+    )
+    rates = _drifts(first, [emitted[name] for name in seen.components])
+    return decide_zero(rates, first.setting.field, where)
 
 
 def _drifts(first: Equations, parts: Sequence[Element]) -> list[Element]:

@@ -29,15 +29,19 @@ def component_names(name: str, shape: Shape, form: str = "") -> tuple[str, ...]:
     ('M12', 'M13', 'M23')
     >>> component_names("Pi1", (2,))  # a digit at the end would run into the index
     ('Pi1_1', 'Pi1_2')
+    >>> component_names("q", (4,), "quaternion")  # counted from the real part
+    ('q0', 'q1', 'q2', 'q3')
     """
     if not shape:
         return (name,)
+    first = 0 if form == "quaternion" else 1
+    form = form if form in FORMS else ""
     if form:
         shape = (matrix_size(shape[0], form) or 0,) * 2
     indices = _places(shape[0], form) if form else product(*map(range, shape))
     joint = "_" if len(shape) == 2 and max(shape) > 9 else ""
     lead = name + "_" if name[-1].isdigit() or joint else name
-    return tuple(lead + joint.join(str(n + 1) for n in index) for index in indices)
+    return tuple(lead + joint.join(str(n + first) for n in index) for index in indices)
 
 
 def _places(size: int, form: str) -> list[tuple[int, int]]:
@@ -56,6 +60,8 @@ def matrix_size(count: int, form: str) -> int | None:
     >>> matrix_size(28, "antisymmetric"), matrix_size(6, "symmetric"), matrix_size(6, "matrix")
     (8, 3, None)
     """
+    if form not in FORMS:
+        return None
     near = isqrt(2 * count) if form != "matrix" else isqrt(count)
     sizes = (size for size in (near, near + 1) if len(_places(size, form)) == count > 0)
     return next(sizes, None)

@@ -22,11 +22,13 @@ class Start:
         kinds: The kinds of spec that it goes with, of those that `kinds_of` returns.
         energies: The tables of which it takes one; empty if it takes none.
         table: A table of its own, without which it cannot start; "" if none.
+        option: A table of its own that may be left out; "" if none.
     """
 
     kinds: tuple[str, ...]
     energies: tuple[str, ...] = ()
     table: str = ""
+    option: str = ""
 
 
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
@@ -38,7 +40,7 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "euler-poincare": _ON_ALGEBRA,
         "lie-poisson": Start(("algebra",), _EITHER),
         "hamilton-pontryagin": _ON_ALGEBRA,
-        "clebsch": _ON_ALGEBRA,
+        "clebsch": Start(("algebra",), _LAGRANGIAN, option="clebsch"),
         "poincare": _ON_ALGEBRA,
         "matrix-euler-poincare": _ON_ALGEBRA,
         "newton-euler": _ON_ALGEBRA,

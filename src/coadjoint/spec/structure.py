@@ -11,11 +11,13 @@ from fractions import Fraction
 from math import prod
 from types import MappingProxyType
 
-from coadjoint.algebra.catalogue import REPRESENTATIONS
+from coadjoint.algebra.catalogue import ATTITUDES, REPRESENTATIONS
 from coadjoint.algebra.families import so_indefinite
-from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
+from coadjoint.spec.components import FORMS
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.model import Parameter, Shape, Variable, matrix_size
 from coadjoint.spec.positions import KeyPath
@@ -45,6 +47,7 @@ def read_variable(
     algebra: LieAlgebra | None,
     representations: Mapping[str, Representation],
     parts: Mapping[str, VariablePart] = MappingProxyType({}),
+    invariance: str = "left",
 ) -> Variable:
     """A variable with its place in the algebra, or its shape where there is none.
 
@@ -55,6 +58,7 @@ def read_variable(
         algebra: The algebra of the velocities, if any.
         representations: Declared ones, by name.
         parts: All that is declared, for coordinates that others are velocities of.
+        invariance: Of the motion: the side from which an attitude is seen.
 
     Raises:
         SpecError: A key does not go with the role, the role not with the spec, the block or the
@@ -75,20 +79,26 @@ def read_variable(
     elif part.of is not None:
         raise _alien_key(source, (*key, "of"), part)
     elif part.role == "advected":
-        representation = _representation(source, key, part, algebra, representations)
+        representation = _representation(source, key, part, algebra, representations, invariance)
         count = representation.dimension
         flat = count > 1
     else:
         block = _block(source, (*key, "block"), part, algebra)
         count, flat = len(block), len(block) > 1
-    form = part.form or ""
-    if form and matrix_size(count, form) is None:
+    form = part.form or _own_form(representation)
+    if form in FORMS and matrix_size(count, form) is None:
         raise _misfit(source, (*key, "form"), count, form)
-    if form == "antisymmetric" and block and algebra is not None:
+    elements: tuple[SparseMatrix, ...] = ()
+    if form and block and algebra is not None and algebra.elements:
+        _check_elements(source, (*key, "form"), algebra, block, form)
+        elements = algebra.elements if part.role == "velocity" else ()
+    elif form == "antisymmetric" and block and algebra is not None:
         _check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
     of = part.of or ""
-    return Variable(name, part.role, shape, block, representation, part.unit, part.doc, form, of)
+    return Variable(
+        name, part.role, shape, block, representation, part.unit, part.doc, form, of, elements
+    )
 
 
 def _as_partner(
@@ -164,6 +174,27 @@ def _misfit(source: Source, key: KeyPath, count: int, form: str) -> CoadjointErr
     )
 
 
+def _check_elements(
+    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
+) -> None:
+    """The matrices of an algebra with a bracket of its own are of the form that is declared."""
+    rows = matrix_size(len(block), form)
+    sign = -1 if form == "antisymmetric" else 1
+    for i in block:
+        matrix = algebra.elements[i]
+        turned = {(c, r): sign * value for (r, c), value in matrix.items()}
+        if form == "matrix" or len(block) < algebra.dimension:
+            turned = {}
+        if size(algebra.elements) != rows or turned != dict(matrix):
+            raise source.fault(
+                key,
+                f"the matrix of {algebra.basis[i]} is not of the form {form!r}",
+                found=algebra.basis[i],
+                expected=f"a basis of all {form} matrices with {rows} rows",
+                hint="Remove form, or declare the algebra by such matrices.",
+            )
+
+
 def _check_planes(
     source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]
 ) -> None:
@@ -200,6 +231,7 @@ def _representation(
     part: VariablePart,
     algebra: LieAlgebra,
     declared: Mapping[str, Representation],
+    invariance: str,
 ) -> Representation:
     """The action on an advected quantity."""
     if part.representation is None:
@@ -211,7 +243,18 @@ def _representation(
             hint='Write representation = "vector".',
         )
     inner = (*key, "representation")
-    return representation_of(source, inner, algebra, part.representation, declared)
+    name = part.representation
+    return representation_of(source, inner, algebra, name, declared, invariance)
+
+
+def _own_form(representation: Representation | None) -> str:
+    """The form that an attitude has by itself: a unit quaternion, or a square matrix."""
+    if representation is None or representation.name not in ATTITUDES:
+        return ""
+    if representation.name == "quaternion":
+        return "quaternion"
+    count = representation.dimension
+    return "matrix" if count > 1 and matrix_size(count, "matrix") else ""
 
 
 def _block(

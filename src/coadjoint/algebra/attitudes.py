@@ -1,0 +1,80 @@
+"""Attitudes: the group element itself as a quantity on which the algebra acts.
+
+Comes in: an algebra and the side on which its motions multiply. Goes out: the `Representation` by
+which an attitude is advected like anything else: a left-invariant motion ``dg/dt = g xi`` is
+``dg/dt = -rho(xi) g`` with ``rho(xi) g = -g xi``, a right-invariant one ``dg/dt = xi g`` has
+``rho(xi) g = xi g``. Read next: `coadjoint.derive.reconstruction`.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.matrices import Matrix, kronecker, size
+from coadjoint.algebra.representation import Representation, defining
+from coadjoint.errors import AlgebraError
+
+#: [e1, e2] = e3 and cyclic: so(3), and su(2) in the basis of half the Pauli matrices.
+_ROTATIONS = {(0, 1): {2: 1}, (0, 2): {1: -1}, (1, 2): {0: 1}}
+
+
+def attitude(algebra: LieAlgebra, invariance: str = "left") -> Representation:
+    """A matrix of the group, row by row; without a last row that stays ``(0, ..., 0, 1)``.
+
+    For so(n) it has n x n entries; for a left-invariant motion on se(n) they are those of ``[R |
+    x]``. From the other side the last row is needed, since x moves by it.
+
+    Raises:
+        AlgebraError: The algebra has no matrices.
+
+    >>> from coadjoint.algebra import algebra_by_name
+    >>> attitude(algebra_by_name("se(3)")).dimension
+    12
+    """
+    matrices = defining(algebra, "attitude").matrices
+    n = size(matrices)
+    if invariance == "right":
+        acting = tuple(kronecker(X, _identity(n), n) for X in matrices)
+        return Representation(algebra, "attitude", n * n, acting)
+    ones = _identity(n - 1 if has_fixed_row(algebra) else n)
+    turned = ({(c, r): -x for (r, c), x in X.items()} for X in matrices)
+    acting = tuple(kronecker(ones, X, n) for X in turned)
+    return Representation(algebra, "attitude", len(ones) * n, acting)
+
+
+def has_fixed_row(algebra: LieAlgebra) -> bool:
+    """Whether the last row of every matrix of the algebra is zero, so that the group's is fixed."""
+    last = size(algebra.matrices) - 1
+    return all(row != last for X in algebra.matrices for row, _ in X)
+
+
+def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:
+    """A unit quaternion: ``dq/dt = q [0, xi]/2``, right-invariant ``dq/dt = [0, xi] q/2``.
+
+    Raises:
+        AlgebraError: The algebra is not that of the rotations.
+
+    >>> from coadjoint.algebra import algebra_by_name
+    >>> quaternion(algebra_by_name("so(3)")).act([0, 0, 2], [1, 0, 0, 0])  # -q k
+    (0, 0, 0, -1)
+    """
+    constants = {pair: dict(row) for pair, row in algebra.constants.items()}
+    if algebra.dimension != 3 or constants != _ROTATIONS:
+        raise AlgebraError(
+            f"{algebra.name} has no unit quaternions; expected so(3) or su(2), or a basis with "
+            "[e1, e2] = e3 and cyclic. Take the representation 'attitude'.",
+            found=algebra.name,
+        )
+    half = Fraction(1, 2) if invariance == "right" else Fraction(-1, 2)
+    side = 1 if invariance == "right" else -1
+    acting: list[SparseMatrix] = []
+    for axis in range(3):  # multiplication by i, j or k from one side, in the basis 1, i, j, k
+        j, k = 1 + (axis + 1) % 3, 1 + (axis + 2) % 3
+        unit = {(1 + axis, 0): 1, (0, 1 + axis): -1, (k, j): side, (j, k): -side}
+        acting.append({place: half * x for place, x in unit.items()})
+    return Representation(algebra, "quaternion", 4, tuple(acting))
+
+
+def _identity(n: int) -> Matrix:
+    return {(i, i): 1 for i in range(n)}
