@@ -16,6 +16,7 @@ from coadjoint.algebra.extensions import (
 )
 from coadjoint.algebra.lie_algebra import (
     LieAlgebra,
+    from_bracket,
     from_brackets,
     from_matrices,
     same_constants,
@@ -33,6 +34,7 @@ __all__ = [
     "central_extension",
     "complexification",
     "direct_sum",
+    "from_bracket",
     "from_brackets",
     "from_matrices",
     "leibniz_extension",

@@ -8,8 +8,9 @@ Read next: `coadjoint.algebra.representation`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import combinations_with_replacement
 from types import MappingProxyType
 from typing import Any
 
@@ -30,6 +31,7 @@ __all__ = [
     "LieAlgebra",
     "SparseMatrix",
     "check_size",
+    "from_bracket",
     "from_brackets",
     "from_matrices",
     "same_constants",
@@ -65,6 +67,8 @@ class LieAlgebra(Invariants):
         constants: ``{(i, j): {k: c_ij^k}}`` for i < j, exact, zeros left out.
         blocks: Named runs of the basis, e.g. ``rotation`` and ``translation`` of se(3).
         matrices: A matrix for each basis vector where a matrix form is known, else empty.
+        elements: The matrices that the basis vectors are, where the bracket is not their
+            commutator; else empty.
 
     Raises:
         AlgebraError: The constants violate the Jacobi identity; the message names the triple.
@@ -75,6 +79,7 @@ class LieAlgebra(Invariants):
     constants: Constants
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     matrices: tuple[SparseMatrix, ...] = ()
+    elements: tuple[SparseMatrix, ...] = ()
 
     def __post_init__(self) -> None:
         frozen = {
@@ -94,7 +99,8 @@ class LieAlgebra(Invariants):
         """
         constants = {pair: converted(row, convert) for pair, row in self.constants.items()}
         matrices = tuple(converted(matrix, convert) for matrix in self.matrices)
-        return LieAlgebra(self.name, self.basis, constants, self.blocks, matrices)
+        elements = tuple(converted(matrix, convert) for matrix in self.elements)
+        return LieAlgebra(self.name, self.basis, constants, self.blocks, matrices, elements)
 
     def bracket(self, xi: Sequence[Any], eta: Sequence[Any]) -> tuple[Any, ...]:
         """``[xi, eta]^k = c_ij^k xi^i eta^j``."""
@@ -296,6 +302,51 @@ def from_matrices(
             )
         brackets[i, j] = coordinates
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
+
+
+def from_bracket(
+    name: str,
+    basis: Sequence[str],
+    elements: Sequence[SparseMatrix],
+    bracket: Callable[[SparseMatrix, SparseMatrix], SparseMatrix],
+) -> LieAlgebra:
+    """The Lie algebra spanned by matrices under a bilinear bracket of matrices.
+
+    Such as ``[X, Y] = X N Y - Y N X`` of symmetric X and Y with a fixed antisymmetric N (Bloch and
+    Iserles 2006; Holm 2011, appendix C.4).
+
+    Raises:
+        AlgebraError: The matrices are linearly dependent, the bracket is not antisymmetric, leaves
+            their span, or violates the Jacobi identity.
+
+    >>> from coadjoint.algebra.matrices import commutator
+    >>> turns = [{(1, 2): -1, (2, 1): 1}, {(0, 2): 1, (2, 0): -1}, {(0, 1): -1, (1, 0): 1}]
+    >>> from_bracket("turns", ("J1", "J2", "J3"), turns, commutator).constants[0, 1]
+    mappingproxy({2: 1})
+    """
+    span = _independent(name, basis, elements)
+    brackets = {}
+    for i, j in combinations_with_replacement(range(len(basis)), 2):
+        product = dict(bracket(elements[i], elements[j]))
+        if combination([(1, product), (1, bracket(elements[j], elements[i]))]):
+            raise AlgebraError(
+                f"{name}: [{basis[i]}, {basis[j]}] + [{basis[j]}, {basis[i]}] is not zero: "
+                f"[{basis[i]}, {basis[j]}] has the entries {entries_text(product)}; expected an "
+                "antisymmetric bracket. Subtract what it is with X and Y exchanged.",
+                pair=[basis[i], basis[j]],
+            )
+        coordinates = span.coordinates(product)
+        if coordinates is None:
+            raise AlgebraError(
+                f"{name}: the bracket of {basis[i]} and {basis[j]} is not in the span of the "
+                f"basis; it has the entries {entries_text(product)}. Add what is missing to the "
+                "basis.",
+                pair=[basis[i], basis[j]],
+            )
+        if i < j:
+            brackets[i, j] = coordinates
+    made = from_brackets(name, basis, brackets)
+    return replace(made, elements=tuple(dict(matrix) for matrix in elements))
 
 
 def _independent(name: str, basis: Sequence[str], matrices: Sequence[SparseMatrix]) -> Span:

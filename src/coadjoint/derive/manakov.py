@@ -111,8 +111,8 @@ def body_of(setting: Setting) -> Body:
             else momentum[plane] / inertia[plane]
         )
     symmetric, slopes = _potential(setting, n)
-    matrices = (_antisymmetric(setting, n, entries) for entries in (momentum, velocity))
-    return Body(n, *matrices, inertia, symmetric, slopes)
+    M, Omega = (_antisymmetric(setting, n, entries) for entries in (momentum, velocity))
+    return Body(n, M, Omega, inertia, symmetric, slopes)
 
 
 def _planes(setting: Setting) -> list[tuple[Plane, Element]]:
@@ -169,10 +169,11 @@ def _inertia(setting: Setting, planes: Sequence[tuple[Plane, Element]]) -> dict[
                 "a sum over the planes of a square times a function of parameters",
                 "Choose axes that decouple the planes, or declare a pair under [lax].",
             )
-    scaled = (row[n] / c**2 for n, ((_, c), row) in enumerate(zip(planes, second, strict=True)))
-    if spec.lagrangian is None:
-        scaled = (1 / (row[n] * c**2) for n, ((_, c), row) in enumerate(zip(planes, second)))
-    return {plane: value for (plane, _), value in zip(planes, scaled, strict=True)}
+    inertia = {}
+    for number, (plane, c) in enumerate(planes):
+        value = second[number][number]
+        inertia[plane] = value / c**2 if spec.lagrangian is not None else 1 / (value * c**2)
+    return inertia
 
 
 def _potential(setting: Setting, n: int) -> tuple[Matrix | None, tuple[Element, ...]]:
@@ -195,7 +196,8 @@ def _potential(setting: Setting, n: int) -> tuple[Matrix | None, tuple[Element, 
     assert formula is not None, "the reader asks for a Lagrangian or a Hamiltonian"
     sign = -1 if spec.lagrangian is not None else 1
     places = [(i, j) for i in range(n) for j in range(i, n)]
-    slopes = dict(zip(places, field.gradient(setting.formula(formula), variable.components)))
+    gradient = field.gradient(setting.formula(formula), variable.components)
+    slopes = dict(zip(places, gradient, strict=True))
     for (i, j), slope in slopes.items():
         if (i != j and slope != 0) or not field.reach(slope) <= {*setting.parameters}:
             name = variable.components[places.index((i, j))]
@@ -224,7 +226,7 @@ Pair = tuple[tuple[Element, ...], tuple[Element, ...]]
 
 
 def _by_sums(body: Body) -> Pair | None:
-    """a and ``b = a^2`` from ``a_i + a_j = I_ij``; None if that has no solution."""
+    """The a_i and ``b = a^2`` from ``a_i + a_j = I_ij``; None if that has no solution."""
     inertia, n = body.inertia, body.size
     if n == 2:
         half = inertia[0, 1] / 2
@@ -237,7 +239,7 @@ def _by_sums(body: Body) -> Pair | None:
 
 
 def _by_differences(setting: Setting, body: Body) -> Pair:
-    """a and b from ``I_ij (a_i - a_j) = b_i - b_j``, with ``a_1 = b_1 = 0``.
+    """The a_i and b_i from ``I_ij (a_i - a_j) = b_i - b_j``, with ``a_1 = b_1 = 0``.
 
     For i, j > 1 that leaves ``(I_ij - I_1i) a_i = (I_ij - I_1j) a_j``.
     """
@@ -267,7 +269,7 @@ def _by_differences(setting: Setting, body: Body) -> Pair:
 
 
 def _share(setting: Setting, body: Body, a: Sequence[Element]) -> Element:
-    """sigma of ``V = sigma tr(SA)/2 + constant``: ``c_i - c_j = sigma (a_i - a_j)``."""
+    """The sigma of ``V = sigma tr(SA)/2 + constant``: ``c_i - c_j = sigma (a_i - a_j)``."""
     apart = [(i, j) for i, j in combinations(range(body.size), 2) if a[i] != a[j]]
     share = setting.field.zero
     if apart:

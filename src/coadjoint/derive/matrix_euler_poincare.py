@@ -20,13 +20,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from coadjoint.algebra.linear import Span
-from coadjoint.algebra.matrices import SparseMatrix, size
+from coadjoint.algebra.matrices import SparseMatrix
 from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
 from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting, setting_of, weighted
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Spec
@@ -77,7 +77,7 @@ def _check_matrices(setting: Setting) -> None:
 def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     """Right-hand sides in state, velocities and parameters, in the order of the state."""
     field, sign = setting.field, setting.sign
-    xi = _total(setting, setting.elements(setting.velocities))
+    xi = weighted(setting.elements(setting.velocities), setting.algebra.matrices)
     M = _momentum(setting)
     # tr(M^T (xi e - e xi)) = tr((M^T xi - xi M^T) e)
     torque = bracket(field, _turned(M), xi)
@@ -93,16 +93,6 @@ def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     return setting.in_state_order(along, advected)
 
 
-def _total(setting: Setting, coefficients: Sequence[Element]) -> Matrix:
-    """``sum x_i e_i``."""
-    field, n = setting.field, size(setting.algebra.matrices)
-    entries: dict[tuple[int, int], list[Element]] = {}
-    for x, matrix in zip(coefficients, setting.algebra.matrices, strict=True):
-        for place, value in matrix.items():
-            entries.setdefault(place, []).append(x * value)
-    return tuple(tuple(field.sum(entries.get((i, j), ())) for j in range(n)) for i in range(n))
-
-
 def _momentum(setting: Setting) -> Matrix:
     """M in the span of the e_i with ``tr(M^T e_i) = mu_i``, by the Gram matrix of the basis."""
     basis = setting.algebra.matrices
@@ -115,7 +105,7 @@ def _momentum(setting: Setting) -> Matrix:
         inverse = span.coordinates({place: 1})
         assert inverse is not None, "the matrices of a basis are independent"
         weights.append(setting.field.sum(mu[n] * value for n, value in inverse.items()))
-    return _total(setting, weights)
+    return weighted(weights, setting.algebra.matrices)
 
 
 def _pairing(a: SparseMatrix, b: SparseMatrix) -> object:

@@ -72,6 +72,11 @@ class _Algebra(Part):
     matrices: dict[str, Matrix] | None = Field(
         None, description="a matrix for each name of the basis", json_schema_extra=named()
     )
+    bracket: str | None = Field(
+        None,
+        description="the bracket of two matrices X and Y of their span, such as 'X*N*Y - Y*N*X'; "
+        "by default the commutator",
+    )
     direct_sum: Annotated[list[OperandPart], Field(min_length=2)] | None = Field(
         None, description="algebras that commute with each other, as ['so(3)', 'so(3)']"
     )
@@ -99,6 +104,8 @@ class _Algebra(Part):
             raise ValueError(f"exactly one of {', '.join(WAYS)}")
         if self.brackets is not None and self.basis is None:
             raise ValueError("a basis beside the brackets, as basis = ['e1', 'e2', 'e3']")
+        if self.bracket is not None and self.matrices is None:
+            raise ValueError("a bracket of X and Y beside matrices alone")
         if self.name is not None and (self.basis is not None or self.blocks is not None):
             raise ValueError("no basis and no blocks beside a name, which has its own")
         if self.basis is not None and ways[0] not in ("brackets", "matrices"):

@@ -20,6 +20,7 @@ from coadjoint.algebra import (
     central_extension,
     complexification,
     direct_sum,
+    from_bracket,
     from_brackets,
     from_matrices,
     leibniz_extension,
@@ -41,6 +42,7 @@ from coadjoint.spec.algebra_schema import (
 )
 from coadjoint.spec.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.faults import did_you_mean, listed
+from coadjoint.spec.matrix_brackets import read_bracket
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.representations import (
     by_matrices,
@@ -94,7 +96,11 @@ class _Algebras:
         if way in ("brackets", "matrices"):
             basis = tuple(part.basis or declared)
             check_basis_names(self.source, (*key, "basis"), basis)
-            algebra: LieAlgebra = getattr(self, f"_by_{way}")(declared, inner, basis)
+            algebra = (
+                self._by_brackets(declared, inner, basis)
+                if way == "brackets"
+                else self._by_matrices(declared, inner, basis, part.bracket)
+            )
         else:
             algebra = getattr(self, f"_{way}")(declared, inner)
             self._check_single(algebra, inner)
@@ -172,9 +178,13 @@ class _Algebras:
         return basis.index(found[1]), basis.index(found[2])
 
     def _by_matrices(
-        self, tables: Mapping[str, list[list[Any]]], key: KeyPath, basis: tuple[str, ...]
+        self,
+        tables: Mapping[str, list[list[Any]]],
+        key: KeyPath,
+        basis: tuple[str, ...],
+        bracket: str | None,
     ) -> LieAlgebra:
-        matrices, _ = read_matrices(self.source, key, tables, basis, self.scalars)
+        matrices, size = read_matrices(self.source, key, tables, basis, self.scalars)
         for name in basis:
             if name not in matrices:
                 raise self.source.fault(
@@ -184,8 +194,14 @@ class _Algebras:
                     expected=f"a matrix for each of {listed(basis)}",
                     hint=f"Write {name} = [[...], [...]] among the matrices.",
                 )
-        with located(self.source, key):
-            return from_matrices(self.system, basis, [matrices[name] for name in basis])
+        chosen = [matrices[name] for name in basis]
+        if bracket is None:
+            with located(self.source, key):
+                return from_matrices(self.system, basis, chosen)
+        inner = (*key[:-1], "bracket")
+        of_two = read_bracket(self.source, inner, bracket, size, self.scalars)
+        with located(self.source, inner):
+            return from_bracket(self.system, basis, chosen, of_two)
 
     # -- products -----------------------------------------------------------------------
 
