@@ -32,7 +32,7 @@ def read_c(text: str, name: str) -> list[Body]:
     found = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
     if not found:
         raise failure(f"kernel.c has no function {name!r}", name)
-    body = re.sub(r"/\*.*?\*/", "", found[1], flags=re.DOTALL)
+    body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", found[1], flags=re.DOTALL)
     zeros, body = _take_zeros(body)
     branches = re.fullmatch(
         r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
@@ -89,7 +89,7 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
         body.statements.append((assigned[1], read_expression(assigned[2], name)))
     elif output:
         body.outputs.append((int(output[1]), read_expression(output[2], name)))
-    elif line and not re.fullmatch(r"\(void\)\w+", line):
+    elif line:
         raise failure(f"kernel.c: {line!r} is no line of our template", name)
 
 

@@ -23,10 +23,18 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 
 class Factors:
-    """The polynomials that occur in denominators, numbered in the order of first use."""
+    """The polynomials that occur in denominators, numbered in the order of first use.
 
-    def __init__(self, ring: PolyRing) -> None:
+    Args:
+        ring: Where they live.
+        functions: How many of the last generators stand for functions. Quotients over different
+            ones stay apart, like those over different factors: the forces between three particles
+            have three distances, and over a common denominator the shortest one would drown.
+    """
+
+    def __init__(self, ring: PolyRing, functions: int = 0) -> None:
         self.ring = ring
+        self._functions = frozenset(ring.gens[ring.ngens - functions :])
         self.known: list[PolyElement] = []
         self.monomial: list[bool] = []
         self._numbers: dict[PolyElement, int] = {}
@@ -67,7 +75,7 @@ class Factors:
         if factor not in self._numbers:
             self._numbers[factor] = len(self.known)
             self.known.append(factor)
-            self.monomial.append(len(factor) == 1)
+            self.monomial.append(len(factor) == 1 and factor not in self._functions)
         return self._numbers[factor]
 
 

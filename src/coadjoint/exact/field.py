@@ -58,7 +58,7 @@ class Field:
         # Two for each function: sine and cosine come together.
         self._free = [f"_f{n + 1}" for n in range(2 * slots)]
         self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
-        self._factors = Factors(self._ring)
+        self._factors = Factors(self._ring, len(self._free))
         self._names = (*names, *self._free)
         self._position = {name: n for n, name in enumerate(self._names)}
         self._generators = {
