@@ -76,3 +76,15 @@ def test_entries_are_read_row_by_row():
     assert entries(VALUES["A"]) == tuple(x[name] for name in names)
     assert entries(VALUES["a"]) == (x["a1"], x["a2"])
     assert entries(x["a1"]) == (x["a1"],)
+
+
+def test_a_power_in_a_denominator_stays_a_power():
+    """1/d^2 has the factor d twice, so that its derivative is -2 d'/d^3 with nothing to cancel."""
+    field = Field(["x", "y"])
+    tree = read_expression("x/(x + y)^2")
+    value = interpret(tree, {name: field[name] for name in "xy"}, field)
+    d = field["x"] + field["y"]
+    slope = field.derivative(value, "y")
+    assert slope == -2 * field["x"] / d / d / d
+    (written,) = field.quotients(slope)
+    assert [power for _, power in written.divisors] == [3]

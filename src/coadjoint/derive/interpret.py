@@ -35,7 +35,15 @@ def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> 
     found: dict[int, Quantity] = {}
     for part in tree.walk_up(node):  # definitions put into each other may be 1000 levels deep
         below = [found[id(child)] for child in tree.children(part)]
-        found[id(part)] = _value(part, below, values, field)
+        match part:
+            case tree.Binary(operator="/", right=tree.Power(base=base, exponent=n)) if n > 0:
+                # by the base n times: a factor of its own cancels, its expanded power does not
+                value = below[0]
+                for _ in range(n):
+                    value = _divide(value, found[id(base)])
+            case _:
+                value = _value(part, below, values, field)
+        found[id(part)] = value
     return found[id(node)]
 
 
