@@ -19,6 +19,9 @@ from tests.sources.bodies import (
     nambu_body_observables,
     nambu_pendulum_observables,
     nambu_pendulum_tensor,
+    rigid_body_attitude_observables,
+    rigid_body_attitude_rates,
+    rigid_body_attitude_tensor,
     rigid_body_observables,
     rigid_body_rates,
     rigid_body_tensor,
@@ -31,6 +34,26 @@ from tests.sources.bodies import (
     so_n_rates,
 )
 from tests.sources.components import Vector, minus_bracket
+from tests.sources.coupled import (
+    coupled_observables,
+    coupled_rates,
+    coupled_tensor,
+    vehicle_observables,
+    vehicle_rates,
+    vehicle_tensor,
+)
+from tests.sources.isospectral import (
+    BLOCH_ISERLES,
+    LAX_BODIES,
+    QUADRATIC_BODIES,
+    bloch_iserles_ad_star,
+    bloch_iserles_observables,
+    bloch_iserles_rates,
+    manakov_observables,
+    quadratic_ad_star,
+    quadratic_observables,
+    quadratic_rates,
+)
 from tests.sources.motions import (
     affine_line_observables,
     affine_line_rates,
@@ -63,6 +86,33 @@ from tests.sources.phase_spaces import (
     spd_rates,
     spd_tensor,
 )
+from tests.sources.points import (
+    disk_observables,
+    disk_rates,
+    disk_tensor,
+    kepler_observables,
+    kepler_rates,
+    monopole_observables,
+    monopole_rates,
+    monopole_tensor,
+    particles_observables,
+    particles_rates,
+    particles_tensor,
+)
+from tests.sources.tops import (
+    clebsch_as_kirchhoff,
+    clebsch_observables,
+    complex_body_observables,
+    complex_body_rates,
+    complex_body_tensor,
+    equatorial_as_heavy,
+    goryachev_chaplygin_observables,
+    kovalevskaya_observables,
+    lagrange_as_heavy,
+    lagrange_observables,
+    pt_body_observables,
+    pt_body_rates,
+)
 
 
 def numbered(name: str, count: int) -> tuple[str, ...]:
@@ -90,10 +140,24 @@ def square(name: str, size: int) -> tuple[str, ...]:
 #: Positive symmetric matrices, by their size.
 SPD = {"spd_motion": 2, "spd_motion_3": 3}
 #: Systems whose rates are quotients, which no central difference meets exactly.
-QUOTIENTS = ("ellipsoidal_motion",)
+QUOTIENTS = (
+    "ellipsoidal_motion",
+    "pt_rigid_body",
+    "kepler",
+    "monopole_kepler",
+    "n_particles",
+    "rocking_disk",
+)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
+#: Parameters of integrable tops as those of the heavy top.
+TOPS = {
+    "heavy_top_lagrange": lagrange_as_heavy,
+    "heavy_top_kovalevskaya": equatorial_as_heavy(2),
+    "heavy_top_goryachev_chaplygin": equatorial_as_heavy(4),
+}
 RATES = {
     "rigid_body": rigid_body_rates,
+    "rigid_body_attitude": rigid_body_attitude_rates,
     "heavy_top": heavy_top_rates,
     "kirchhoff": kirchhoff_rates,
     "heisenberg": heisenberg_rates,
@@ -108,11 +172,26 @@ RATES = {
     "sp2_momentum": sp2_momentum_rates,
     "ellipsoidal_motion": ellipsoid_rates,
     "c3_oscillators": oscillator_rates,
+    "coupled_bodies": coupled_rates,
+    "underwater_vehicle": vehicle_rates,
+    "kepler": kepler_rates,
+    "monopole_kepler": monopole_rates,
+    "n_particles": particles_rates,
+    "rocking_disk": disk_rates,
+    **{
+        name: lambda x, p, given=given: heavy_top_rates(x, given(p)) for name, given in TOPS.items()
+    },
+    "kirchhoff_clebsch": lambda x, p: kirchhoff_rates(x, clebsch_as_kirchhoff(p)),
+    "complex_rigid_body": complex_body_rates,
+    "pt_rigid_body": pt_body_rates,
     **{name: spd_rates(n) for name, n in SPD.items()},
-    **dict.fromkeys(BODIES, so_n_rates),
+    **dict.fromkeys((*BODIES, *LAX_BODIES), so_n_rates),
+    **dict.fromkeys(QUADRATIC_BODIES, quadratic_rates),
+    **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
 }
 OBSERVABLES = {
     "rigid_body": rigid_body_observables,
+    "rigid_body_attitude": rigid_body_attitude_observables,
     "heavy_top": heavy_top_observables,
     "kirchhoff": kirchhoff_observables,
     "heisenberg": heisenberg_observables,
@@ -127,14 +206,32 @@ OBSERVABLES = {
     "sp2_momentum": sp2_momentum_observables,
     "ellipsoidal_motion": ellipsoid_observables,
     "c3_oscillators": oscillator_observables,
+    "coupled_bodies": coupled_observables,
+    "underwater_vehicle": vehicle_observables,
+    "kepler": kepler_observables,
+    "monopole_kepler": monopole_observables,
+    "n_particles": particles_observables,
+    "rocking_disk": disk_observables,
+    "heavy_top_lagrange": lagrange_observables,
+    "heavy_top_kovalevskaya": kovalevskaya_observables,
+    "heavy_top_goryachev_chaplygin": goryachev_chaplygin_observables,
+    "kirchhoff_clebsch": clebsch_observables,
+    "complex_rigid_body": complex_body_observables,
+    "pt_rigid_body": pt_body_observables,
     **{name: spd_observables(n) for name, n in SPD.items()},
     **dict.fromkeys(BODIES, so_n_observables),
+    **dict.fromkeys(LAX_BODIES, manakov_observables),
+    **dict.fromkeys(QUADRATIC_BODIES, quadratic_observables),
+    **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
 }
 #: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
 TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "rigid_body": lambda x, p: rigid_body_tensor(x),
+    "rigid_body_attitude": lambda x, p: rigid_body_attitude_tensor(x),
     "heavy_top": lambda x, p: se3_tensor(x),
     "kirchhoff": lambda x, p: se3_tensor(x),
+    **dict.fromkeys((*TOPS, "kirchhoff_clebsch"), lambda x, p: se3_tensor(x)),
+    "complex_rigid_body": lambda x, p: complex_body_tensor(x),
     "heisenberg": lambda x, p: minus_bracket(heisenberg_ad_star, x),
     "se2_pendulum": lambda x, p: se2_tensor(x),
     "sl2_r2": lambda x, p: minus_bracket(sl2_r2_ad_star, x),
@@ -147,15 +244,29 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "sp2_momentum": lambda x, p: sp2_tensor(x),
     "ellipsoidal_motion": lambda x, p: paired([1] * 9),
     "c3_oscillators": lambda x, p: paired([1] * 3),
+    "coupled_bodies": lambda x, p: coupled_tensor(x),
+    "underwater_vehicle": lambda x, p: vehicle_tensor(x),
+    "kepler": lambda x, p: paired([1] * 3),
+    "monopole_kepler": monopole_tensor,
+    "n_particles": particles_tensor,
+    "rocking_disk": disk_tensor,
     "spd_motion": lambda x, p: spd_tensor(2),
     "spd_motion_3": lambda x, p: spd_tensor(3),
-    **dict.fromkeys(BODIES, lambda x, p: minus_bracket(so_n_ad_star(len(p)), x)),
+    **dict.fromkeys((*BODIES, *LAX_BODIES), lambda x, p: minus_bracket(so_n_ad_star(len(p)), x)),
+    **dict.fromkeys(QUADRATIC_BODIES, lambda x, p: minus_bracket(quadratic_ad_star(len(p)), x)),
+    "bloch_iserles_2": lambda x, p: minus_bracket(bloch_iserles_ad_star(2, p), x),
+    "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
 }
 GALILEI = (*numbered("J", 3), *numbered("K", 3), *numbered("P", 3), "E")
 STATES = {
     "rigid_body": numbered("Pi", 3),
+    "rigid_body_attitude": ("q0", "q1", "q2", "q3", *numbered("Pi", 3)),
     "heavy_top": (*numbered("Pi", 3), *numbered("Gamma", 3)),
     "kirchhoff": (*numbered("Pi", 3), *numbered("P", 3)),
+    "kirchhoff_clebsch": (*numbered("Pi", 3), *numbered("P", 3)),
+    **dict.fromkeys(TOPS, (*numbered("Pi", 3), *numbered("Gamma", 3))),
+    "complex_rigid_body": (*numbered("x", 3), *numbered("y", 3)),
+    "pt_rigid_body": numbered("x", 3),
     "heisenberg": ("mu1", "mu2", "mu3"),
     "se2_pendulum": ("m", "b1", "b2"),
     "sl2_r2": ("h", "x", "y", "p1", "p2"),
@@ -168,17 +279,31 @@ STATES = {
     "sp2_momentum": ("X1", "X2", "X3"),
     "ellipsoidal_motion": (*square("Q", 3), *square("P", 3)),
     "c3_oscillators": (*numbered("q", 3), *numbered("p", 3)),
+    "coupled_bodies": (*numbered("Pi1_", 3), *numbered("Pi2_", 3), *square("A", 3)),
+    "underwater_vehicle": (*numbered("Pi", 3), *numbered("P", 3), *numbered("Gamma", 3)),
+    "kepler": (*numbered("r", 3), *numbered("v", 3)),
+    "monopole_kepler": (*numbered("r", 3), *numbered("v", 3)),
+    "n_particles": (*square("r", 3), *square("v", 3)),
+    "rocking_disk": ("phi", "phidot"),
     **{
         name: (*kept("S", n), *kept("P", n), *numbered("q", n), *numbered("p", n))
         for name, n in SPD.items()
     },
-    **{name: upper("M", n) for name, n in BODIES.items()},
+    **{name: upper("M", n) for name, n in (BODIES | LAX_BODIES).items()},
+    **{name: (*upper("M", n), *kept("S", n)) for name, n in QUADRATIC_BODIES.items()},
+    **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
 PARAMETERS = {
     "rigid_body": numbered("I", 3),
+    "rigid_body_attitude": numbered("I", 3),
     "heavy_top": (*numbered("I", 3), "m", "g", *numbered("chi", 3)),
     "kirchhoff": (*numbered("I", 3), *numbered("M", 3), *numbered("D", 3)),
+    "kirchhoff_clebsch": (*numbered("I", 3), "M", "theta"),
+    **dict.fromkeys(TOPS, ("I3", "m", "g", "chi")),
+    "heavy_top_lagrange": ("I1", "I3", "m", "g", "chi"),
+    "complex_rigid_body": numbered("K", 3),
+    "pt_rigid_body": numbered("K", 3),
     "heisenberg": (),
     "se2_pendulum": (),
     "sl2_r2": (*numbered("I", 3), "m"),
@@ -191,6 +316,18 @@ PARAMETERS = {
     "sp2_momentum": ("m", "k", "b"),
     "ellipsoidal_motion": ("k", "b"),
     "c3_oscillators": (*numbered("w", 3), "c", "k"),
+    "coupled_bodies": (
+        *(name for block in ("I1_", "I2_", "d1_", "d2_") for name in numbered(block, 3)),
+        "epsilon",
+    ),
+    "underwater_vehicle": (
+        *numbered("I", 3), *numbered("M", 3), "m", "g", *numbered("chi", 3)
+    ),
+    "kepler": ("mu",),
+    "monopole_kepler": ("mu", "lam"),
+    "n_particles": (*numbered("m", 3), "G"),
+    "rocking_disk": ("m", "r", "l", "I", "g"),
     **dict.fromkeys(SPD, ()),
-    **{name: numbered("a", n) for name, n in BODIES.items()},
+    **{name: numbered("a", n) for name, n in (BODIES | LAX_BODIES | QUADRATIC_BODIES).items()},
+    **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
 }

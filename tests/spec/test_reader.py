@@ -39,15 +39,34 @@ def body(size):
 
 
 TWO, ONE = ("euler-poincare", "lie-poisson"), ("lie-poisson",)
+MANAKOV = ("euler-poincare", "matrix-euler-poincare", "lie-poisson", "lax", "manakov")
+ROTATING = (*TWO, "hamilton-pontryagin", "clebsch", "poincare", "cayley-klein")
 CANONICAL = ("canonical", "poisson")
 GALILEI = "J1 J2 J3 K1 K2 K3 P1 P2 P3 E"
 INERTIA = "I1 I2 I3 A1 A2 A3 B1 B2 B3 c"
 SYMMETRIC_S, SYMMETRIC_P = "S11 S12 S13 S22 S23 S33", "P11 P12 P13 P22 P23 P33"
 ROWS_Q = "Q11 Q12 Q13 Q21 Q22 Q23 Q31 Q32 Q33"
 ROWS_P = ROWS_Q.replace("Q", "P")
+ONE_POINT = "r1 r2 r3 v1 v2 v3"
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
+    "rigid_body": ("Pi1 Pi2 Pi3", "I1 I2 I3", (*ROTATING, "newton-euler", "nambu")),
+    "rigid_body_attitude": (
+        "q0 q1 q2 q3 Pi1 Pi2 Pi3",
+        "I1 I2 I3",
+        ("hamilton-pontryagin", "lie-poisson", "euler-poincare", "cayley-klein"),
+    ),
+    "heavy_top": (
+        "Pi1 Pi2 Pi3 Gamma1 Gamma2 Gamma3",
+        "I1 I2 I3 m g chi1 chi2 chi3",
+        (*ROTATING, "newton-euler", "kaluza-klein"),
+    ),
+    "kirchhoff": (
+        "Pi1 Pi2 Pi3 P1 P2 P3",
+        "I1 I2 I3 M1 M2 M3 D1 D2 D3",
+        (*TWO, "hamilton-pontryagin", "clebsch", "poincare"),
+    ),
     "heisenberg": ("mu1 mu2 mu3", "", ONE),
     "se2_pendulum": ("m b1 b2", "", ONE),
     "affine_line": ("mu1 mu2", "", TWO),
@@ -61,8 +80,25 @@ SHIPPED = {
     "spd_motion": ("S11 S12 S22 P11 P12 P22 q1 q2 p1 p2", "", CANONICAL),
     "spd_motion_3": (f"{SYMMETRIC_S} {SYMMETRIC_P} q1 q2 q3 p1 p2 p3", "", CANONICAL),
     "ellipsoidal_motion": (f"{ROWS_Q} {ROWS_P}", "k b", CANONICAL),
+    "kepler": (ONE_POINT, "mu", ("poisson", "canonical", "euler-lagrange", "newton", "alignment")),
+    "monopole_kepler": (ONE_POINT, "mu lam", ("poisson", "canonical", "newton", "alignment")),
+    "n_particles": (
+        f"{ROWS_Q} {ROWS_P}".lower().replace("q", "r").replace("p", "v"),
+        "m1 m2 m3 G",
+        ("newton", "euler-lagrange", "canonical"),
+    ),
+    "rocking_disk": ("phi phidot", "m r l I g", ("euler-lagrange", "canonical")),
     "c3_oscillators": ("q1 q2 q3 p1 p2 p3", "w1 w2 w3 c k", CANONICAL),
     **{f"so{size}_body": body(size) for size in (5, 6, 8)},
+    **{f"manakov_so{size}": (*body(size)[:2], MANAKOV) for size in (4, 6)},
+    "quadratic_potential_so3": ("M12 M13 M23 S11 S12 S13 S22 S23 S33", "a1 a2 a3", MANAKOV),
+    "quadratic_potential_so4": (
+        "M12 M13 M14 M23 M24 M34 S11 S12 S13 S14 S22 S23 S24 S33 S34 S44",
+        "a1 a2 a3 a4",
+        MANAKOV,
+    ),
+    "bloch_iserles_2": ("X11 X12 X22", "N12", ("lax", *TWO)),
+    "bloch_iserles_3": ("X11 X12 X13 X22 X23 X33", "N12 N13 N23", ("lax", *TWO)),
 }
 
 

@@ -105,7 +105,8 @@ def _momentum(setting: Setting) -> Matrix:
         inverse = span.coordinates({place: 1})
         assert inverse is not None, "the matrices of a basis are independent"
         weights.append(setting.field.sum(mu[n] * value for n, value in inverse.items()))
-    return weighted(weights, setting.algebra.matrices)
+    M: Matrix = weighted(weights, setting.algebra.matrices)
+    return M
 
 
 def _pairing(a: SparseMatrix, b: SparseMatrix) -> object:

@@ -1,8 +1,8 @@
 """Lax pairs: the Lax equation entry by entry, and the integrals that it gives.
 
 Comes in: the emitted Equations and those by every route. Goes out: statements with what decides
-them. The pair is held against the rates of the emitted route, in which it has no part: each entry
-of each power of the spectral parameter must vanish. Short integrals are differentiated along these
+them. The pair is held against the rates of a route in which it has no part, if there is one: each
+entry of each power of the spectral parameter must vanish. Short integrals are differentiated along these
 rates; for long ones the trace identity is taken, and with it the Lax equation as it was proved.
 Read next: `coadjoint.prove.claims`.
 """
@@ -37,11 +37,13 @@ Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
 def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
     """That each pair says what moves, and that the integrals of the first one are that."""
     first, decisions = routes[0], dict[str, Callable[[], Decision]]()
+    others = (each for each in routes if each.pair is None and each.chart is None)
+    motion = next(others, first)
     for equations in routes:
         pair = equations.pair
         if pair is None:
             continue
-        decisions[" ".join(pair.texts)] = decide = cache(partial(lax_decision, first, pair))
+        decisions[" ".join(pair.texts)] = decide = cache(partial(lax_decision, motion, pair))
         yield (
             f"dL/dt = [L, M] for every {pair.spectral}, with L = {pair.texts[0]} and M = "
             f"{pair.texts[1]}, on the route {equations.route}",
@@ -54,15 +56,15 @@ def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from _about_integrals(first, found, of_pair)
 
 
-def lax_decision(first: Equations, pair: LaxPair) -> Decision:
-    """Whether ``dL/dt = [L, M]`` along the emitted motion, or the entry where it is not."""
-    setting = first.setting
-    rates = dict(zip(setting.state, first.exact.rates, strict=True))
-    settled = partial(LegendreMap(first).pull_back, first) if LegendreMap.applies(first) else None
+def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
+    """Whether ``dL/dt = [L, M]`` along a motion, or the entry where it is not."""
+    setting = motion.setting
+    rates = dict(zip(setting.state, motion.exact.rates, strict=True))
+    settled = partial(LegendreMap(motion).pull_back, motion) if LegendreMap.applies(motion) else None
     everything = []
     for equation in lax_equations(setting, pair):
         left = setting.field.sum(slope * rates[x] for x, slope in equation.slopes.items())
-        defect = (settled or first.closed)(left - equation.right)
+        defect = (settled or motion.closed)(left - equation.right)
         decision = decide_zero([defect], setting.field)
         if decision.verdict is not Verdict.PROVED:
             where = text_of_entry(equation.entry, equation.power, pair.spectral)
