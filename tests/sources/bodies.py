@@ -21,6 +21,7 @@ from tests.sources.components import (
     pfaffian,
     plus,
     product,
+    times,
 )
 
 # -- rigid body: Holm (2011), sections 2.4.1 and 2.5.2; Landau and Lifshitz, Mechanics, sec. 36 ---
@@ -50,6 +51,51 @@ def rigid_body_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
 def rigid_body_tensor(state: Vector) -> list[list[Any]]:
     """``{Pi_i, Pi_j} = -epsilon_ijk Pi_k`` (Holm 2011, section 2.5.2)."""
     return hat(state)
+
+
+# -- with its attitude as a quaternion: Holm (2011), sections 4.1 to 4.1.3 and 3.2 ------------------
+
+
+def rigid_body_attitude_rates(state: Vector, parameters: Vector) -> list[Any]:
+    """``dq/dt = q [0, Omega]/2``, the product written out, and Euler's equations."""
+    q0, q1, q2, q3, *momentum = state
+    w1, w2, w3 = over(momentum, parameters)
+    return [
+        -(q1 * w1 + q2 * w2 + q3 * w3) / 2,
+        (q0 * w1 + q2 * w3 - q3 * w2) / 2,
+        (q0 * w2 + q3 * w1 - q1 * w3) / 2,
+        (q0 * w3 + q1 * w2 - q2 * w1) / 2,
+        *rigid_body_rates(momentum, parameters),
+    ]
+
+
+def rigid_body_attitude_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
+    """Energy, length of q, angular velocity, and the momentum turned by Euler and Rodrigues."""
+    q0, *q, p1, p2, p3 = state
+    momentum = [p1, p2, p3]
+    omega = over(momentum, parameters)
+    turned = plus(
+        plus(times(q0 * q0 - dot(q, q), momentum), times(2 * dot(q, momentum), q)),
+        times(2 * q0, cross(q, momentum)),
+    )
+    return {
+        "energy": dot(momentum, omega) / 2,
+        "casimir1": q0 * q0 + dot(q, q),
+        **{f"Omega{n + 1}": value for n, value in enumerate(omega)},
+        **{f"Pi_spatial{n + 1}": value for n, value in enumerate(turned)},
+    }
+
+
+def rigid_body_attitude_tensor(state: Vector) -> list[list[Any]]:
+    """``{q, Pi_j} = q e_j/2``, ``{Pi_i, Pi_j} = -epsilon_ijk Pi_k``, ``{q, q} = 0``."""
+    q0, q1, q2, q3, *momentum = state
+    moved = [[-q1, -q2, -q3], [q0, -q3, q2], [q3, q0, -q1], [-q2, q1, q0]]
+    half = [[x / 2 for x in row] for row in moved]
+    below = zip(zip(*half, strict=True), hat(momentum), strict=True)
+    return [
+        *([0, 0, 0, 0, *row] for row in half),
+        *([*(-x for x in column), *row] for column, row in below),
+    ]
 
 
 # -- heavy top: Holm (2011), sections 8.2 and 8.3.2 ----------------------------------------------

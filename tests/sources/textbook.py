@@ -139,15 +139,10 @@ def square(name: str, size: int) -> tuple[str, ...]:
 
 #: Positive symmetric matrices, by their size.
 SPD = {"spd_motion": 2, "spd_motion_3": 3}
+#: Systems with roots, sines and cosines of the state, which are typed to 80 digits.
+CONFIGURATIONS = ("kepler", "monopole_kepler", "n_particles", "rocking_disk")
 #: Systems whose rates are quotients, which no central difference meets exactly.
-QUOTIENTS = (
-    "ellipsoidal_motion",
-    "pt_rigid_body",
-    "kepler",
-    "monopole_kepler",
-    "n_particles",
-    "rocking_disk",
-)
+QUOTIENTS = ("ellipsoidal_motion", "pt_rigid_body", *CONFIGURATIONS)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
@@ -320,9 +315,7 @@ PARAMETERS = {
         *(name for block in ("I1_", "I2_", "d1_", "d2_") for name in numbered(block, 3)),
         "epsilon",
     ),
-    "underwater_vehicle": (
-        *numbered("I", 3), *numbered("M", 3), "m", "g", *numbered("chi", 3)
-    ),
+    "underwater_vehicle": (*numbered("I", 3), *numbered("M", 3), "m", "g", *numbered("chi", 3)),
     "kepler": ("mu",),
     "monopole_kepler": ("mu", "lam"),
     "n_particles": (*numbered("m", 3), "G"),

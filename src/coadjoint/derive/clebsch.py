@@ -44,9 +44,17 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the momenta, ``p_Gamma1``, and of a pair of its own, ``Q1`` and ``P1``."""
     advected = [name for each in spec.having_role("advected") for name in each.components]
     own = _own(spec)
-    shape = () if own is None else (own.dimension,)
-    pair = [name for letter in "QP" for name in component_names(letter, shape) if own is not None]
-    return (*fresh(spec, [f"p_{name}" for name in advected]), *fresh(spec, pair))
+    pair = () if own is None else _pair_names(spec, (own.dimension,))
+    return (*fresh(spec, [f"p_{name}" for name in advected]), *pair)
+
+
+def _pair_names(spec: Spec, shape: tuple[int]) -> tuple[str, ...]:
+    """``Q1 .. P1 ..``, in small letters where these are taken."""
+    large, small = (
+        [name for letter in letters for name in component_names(letter, shape)]
+        for letters in ("QP", "qp")
+    )
+    return tuple(large) if fresh(spec, large) == tuple(large) else fresh(spec, small)
 
 
 def _own(spec: Spec) -> Representation | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import count
 
-from coadjoint.spec import Spec
+from coadjoint.spec import Parameter, Spec, Variable
 
 
 def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
@@ -21,8 +21,8 @@ def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     >>> fresh(spec, ["Q1", "Q2"]), fresh(spec, ["I0", "I1"])
     (('Q1', 'Q2'), ('I0_0', 'I1_0'))
     """
-    taken = {name for each in (*spec.variables, *spec.parameters) for name in each.components}
-    taken |= {each.name for each in (*spec.variables, *spec.parameters)}
+    quantities: list[Variable | Parameter] = [*spec.variables, *spec.parameters]
+    taken = {name for each in quantities for name in (each.name, *each.components)}
     if not taken & set(names):
         return tuple(names)
     for n in count():
