@@ -142,7 +142,7 @@ SPD = {"spd_motion": 2, "spd_motion_3": 3}
 #: Systems with roots, sines and cosines of the state, which are typed to 80 digits.
 CONFIGURATIONS = ("kepler", "monopole_kepler", "n_particles", "rocking_disk")
 #: Systems whose rates are quotients, which no central difference meets exactly.
-QUOTIENTS = ("ellipsoidal_motion", "pt_rigid_body", *CONFIGURATIONS)
+QUOTIENTS = ("ellipsoidal_motion", "coupled_bodies", "pt_rigid_body", *CONFIGURATIONS)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
