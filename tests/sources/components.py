@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from itertools import combinations
 from typing import Any
+
+import sympy
 
 Vector = Sequence[Any]
 
@@ -17,6 +20,11 @@ def cross(a: Vector, b: Vector) -> list[Any]:
 def dot(a: Vector, b: Vector) -> Any:
     """``a . b`` in components."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def root(value: Any) -> Any:
+    """The square root, exact for fractions."""
+    return math.sqrt(value) if isinstance(value, float) else sympy.sqrt(sympy.Rational(value))
 
 
 def plus(a: Vector, b: Vector) -> list[Any]:
