@@ -155,7 +155,11 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
     spec, found = equations.spec, equations.setting.integrals
     stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
-    energy = _emitted("energy", _unit(spec, spec.hamiltonian or spec.lagrangian), conserved=True)
+    energy = [
+        _emitted("energy", _unit(spec, formula), conserved=True)
+        for formula in (spec.hamiltonian or spec.lagrangian,)
+        if equations.exact.energy is not None
+    ]
     casimirs = [
         _emitted(f"casimir{n}", _unit(spec, casimir), casimir.shape, conserved=True)
         for n, casimir in enumerate(spec.casimirs, 1)
@@ -183,7 +187,7 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
         for each in spec.spatial
     ]
     velocities = map(_quantity, spec.defined)
-    return (energy, *casimirs, *velocities, *declared, *maps, *of_pair, *of_space)
+    return (*energy, *casimirs, *velocities, *declared, *maps, *of_pair, *of_space)
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:

@@ -22,8 +22,8 @@ from coadjoint.algebra.representation import (
     adjoint,
     coadjoint,
     columns,
-    rows,
     defining,
+    rows,
     symmetric,
     trivial,
 )

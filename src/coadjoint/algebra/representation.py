@@ -176,7 +176,8 @@ def two_sided(
     for matrix, L in zip(matrices, left, strict=False):
         matrix.update(kronecker(L, ones[width], width))
     for matrix, R in zip(matrices, right, strict=False):
-        for place, value in kronecker(ones[height], {(c, r): -v for (r, c), v in R.items()}, width).items():
+        turned = {(c, r): -value for (r, c), value in R.items()}
+        for place, value in kronecker(ones[height], turned, width).items():
             matrix[place] = matrix.get(place, 0) + value
     clean = tuple({place: v for place, v in matrix.items() if v != 0} for matrix in matrices)
     return Representation(algebra, name, height * width, clean)

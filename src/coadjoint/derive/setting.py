@@ -239,7 +239,8 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     names = [name for variable in kept for name in variable.components]
     field = Field(names, _function_calls(spec))
     values: dict[str, Quantity] = {name: field[name] for name in names}
-    for quantity in (*spec.variables, *spec.parameters):
+    quantities: tuple[Variable | Parameter, ...] = (*spec.variables, *spec.parameters)
+    for quantity in quantities:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))
             values.setdefault(name, field.number(number))

@@ -81,6 +81,8 @@ class Solution:
     @cached_property
     def observables(self) -> Array:
         """Observables along the trajectory, one row per component."""
+        if "observables" not in self.system.functions:  # forces alone, and nothing declared
+            return self.state[:0]
         return self.system.observables(self.state, self.parameters)
 
     @cached_property

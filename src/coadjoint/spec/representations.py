@@ -14,7 +14,7 @@ from typing import Any
 
 from coadjoint.algebra.catalogue import REPRESENTATIONS, representation_by_name
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
-from coadjoint.algebra.representation import Representation
+from coadjoint.algebra.representation import Representation, two_sided
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import MATRIX_ENTRIES, STATE_COMPONENTS
 from coadjoint.spec.coefficients import Scalars, read_coefficient
@@ -55,6 +55,38 @@ def places_of(
                 hint=did_you_mean(name, basis),
             )
     return tuple(basis.index(name) for name in names)
+
+
+def block_places(
+    source: Source, key: KeyPath, block: str | list[str], algebra: LieAlgebra
+) -> tuple[int, ...]:
+    """Places of a block of an algebra: a named one, or names of its basis.
+
+    Raises:
+        SpecError: There is no such block, or a name stands twice.
+    """
+    if isinstance(block, list):
+        places = places_of(source, key, block, algebra.basis)
+        if len(set(places)) < len(places):
+            raise source.fault(
+                key,
+                "a name of the basis stands twice",
+                found=listed(block),
+                expected="each name once",
+            )
+        return places
+    if block in algebra.blocks:
+        return algebra.blocks[block]
+    if block in algebra.basis:
+        return (algebra.basis.index(block),)
+    known = (*algebra.blocks, *algebra.basis)
+    raise source.fault(
+        key,
+        f"{algebra.name} has no block {block!a}",
+        found=block,
+        expected=f"one of {listed(known)}",
+        hint=did_you_mean(block, known),
+    )
 
 
 def check_basis_names(source: Source, key: KeyPath, names: Sequence[str]) -> None:
@@ -157,6 +189,7 @@ def representation_of(
     algebra: LieAlgebra,
     name: str,
     declared: Mapping[str, Representation] | None = None,
+    invariance: str = "left",
 ) -> Representation:
     """The representation of a name: a declared one, or one that every algebra has.
 
@@ -177,7 +210,7 @@ def representation_of(
     if name in declared:
         return declared[name]
     with located(source, key):
-        return representation_by_name(algebra, name)
+        return representation_by_name(algebra, name, invariance)
 
 
 def read_representations(
@@ -203,6 +236,62 @@ def read_representations(
                 expected=f"a name other than {', '.join(REPRESENTATIONS)}, which every algebra has",
                 at=source.positions.key(key),
             )
-        inner = (*key, "matrices")
-        found[name] = by_matrices(source, inner, algebra, name, part.matrices, scalars or Scalars())
+        if part.matrices is None:
+            found[name] = _on_matrices(source, key, algebra, name, part)
+        elif part.left is None and part.right is None:
+            inner = (*key, "matrices")
+            known = scalars or Scalars()
+            found[name] = by_matrices(source, inner, algebra, name, part.matrices, known)
+        else:
+            side = "right" if part.left is None else "left"
+            raise source.fault(
+                (*key, side),
+                f"the representation {name!r} has both matrices and {side!r}",
+                found=side,
+                expected="either matrices over the basis, or blocks that act from left and right",
+            )
     return found
+
+
+def _on_matrices(
+    source: Source, key: KeyPath, algebra: LieAlgebra, name: str, part: RepresentationPart
+) -> Representation:
+    """``A -> L A - A R`` with the matrices of two blocks, either of which may be missing."""
+    if part.left is None and part.right is None:
+        raise source.fault(
+            key,
+            f"the representation {name!r} says nothing of how the algebra acts",
+            found=name,
+            expected="matrices, or a block of the algebra as left or right",
+            hint='Write for instance right = "rotation".',
+            at=source.positions.key(key),
+        )
+    left, right = (
+        _own_matrices(source, (*key, side), algebra, block)
+        for side, block in (("left", part.left), ("right", part.right))
+    )
+    with located(source, key):
+        return two_sided(algebra, name, left, right)
+
+
+def _own_matrices(
+    source: Source, key: KeyPath, algebra: LieAlgebra, block: str | list[str] | None
+) -> tuple[SparseMatrix, ...]:
+    """The algebra's matrices where a block acts, zero for the rest; none without a block."""
+    if block is None:
+        return ()
+    places = block_places(source, key, block, algebra)
+    used = {n for i in places if algebra.matrices for at in algebra.matrices[i] for n in at}
+    if not used:
+        named = listed(algebra.basis[i] for i in places)
+        raise source.fault(
+            key,
+            f"{algebra.name} has no matrices for {named}",
+            found=named,
+            expected="a block of an algebra that is given by matrices, such as so(3)",
+        )
+    number = {old: new for new, old in enumerate(sorted(used))}
+    return tuple(
+        {(number[r], number[c]): x for (r, c), x in matrix.items()} if i in places else {}
+        for i, matrix in enumerate(algebra.matrices)
+    )
