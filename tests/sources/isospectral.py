@@ -1,6 +1,6 @@
 """Bodies with a Lax pair and the Bloch-Iserles system, typed by hand from Holm (2011).
 
-Manakov's body is that of section 2.4.2, the quadratic potential ``+tr(SA)/2`` that of 2.5.6, and the
+Manakov's body is that of section 2.4.2, the quadratic potential ``+tr(SA)/2`` that of 2.5.6, the
 flow on symmetric matrices that of appendix C.4. Coefficients of ``tr L^k`` are found by multiplying
 out the powers of the spectral parameter one by one; the numbers before them are typed.
 """
@@ -68,18 +68,18 @@ def coefficient(L: dict[int, Rows], k: int, power: int) -> Any:
 
 # -- Manakov's body: sections 2.4.2 to 2.4.5 -------------------------------------------------------
 
-#: (k, power, number) of the coefficients of tr L^k that are emitted.
+#: (k, power, number) of the coefficients of tr L^k that are emitted beside Casimirs and energy.
 MANAKOV = {
-    4: ((3, 1, Fraction(-1, 3)), (4, 2, Fraction(-1, 4))),
+    4: ((3, 1, Fraction(-1, 3)),),
     6: (
         *((3, 1, Fraction(-1, 3)), (4, 2, Fraction(-1, 4)), (5, 3, Fraction(-1, 5))),
-        *((6, 4, Fraction(-1, 6)), (5, 1, Fraction(1, 5)), (6, 2, Fraction(1, 3))),
+        *((6, 4, Fraction(-1, 6)), (5, 1, Fraction(1, 5))),
     ),
 }
 
 
 def manakov_observables(state: Vector, a: Vector) -> dict[str, Any]:
-    """``-tr(M Omega)/4``, Casimirs, the Pfaffian last, Omega, coefficients of ``M + lambda A^2``."""
+    """``-tr(M Omega)/4``, Casimirs, the Pfaffian last, Omega, integrals of ``M + lambda A^2``."""
     size, velocity = len(a), so_n_velocity(state, a)
     M = antisymmetric(state, size)
     squares = sum(m**2 for m in state)
@@ -111,10 +111,10 @@ def integrals(pair: dict[int, Rows], table: Sequence[tuple[int, int, Any]]) -> d
 # -- body in a quadratic potential: section 2.5.6 --------------------------------------------------
 
 QUADRATIC = {
-    3: ((2, 2, Fraction(-1, 2)), (3, 4, Fraction(-1, 3)), (3, 2, Fraction(1, 3))),
+    3: ((2, 2, Fraction(-1, 2)), (3, 4, Fraction(-1, 3))),
     4: (
         *((2, 2, Fraction(-1, 2)), (3, 4, Fraction(-1, 3)), (4, 6, Fraction(-1, 4))),
-        *((3, 2, Fraction(1, 3)), (4, 4, Fraction(1, 2)), (4, 2, Fraction(-1, 4))),
+        *((3, 2, Fraction(1, 3)), (4, 4, Fraction(1, 2))),
     ),
 }
 
@@ -205,7 +205,7 @@ def bloch_iserles_rates(size: int) -> Callable[[Vector, Vector], list[Any]]:
 
 
 def bloch_iserles_observables(size: int) -> Callable[[Vector, Vector], dict[str, Any]]:
-    """``tr X^2/2``, det X, ``v . X v`` with ``N v = 0``, the velocity, ``tr X`` and ``tr X^2``."""
+    """``tr X^2/2``, det X, ``v . X v`` with ``N v = 0``, the velocity, ``tr X``."""
 
     def observables(state: Vector, N: Vector) -> dict[str, Any]:
         X = symmetric(state, size)
@@ -218,7 +218,6 @@ def bloch_iserles_observables(size: int) -> Callable[[Vector, Vector], dict[str,
                 "energy": square / 2,
                 "casimir1": X[0][0] * X[1][1] - X[0][1] ** 2,
                 **named("V", velocity, 2, 0),
-                "integral1": trace(X),
             }
         a, b, c = N[2], -N[1], N[0]
         v = [a, b, c]
@@ -233,7 +232,6 @@ def bloch_iserles_observables(size: int) -> Callable[[Vector, Vector], dict[str,
             "casimir2": sum(v[i] * X[i][j] * v[j] for i in range(3) for j in range(3)),
             **named("V", velocity, 3, 0),
             "integral1": trace(X),
-            "integral2": square,
         }
 
     return observables

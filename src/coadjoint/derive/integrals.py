@@ -5,7 +5,7 @@ of the spectral parameter, then :math:`\frac{d}{dt} \mathrm{tr}\, L^k = k\, \mat
 [L, M]) = 0`, power by power of the parameter.
 Comes in: a Setting whose spec declares a pair, or a route that finds one. Goes out: the
 coefficients that depend on the state, and which of them are emitted: as many as there are
-independent ones beside the claimed Casimirs, the shortest first.
+independent ones beside the claimed Casimirs and the energy, the shortest first.
 Read next: `coadjoint.prove.lax`.
 """
 
@@ -17,6 +17,7 @@ from fractions import Fraction
 from functools import cache
 from math import gcd, lcm
 
+from coadjoint.derive.lie_poisson import hamiltonian
 from coadjoint.derive.manakov import find_pair
 from coadjoint.derive.pairs import LaxPair, Matrix, declared_pair, diagonal, multiplied
 from coadjoint.derive.setting import Setting
@@ -118,14 +119,21 @@ def _scale(field: Field, element: Element) -> Fraction:
 
 
 def _chosen(setting: Setting, coefficients: Iterable[Coefficient]) -> Iterator[Coefficient]:
-    """Coefficients independent of the claimed Casimirs and of each other, the shortest first."""
-    field = setting.field
-    known = [part for casimir in setting.spec.casimirs for part in setting.components(casimir)]
+    """Coefficients independent of what is known and of each other, the shortest first."""
+    field, known = setting.field, known_integrals(setting)
     ordered = sorted(coefficients, key=lambda each: len(field.terms(each.value)))
     slopes = [slope_row(setting, value) for value in (*known, *(each.value for each in ordered))]
     for place in independent_rows(field, slopes):
         if place >= len(known):
             yield ordered[place - len(known)]
+
+
+def known_integrals(setting: Setting) -> list[Element]:
+    """What is emitted and conserved whatever the pair: the claimed Casimirs and the energy."""
+    casimirs = [part for casimir in setting.spec.casimirs for part in setting.components(casimir)]
+    energy, solves = hamiltonian(setting)
+    # where the kernel solves for velocities, the energy names them beside the momenta
+    return [*casimirs, *([] if solves else [energy])]
 
 
 def slope_row(setting: Setting, function: Element) -> dict[int, Element]:

@@ -125,7 +125,7 @@ def _integrals(setting: Setting) -> Step:
         for n, each in enumerate(found.emitted, 1)
     )
     return Step(
-        "Integrals beside the claimed Casimirs",
+        "Integrals beside the energy and the claimed Casimirs",
         f"coefficients of tr L^k: {words or 'none'}",
         r"\mathrm{tr}\, L^k = \mathrm{const}",
         tuple((symbol(name), value) for name, value in found.named),

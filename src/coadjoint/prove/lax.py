@@ -2,8 +2,8 @@
 
 Comes in: the emitted Equations and those by every route. Goes out: statements with what decides
 them. The pair is held against the rates of a route in which it has no part, if there is one: each
-entry of each power of the spectral parameter must vanish. Short integrals are differentiated along these
-rates; for long ones the trace identity is taken, and with it the Lax equation as it was proved.
+entry of each power of the spectral parameter must vanish. Short integrals are differentiated along
+the motion; for long ones the trace identity is taken, and with it the Lax equation, once proved.
 Read next: `coadjoint.prove.claims`.
 """
 
@@ -14,7 +14,13 @@ from functools import cache, partial
 from itertools import combinations
 
 from coadjoint.derive import Equations
-from coadjoint.derive.integrals import Coefficient, Integrals, expanded_traces, slope_row
+from coadjoint.derive.integrals import (
+    Coefficient,
+    Integrals,
+    expanded_traces,
+    known_integrals,
+    slope_row,
+)
 from coadjoint.derive.pairs import LaxPair, lax_equations, text_of_entry
 from coadjoint.exact import Element
 from coadjoint.poisson.ranks import generic_rank
@@ -60,11 +66,13 @@ def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
     """Whether ``dL/dt = [L, M]`` along a motion, or the entry where it is not."""
     setting = motion.setting
     rates = dict(zip(setting.state, motion.exact.rates, strict=True))
-    settled = partial(LegendreMap(motion).pull_back, motion) if LegendreMap.applies(motion) else None
+    settled = motion.closed
+    if LegendreMap.applies(motion):
+        settled = partial(LegendreMap(motion).pull_back, motion)
     everything = []
     for equation in lax_equations(setting, pair):
         left = setting.field.sum(slope * rates[x] for x, slope in equation.slopes.items())
-        defect = (settled or motion.closed)(left - equation.right)
+        defect = settled(left - equation.right)
         decision = decide_zero([defect], setting.field)
         if decision.verdict is not Verdict.PROVED:
             where = text_of_entry(equation.entry, equation.power, pair.spectral)
@@ -80,8 +88,8 @@ def _about_integrals(
     """How many integrals there are, that they are conserved, and in involution."""
     spec, names = first.spec, [name for name, _ in found.named]
     rank = _rank(first, [each.value for each in found.coefficients])
-    parts = [f"the {len(spec.casimirs)} claimed Casimirs"] if spec.casimirs else []
-    whole = " and ".join([*parts, *([", ".join(names)] if names else [])])
+    casimirs = [f"casimir{n}" for n in range(1, len(spec.casimirs) + 1)]
+    whole = ", ".join([*casimirs, "energy", *names])
     yield (
         f"{rank} independent integrals: the coefficients of tr L^k, k = 1 to {len(found.pair.L)}, "
         f"are functions of {whole}",
@@ -113,19 +121,20 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
 
 
 def _complete(first: Equations, found: Integrals, rank: int) -> Decision:
-    """Casimirs and emitted integrals are independent, and every coefficient depends on them."""
-    setting, emitted = first.setting, dict(first.exact.observables)
-    casimirs = [part for formula in first.spec.casimirs for part in setting.components(formula)]
-    known = [*casimirs, *(emitted[name] for name, _ in found.named)]
+    """Every coefficient depends on what is emitted, and nothing of that is there in vain."""
+    emitted = dict(first.exact.observables)
+    known = known_integrals(first.setting)
+    before = _rank(first, known)
+    known += [emitted[name] for name, _ in found.named]
     own = _rank(first, known)
     together = _rank(first, [*known, *(each.value for each in found.coefficients)])
-    if own == len(known) == together:
+    if own == together == before + len(found.named):
         return Decision(Verdict.PROVED, RANK.replace("the map's derivative", "the gradients"))
     return Decision(
         Verdict.REFUTED,
-        f"{len(known)} functions of rank {own}, and {together} with all coefficients",
+        f"gradients of rank {own}, with all coefficients of rank {together}",
         {},
-        str(together - own or len(known) - own),
+        str(together - own or before + len(found.named) - own),
     )
 
 
