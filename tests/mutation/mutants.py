@@ -131,11 +131,11 @@ MUTANTS = (
     Mutant(DERIVE + "euler_poincare.py", "[-sign * x for x in", "[sign * x for x in"),
     Mutant(DERIVE + "euler_poincare.py", "[m + t for", "[m - t for"),
     Mutant(DERIVE + "poisson.py", "sum(entry * slope for", "sum(-entry * slope for"),
-    Mutant(DERIVE + "nambu.py", "-rate for rate in", "rate for rate in"),
+    Mutant(DERIVE + "nambu.py", "-multiplier * rate for", "multiplier * rate for"),
     Mutant(
         DERIVE + "nambu.py",
-        "[gradients[-1], *gradients[:-1]]",
-        "[*gradients[:-1], gradients[-1]]",
+        "[dh, *gradients[:-1]]",
+        "[*gradients[:-1], dh]",
     ),
     Mutant(DERIVE + "nambu.py", "(-1) ** i * determinant(minor)", "determinant(minor)"),
     Mutant(
@@ -350,5 +350,58 @@ MUTANTS = (
         "{% endfor %}\n{% endif %}\n    # results",
         "python_assignment(to=statement.name ~ ' = -', column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
+    ),
+    # mass points, cyclic coordinates, found functions, complex momenta, sections
+    Mutant(DERIVE + "newton_euler.py", "subtract(torque, turning)", "add(torque, turning)"),
+    Mutant(DERIVE + "newton_euler.py", "setting.field, -_at_rest(", "setting.field, _at_rest("),
+    Mutant(DERIVE + "newton_euler.py", "half = trace(inertia) / 2", "half = trace(inertia)"),
+    Mutant(
+        DERIVE + "newton_euler.py",
+        "lambda x, y: cross(x, cross(omega, cross(omega, y)))",
+        "lambda x, y: cross(omega, cross(x, cross(omega, y)))",
+    ),
+    Mutant(
+        DERIVE + "newton_euler.py",
+        "lambda x: cross(x, cross(omega, v))",
+        "lambda x: cross(x, cross(v, omega))",
+    ),
+    Mutant(
+        DERIVE + "newton_euler.py",
+        "(mass[2][4], mass[0][5], mass[1][3])",
+        "(mass[1][5], mass[2][3], mass[0][4])",
+    ),
+    Mutant(DERIVE + "kaluza_klein.py", "varied -= dot(", "varied += dot("),
+    Mutant(
+        DERIVE + "kaluza_klein.py", "kinetic = lagrangian - dot(level, a)", "kinetic = lagrangian"
+    ),
+    Mutant(DERIVE + "kaluza_klein.py", "append(sign * varied)", "append(varied)"),
+    Mutant(DERIVE + "kaluza_klein.py", "scale(-sign, setting", "scale(sign, setting"),
+    Mutant(DERIVE + "kaluza_klein.py", "algebra.bracket(xi, eta)", "algebra.bracket(eta, xi)"),
+    Mutant(DERIVE + "kaluza_klein.py", "field[name] - value", "field[name] + value"),
+    Mutant(DERIVE + "nambu.py", "b = tuple(-tensor[i][j]", "b = tuple(tensor[i][j]"),
+    Mutant(DERIVE + "nambu.py", "dot(x, b) / 2", "dot(x, b)"),
+    Mutant(DERIVE + "nambu.py", "(1, 2), (2, 0), (0, 1)", "(1, 2), (0, 2), (0, 1)"),
+    Mutant(DERIVE + "nambu.py", "b[place] / slopes[place]", "slopes[place] / b[place]"),
+    Mutant(DERIVE + "nambu.py", "slopes[i][j] - slopes[j][i]", "slopes[i][j] + slopes[j][i]"),
+    Mutant(DERIVE + "complexification.py", "*(z.im for z in moved)", "*(-z.im for z in moved)"),
+    Mutant(DERIVE + "complexification.py", "*(-z.im for z in zeta)", "*(z.im for z in zeta)"),
+    Mutant(DERIVE + "complexification.py", "setting.sign * part", "-setting.sign * part"),
+    Mutant(DERIVE + "complexification.py", "Complex(x, y) for x", "Complex(y, x) for x"),
+    Mutant(DERIVE + "complexification.py", "real.bracket(zeta, eta)", "real.bracket(eta, zeta)"),
+    Mutant(
+        DERIVE + "complexification.py",
+        "_continued(setting, slope, L) for slope",
+        "Complex(slope, setting.field.zero) for slope",
+    ),
+    Mutant(
+        PROVE + "reductions.py",
+        "decide_zero(drifts, field, Ideal(field, functions, where, state))",
+        "decide_zero([], field, Ideal(field, functions, where, state))",
+    ),
+    Mutant(PROVE + "reductions.py", "- rates[name]", "+ rates[name]"),
+    Mutant(
+        PROVE + "reductions.py",
+        "[field.substitute(restriction(f), restriction.section) for f in functions]",
+        "[field.substitute(f - f, restriction.section) for f in map(restriction, functions)]",
     ),
 )

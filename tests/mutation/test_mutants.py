@@ -23,14 +23,15 @@ EQUATIONS = SOURCES + "test_equations.py"
 #: Kernels of systems with parameters and zero rows; the others are built the same way.
 KERNELS = (SOURCES + "test_kernels.py", "-k", "heavy_top or bargmann")
 GROUP_ROWS = ("actions", "semidirect_actions", "quaternions", "vector_fields", "galileo")
+BODIES = (SOURCES + "test_tops.py", SOURCES + "test_complex.py")
 #: Tests that judge a mutant, by the beginning of its file: those of its step and the book's.
 JUDGES = {
     "src/coadjoint/algebra": (EQUATIONS, SOURCES + "test_lie_algebras.py", "tests/algebra"),
     "src/coadjoint/groups": ("tests/groups", *(f"{SOURCES}test_{row}.py" for row in GROUP_ROWS)),
     "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
-    "src/coadjoint/derive": (EQUATIONS, SOURCES + "test_declared.py", "tests/derive"),
-    "src/coadjoint/prove": ("tests/prove", "tests/derive"),
+    "src/coadjoint/derive": (EQUATIONS, SOURCES + "test_declared.py", *BODIES, "tests/derive"),
+    "src/coadjoint/prove": ("tests/prove", "tests/derive", *BODIES),
     "src/coadjoint/lower": ("tests/lower",),
     "src/coadjoint/render": KERNELS,
     "templates": KERNELS,

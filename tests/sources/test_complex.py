@@ -37,6 +37,18 @@ def test_C_1_2_complex_rigid_body(route):
     assert [sympy.expand(a - b) for a, b in zip(found, wrong, strict=True)] != [0, 0, 0]
 
 
+def test_C_1_2_complex_velocities():
+    """That of x is Re KL, that of y is -Im KL by the pairing Re<L, zeta>; on both routes."""
+    named = (
+        "[parameters.K]",
+        'xi = { role = "velocity", block = ["J1", "J2", "J3"] }\n'
+        'eta = { role = "velocity", block = ["iJ1", "iJ2", "iJ3"] }\n[parameters.K]',
+    )
+    for route in ("lie-poisson", "complexification"):
+        found = list(derive(spec(WHOLE, named), route).velocities.values())
+        assert same(found, [*by(K, X), *times(-1, by(K, Y))])
+
+
 def test_C_1_2_four_real_integrals():
     """Real and imaginary parts of L.L/2 and L.KL/2, all proved; x.y with another sign is not."""
     certificate = prove(shipped("complex_rigid_body"))
