@@ -49,6 +49,11 @@ def _of(
     return tuple(RouteMutant(route, module, old, new, systems) for old, new in changes)
 
 
+#: Tests of configuration spaces: of states with momenta, geodesics and velocity brackets.
+CONFIGURATION = ("tests/sources/test_configuration.py", "tests/derive/test_configuration.py")
+
+#: Momenta seen from space by matrices.
+SEEN = ("tests/sources/test_principles.py", "-k", "7_1_3 or 4_2_2 or 2_1_1")
 ROUTE_MUTANTS = (
     *_of(
         "euler-poincare",
@@ -75,10 +80,126 @@ ROUTE_MUTANTS = (
         ("if entry != 0)", "if entry == 0)"),
     ),
     *_of(
+        "euler-lagrange",
+        "euler_lagrange",
+        ("rocking_disk",),
+        ("[slope - c for slope, c", "[slope + c for slope, c"),
+        ("[slope - c for slope, c", "[slope for slope, c"),
+        ("moved = applied(field, known.inverse_mass,", "moved = applied(field, known.mass,"),
+        ("zip(setting.positions + setting.velocities, v + moved", "zip(setting.state, moved + v"),
+    ),
+    *(
+        RouteMutant("euler-lagrange", module, old, new, (), CONFIGURATION)
+        for module, old, new in (
+            ("euler_lagrange", "{p: slope * weight for", "{p: -slope * weight for"),
+            ("euler_lagrange", "{p: slope * weight for", "{p: slope for"),
+            ("euler_lagrange", "slope[c][b][a] - slope[a]", "slope[c][b][a] + slope[a]"),
+            ("structure", "A[j][i] - A[i][j]", "A[i][j] - A[j][i]"),
+            ("structure", "(*(-w for w in", "(*(w for w in"),
+        )
+    ),
+    *_of(
+        "canonical",
+        "canonical",
+        ("kepler", "monopole_kepler", "rocking_disk", "spd_motion"),
+        ("rates[p] = turning - slopes[q]", "rates[p] = turning + slopes[q]"),
+        ("rates[p] = turning - slopes[q]", "rates[p] = -slopes[q]"),
+        ("(names[j], names[i]): -value", "(names[j], names[i]): value"),
+        ("h = field.sum(products) - field", "h = field.sum(products) + field"),
+        ("else slopes[p] * weight", "else slopes[p]"),
+        ("- slopes[q] * weight", "- slopes[q]"),
+    ),
+    *_of(
+        "newton",
+        "newton",
+        ("kepler",),
+        ("zip(setting.velocities, accelerations(setting),", "zip(setting.velocities, velocities,"),
+        ("zip(setting.positions, velocities,", "zip(setting.positions, velocities[::-1],"),
+    ),
+    *_of(
+        "newton",
+        "forces",
+        ("kepler", "n_particles"),
+        ("inverse[0][0] * component", "-inverse[0][0] * component"),
+        ("applied(field, inverse, force", "applied(field, mass, force"),
+        (
+            "for row in range(len(mass)) for k in range(columns)",
+            "for k in range(columns) for row in range(len(mass))",
+        ),
+    ),
+    *_of(
+        "alignment",
+        "alignment",
+        ("monopole_kepler",),
+        ("(source - q * q)", "(source + q * q)"),
+        ("(source - q * q)", "source"),
+        ("scale(alpha, r), cross(chi, r)", "scale(alpha, r), cross(r, chi)"),
+        ("*cross(r, force))", "*cross(force, r))"),
+        (".scaled(1 / dot(r, r))", ""),
+        ("= tuple(field.substitute(f, moved) for f in", "= tuple(f for f in"),
+        ('"chi . r = 0", dot(chi, r)', '"chi . r = 0", dot(chi, r) - 1'),
+    ),
+    *_of(
         "nambu",
         "nambu",
         ("nambu_body", "nambu_pendulum"),
         ("-rate for rate in", "rate for rate in"),
         ("(-1) ** i * determinant(minor)", "determinant(minor)"),
+    ),
+    *_of(
+        "hamilton-pontryagin",
+        "hamilton_pontryagin",
+        ("heavy_top", "kirchhoff"),
+        ("x - setting.sign * dx for", "x + setting.sign * dx for"),
+        ("rate - setting.sign * turn / 2", "rate + setting.sign * turn / 2"),
+        ("rate - setting.sign * turn / 2", "rate - setting.sign * turn"),
+        ("force - field.sum(carried)", "force + field.sum(carried)"),
+        ("force - field.sum(carried)", "force"),
+        ("dict(rates) | dict.fromkeys(", "dict.fromkeys("),
+    ),
+    *_of(
+        "clebsch",
+        "clebsch",
+        ("heavy_top", "kirchhoff"),
+        ("*(-slope for slope in field.gradient(action, p))", "*field.gradient(action, p)"),
+        (
+            "        *field.gradient(action, q),",
+            "        *(-s for s in field.gradient(action, q)),",
+        ),
+        ("        *field.gradient(action, q),", "        *field.gradient(pairing, q),"),
+        ("tuple(-slope for slope in", "tuple(slope for slope in"),
+        ("return setting.sign * field.sum(total)", "return -setting.sign * field.sum(total)"),
+        ("(name, field.substitute(x, image)) for", "(name, -field.substitute(x, image)) for"),
+    ),
+    *_of(
+        "poincare",
+        "poincare",
+        ("heavy_top", "kirchhoff"),
+        ("found[s] += setting.sign * c", "found[s] -= setting.sign * c"),
+        ("found[k] -= setting.sign * c", "found[k] += setting.sign * c"),
+        ("field.zero) - setting.sign * entry", "field.zero) + setting.sign * entry"),
+        ("c * eta[k] * slopes[i]", "c * eta[k] * slopes[k]"),
+        ("momentum = [a + b for", "momentum = [a - b for"),
+        ("momentum = [a + b for", "momentum = [a for"),
+    ),
+    *_of(
+        "cayley-klein",
+        "cayley_klein",
+        ("rigid_body_attitude", "heavy_top"),
+        ("total = [-mu * x for mu", "total = [mu * x for mu"),
+        ("body.product(a, h) - body.product(h, a)", "body.product(h, a) - body.product(a, h)"),
+        ("body.product(body.omega.conjugate, pi)", "body.product(body.omega, pi)"),
+        ("turned.product(q.conjugate, a, q)", "turned.product(q, a, q.conjugate)"),
+        ("return HALF * self.product(self.q", "return self.product(self.q"),
+        ("product(self.q, self.omega)", "product(self.omega, self.q)"),
+        ("HALF * (turning + slopes)", "HALF * turning"),
+    ),
+    *(
+        RouteMutant("hamilton-pontryagin", module, old, new, ("rigid_body_attitude",), tests)
+        for module, old, new, tests in (
+            ("reconstruction", "(q, q.conjugate) if", "(q.conjugate, q) if", ()),
+            ("reconstruction", "scale(-1, apply(turn", "scale(1, apply(turn", SEEN),
+            ("reconstruction", "return transpose(g)", "return g", SEEN),
+        )
     ),
 )
