@@ -126,8 +126,9 @@ def defining(algebra: LieAlgebra, name: str = "vector") -> Representation:
         AlgebraError: The algebra was declared by brackets and has no matrices.
     """
     if not algebra.matrices:
+        declared = "a bracket of matrices" if algebra.elements else "brackets"
         raise AlgebraError(
-            f"{algebra.name} is declared by brackets and has no matrices, so it has no {name!r} "
+            f"{algebra.name} is declared by {declared} and has no matrices, so it has no {name!r} "
             "representation. Declare the algebra by matrices, or declare the representation.",
             algebra=algebra.name,
         )

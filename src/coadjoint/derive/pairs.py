@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from coadjoint.algebra.linear import Span
+from coadjoint.derive.interpret import entries
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, Field
@@ -56,11 +57,22 @@ class LaxEquation:
 
 
 def declared_pair(setting: Setting) -> LaxPair:
-    """The pair of the table [lax]."""
+    """The pair of the table [lax].
+
+    Raises:
+        DerivationError: The spectral parameter occurs in a function, or in a sum that divides.
+    """
     lax = setting.spec.lax
     assert lax is not None, "the reader asks for a table [lax] on this route"
     spectral = {lax.spectral: setting.field[lax.spectral]}
     L, M = setting.value(lax.L, spectral), setting.value(lax.M, spectral)
+    for entry in (*entries(L), *entries(M)):
+        try:
+            setting.field.coefficients(entry, lax.spectral)
+        except ValueError as error:
+            problem, expected = str(error), f"polynomials in {lax.spectral} and its inverse"
+            hint = f"Choose another parameter than {lax.spectral}, or take the route lie-poisson."
+            raise refusal(setting, "lax", problem, lax.spectral, expected, hint) from None
     return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
 
 
@@ -161,8 +173,8 @@ def diagonal(field: Field, values: Sequence[Element]) -> Matrix:
 
 def combined(field: Field, *terms: tuple[Element, Matrix]) -> Matrix:
     """A sum of multiples of matrices."""
-    size = range(len(terms[0][1]))
+    rows, columns = range(len(terms[0][1])), range(len(terms[0][1][0]))
     return tuple(
-        tuple(field.sum(factor * matrix[i][j] for factor, matrix in terms) for j in size)
-        for i in size
+        tuple(field.sum(factor * matrix[i][j] for factor, matrix in terms) for j in columns)
+        for i in rows
     )
