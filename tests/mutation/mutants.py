@@ -358,7 +358,7 @@ MUTANTS = (
     Mutant(
         DERIVE + "newton_euler.py",
         "lambda x, y: cross(x, cross(omega, cross(omega, y)))",
-        "lambda x, y: cross(omega, cross(x, cross(omega, y)))",
+        "lambda x, y: cross(x, cross(omega, cross(y, omega)))",
     ),
     Mutant(
         DERIVE + "newton_euler.py",
