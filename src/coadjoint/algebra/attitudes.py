@@ -56,8 +56,8 @@ def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:
         AlgebraError: The algebra is not that of the rotations.
 
     >>> from coadjoint.algebra import algebra_by_name
-    >>> quaternion(algebra_by_name("so(3)")).act([0, 0, 2], [1, 0, 0, 0])  # -q k
-    (0, 0, 0, -1)
+    >>> list(map(str, quaternion(algebra_by_name("so(3)")).act([0, 0, 2], [1, 0, 0, 0])))  # -q k
+    ['0', '0', '0', '-1']
     """
     constants = {pair: dict(row) for pair, row in algebra.constants.items()}
     if algebra.dimension != 3 or constants != _ROTATIONS:
