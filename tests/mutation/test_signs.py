@@ -21,10 +21,18 @@ from tests.sources.test_equations import BY_ROUTE, points, values
 from tests.specs import shipped, spec
 
 ON_ALGEBRAS = [name for name in SYSTEMS if shipped(name).algebra is not None]
-BY_ALGEBRA_ROUTE = [pair for pair in BY_ROUTE if pair[0] in ON_ALGEBRAS]
+#: A declared Lax pair says by itself which way the motion runs.
+BY_ALGEBRA_ROUTE = [pair for pair in BY_ROUTE if pair[0] in ON_ALGEBRAS and pair[1] != "lax"]
 BY_EULER_POINCARE = [name for name, route in BY_ROUTE if route == "euler-poincare"]
 #: Beyond six dimensions the entries are many and alike.
 SMALL = [name for name in ON_ALGEBRAS if len(textbook.STATES[name]) <= 6]
+#: Routes on the declared state that reckon with structure constants, not with matrices or points.
+BY_CONSTANTS = ("euler-poincare", "lie-poisson")
+
+
+def by_constants(declared):
+    """Those routes of a spec."""
+    return [route for route in declared.routes if route in BY_CONSTANTS]
 
 
 def agrees(equations, name):
@@ -37,13 +45,13 @@ def with_constants(name, constants):
     """A shipped system on an algebra with other structure constants."""
     declared = shipped(name)
     old = declared.algebra
-    return replace(declared, algebra=LieAlgebra(old.name, old.basis, constants, old.blocks))
+    return replace(declared, algebra=replace(old, constants=constants))
 
 
 @pytest.mark.parametrize("name", ON_ALGEBRAS)
 def test_the_algebra_as_it_is_agrees(name):
     """What the tests below see is the flip, not the way it is made."""
-    for route in shipped(name).routes:
+    for route in by_constants(shipped(name)):
         assert agrees(derive(with_constants(name, shipped(name).algebra.constants), route), name)
 
 
@@ -56,7 +64,7 @@ def test_every_sign_of_every_structure_constant(name):
     for flip in flips:
         try:
             changed = with_constants(name, spoiled_constants(algebra, *flip))
-            routes = [derive(changed, route) for route in changed.routes]
+            routes = [derive(changed, route) for route in by_constants(changed)]
         except AlgebraError:
             continue
         for equations in routes:
@@ -69,11 +77,13 @@ def test_every_sign_of_every_term_of_ad_star(name, monkeypatch):
     right = LieAlgebra.ad_star
     terms = list(shipped(name).algebra.structure())
     assert terms
-    for i, j, k, c in terms:
+    for i, j, k, _ in terms:
 
-        def ad_star(self, xi, mu, i=i, j=j, k=k, c=c):
+        def ad_star(self, xi, mu, term=(i, j, k)):
             found = list(right(self, xi, mu))
-            found[j] = found[j] - 2 * c * xi[i] * mu[k]
+            for i, j, k, c in self.structure():  # in the field of the route
+                if (i, j, k) == term:
+                    found[j] = found[j] - 2 * c * xi[i] * mu[k]
             return tuple(found)
 
         monkeypatch.setattr(LieAlgebra, "ad_star", ad_star)
