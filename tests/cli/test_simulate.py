@@ -26,11 +26,11 @@ def test_invariants_of_a_shipped_system_are_kept(run):
 
 
 def test_the_default_state_has_vectors_of_unit_length(run):
-    """Without --state each vector points along (1, 2, 3) with length 1."""
+    """Without --state vectors have length 1, the first along (1, 2, 3), the next (2, 3, 1)."""
     initial = json.loads(run("simulate", "heavy_top", "--time", "0.1", "--json").stdout)["initial"]
-    for name in ("Pi", "Gamma"):
+    for name, direction in {"Pi": (1, 2, 3), "Gamma": (2, 3, 1)}.items():
         values = [initial[f"{name}{n}"] for n in (1, 2, 3)]
-        assert values == [n / math.sqrt(14) for n in (1, 2, 3)]
+        assert values == [n / math.sqrt(14) for n in direction]
 
 
 def test_state_and_parameters_come_from_the_command_line(run):

@@ -142,10 +142,15 @@ def chosen_parameters(
 
 
 def default_state(quantities: Quantities) -> list[float]:
-    """Each vector of unit length along (1, 2, 3, ...), no special direction; each scalar 1."""
+    """Each vector of unit length, no special direction; each scalar 1.
+
+    The first is along (1, 2, ..., n), the next along (2, ..., n, 1) and so on: were position and
+    velocity parallel, a particle would fall into a centre of attraction.
+    """
     state = []
-    for quantity in quantities.values():
-        direction = range(1, len(quantity.components) + 1)
+    for place, quantity in enumerate(quantities.values()):
+        count = len(quantity.components)
+        direction = [(place + n) % count + 1 for n in range(count)]
         length = math.sqrt(sum(n * n for n in direction))
         state += [n / length for n in direction]
     return state
