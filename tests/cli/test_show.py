@@ -20,9 +20,9 @@ def test_the_other_route_is_shown_on_request(run):
     """--route chooses among the declared ones; an undeclared one is refused by name."""
     assert "Poisson bracket" not in run("show", "rigid_body").stdout
     assert "{Pi1, Pi2} = -Pi3" in run("show", "rigid_body", "--route", "lie-poisson").stdout
-    refused = run("show", "rigid_body", "--route", "clebsch")
+    refused = run("show", "rigid_body", "--route", "kaluza-klein")
     assert refused.exit_code == 2
-    assert "'clebsch'" in refused.stderr
+    assert "'kaluza-klein'" in refused.stderr
 
 
 def test_output_goes_to_a_file(run, folder):
