@@ -55,7 +55,7 @@ def test_the_route_lax_needs_a_pair():
 
 def test_integrals_have_names_of_their_own():
     """A spec cannot declare what its kernels call the integrals of a pair."""
-    with pytest.raises(SpecError, match="'integral1'.*Call it 'my_integral1'"):
+    with pytest.raises(SpecError, match=r"'integral1'.*Call it 'my_integral1'"):
         spec(text_of("manakov_so4"), ("[claims]", '[observables]\nintegral1 = "M12"\n[claims]'))
 
 
