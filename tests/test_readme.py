@@ -15,6 +15,7 @@ from coadjoint.cli.program import COMMANDS
 from coadjoint.limits import EXAMINED_GENERATORS
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.shapes import FUNCTIONS
+from tests.conftest import SYSTEMS
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -144,6 +145,13 @@ def test_tables_are_complete():
     assert len(keys) > 25
     for key in keys:
         assert re.search(rf"[`\[. {{,]{key}\b", SPECS), key
+
+
+def test_every_shipped_system_is_listed():
+    """The table of systems names those that ship, and no others."""
+    lines = [line for line in README.splitlines() if line.startswith("| ") and "_" in line]
+    named = {name for line in lines for name in re.findall(r"`([a-z0-9_]+)`", line)}
+    assert named == set(SYSTEMS)
 
 
 def test_links_lead_somewhere():
