@@ -127,3 +127,18 @@ def test_certificate_lists_the_chart():
     assert "euler-poincare and by hand give the same motion, through Pi = P x Q" in statements
     assert "the route by hand reaches an open set of states" in statements
     assert certificate.holds
+
+
+def test_relations_are_independent_where_they_hold():
+    """Gamma's pair alone gives the vehicle P = 0: dot(P, P) = 0 says it, but bounds no dimension.
+
+    Its gradient vanishes there, so it must not stand among the four relations that are counted.
+    """
+    declared = dataclasses.replace(shipped("underwater_vehicle"), clebsch=None)
+    claims = [claim for claim in prove(declared).claims if "clebsch reaches" in claim.statement]
+    (claim,) = claims
+    assert claim.verdict is Verdict.PROVED
+    assert "dot(P, P) = 0" not in claim.statement
+    assert claim.statement.count(" = 0") == 4
+    assert "P1 = 0, P2 = 0" in claim.statement
+    assert "Pi1*Gamma1 + Pi2*Gamma2 + Pi3*Gamma3 = 0" in claim.statement

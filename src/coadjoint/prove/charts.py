@@ -130,7 +130,9 @@ class ChartMap:
     def image_relations(self) -> tuple[Relation, ...]:
         """Functions of the state that vanish on the image, one for each dimension it lacks.
 
-        Claimed Casimirs are tried first, then all polynomials of degree at most two.
+        Claimed Casimirs are tried first, then all polynomials of degree at most two. Their
+        gradients are compared on the image: elsewhere dot(P, P) and dot(P, Gamma) seem to be two
+        relations, and where P = 0 they are none.
         """
         state = self.first.setting.state
         found: list[Relation] = []
@@ -138,8 +140,8 @@ class ChartMap:
         for relation in self._candidates():
             if len(found) == len(state) - self.rank:
                 break
-            slope = self.field.gradient(relation.element, state)
-            row = {n: value for n, value in enumerate(slope) if value}
+            slope = map(self.pull_back, self.field.gradient(relation.element, state))
+            row = {n: value for n, each in enumerate(slope) if (value := self.field.normal(each))}
             if generic_rank(self.field, [*slopes, row]) > len(slopes):
                 found.append(relation)
                 slopes.append(row)
