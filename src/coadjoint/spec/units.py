@@ -69,9 +69,7 @@ def unit_of(node: tree.Node, units: Mapping[str, Unit | None]) -> Unit | None:
     return found[id(node)]
 
 
-def product_of(
-    units: Mapping[str, Unit | None], powers: Iterable[tuple[str, int]]
-) -> Unit | None:
+def product_of(units: Mapping[str, Unit | None], powers: Iterable[tuple[str, int]]) -> Unit | None:
     """The unit of a product of powers of names; None if one is not known.
 
     >>> unit_text(product_of({"M": parse_unit("kg m^2/s"), "a": {}}, [("M", 2), ("a", 1)]))
