@@ -227,7 +227,7 @@ class Field:
         return not any(name in self.adjoined for name in self.names_in(element))
 
     def coefficients(self, element: Element, name: str) -> dict[int, Element]:
-        """The coefficients of an element that is a (Laurent) polynomial in a symbol, by its powers.
+        """The coefficients of a (Laurent) polynomial in a symbol, by its powers.
 
         Raises:
             ValueError: The symbol stands in a sum in a denominator, or in a function.
@@ -256,8 +256,7 @@ class Field:
             for power, part in parts.items():
                 whole = Element(self._factors, [(self._ring.from_dict(part), powers)])
                 found.setdefault(power, []).append(whole)
-        sums = {power: self.sum(found[power]) for power in sorted(found)}
-        return {power: value for power, value in sums.items() if value}
+        return {power: value for power in sorted(found) if (value := self.sum(found[power]))}
 
     def functions_in(self, element: Element) -> frozenset[str]:
         """Generators of the functions that occur in an element or in their arguments."""
@@ -429,12 +428,9 @@ class Field:
         )
 
     def partial_fractions(self, element: Element) -> list[Element]:
-        """An element as a sum by denominators, where single addends let some of it cancel.
+        """Single quotients whose sum is the element, their addends cancelled; zero alone for zero.
 
         ``(I2 - I3)/(I2*I3)`` is ``1/I3 - 1/I2``.
-
-        Returns:
-            Single quotients in the order of the field; zero alone for zero.
         """
         groups: dict[tuple[tuple[int, int], ...], list[Element]] = {}
         for term in self.terms(element):
