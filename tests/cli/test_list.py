@@ -29,7 +29,7 @@ def test_the_list_has_every_shipped_system(run):
     """Dimension, routes and claims of the heavy top stand in its line."""
     result = run("list")
     assert result.exit_code == 0
-    (line,) = [line for line in result.stdout.splitlines() if "heavy_top" in line]
+    (line,) = [line for line in result.stdout.splitlines() if "heavy_top " in line]
     assert " 6 " in line
     assert "euler-poincare, lie-poisson" in line
     assert line.rstrip().endswith("verified")

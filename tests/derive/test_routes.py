@@ -4,7 +4,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.errors import DerivationError
+from coadjoint.errors import DerivationError, LimitError
 from coadjoint.prove import prove
 from tests.specs import RIGID_BODY, spec
 
@@ -84,9 +84,8 @@ def test_a_full_inertia_tensor_is_inverted_symbolically():
     assert residual.applyfunc(sympy.cancel) == sympy.zeros(3, 1)
 
 
-def test_velocities_coupled_beyond_three_are_refused_with_a_way_out():
-    """A fully coupled Kirchhoff body asks for a Hamiltonian instead of exploding."""
-    text = """
+#: A body in a fluid whose rotation and translation the kinetic energy couples.
+COUPLED = """
 routes = ["euler-poincare"]
 title = "coupled"
 [algebra]
@@ -101,8 +100,33 @@ C = { shape = [3, 3] }
 [lagrangian]
 l = "dot(Omega, Omega)/2 + dot(v, v)/2 + dot(Omega, C*v)"
 """
-    with pytest.raises(DerivationError, match=r"couples 6 velocities.*lie-poisson"):
-        derive(spec(text))
+
+
+def test_velocities_coupled_beyond_three_are_solved_for_in_the_kernel():
+    """At a rational point the six velocities give back the momenta Omega + C v and v + C^T Omega.
+
+    A momentum that is another is noticed.
+    """
+    equations = derive(spec(COUPLED))
+    names = [str(symbol) for symbol in (*equations.state, *equations.parameters)]
+    values = {name: sympy.Rational(7 * n % 11 + 1, 3) for n, name in enumerate(names)}
+    for name, value in equations.velocities.items():
+        values[name] = sympy.sympify(value).subs(values)
+    velocity, momentum = (
+        sympy.Matrix([values[f"{name}{i}"] for name in pair for i in (1, 2, 3)])
+        for pair in (("Omega", "v"), ("Pi", "P"))
+    )
+    C = sympy.Matrix(3, 3, lambda i, j: values[f"C{i + 1}{j + 1}"])
+    mass = sympy.Matrix(sympy.BlockMatrix([[sympy.eye(3), C], [C.T, sympy.eye(3)]]))
+    assert mass * velocity == momentum
+    assert mass * momentum != momentum
+
+
+def test_velocities_coupled_beyond_the_limit_are_refused_with_a_way_out(monkeypatch):
+    """What the kernel would not solve either asks for a Hamiltonian."""
+    monkeypatch.setattr("coadjoint.derive.legendre.COUPLED_VELOCITIES", 5)
+    with pytest.raises(LimitError, match=r"couples 6 velocities.* 5 \(COUPLED.*lie-poisson"):
+        derive(spec(COUPLED))
 
 
 def test_an_undeclared_route_is_refused():

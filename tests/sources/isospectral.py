@@ -68,12 +68,13 @@ def coefficient(L: dict[int, Rows], k: int, power: int) -> Any:
 
 # -- Manakov's body: sections 2.4.2 to 2.4.5 -------------------------------------------------------
 
-#: (k, power, number) of the coefficients of tr L^k that are emitted beside Casimirs and energy.
+#: (k, power, number) of the coefficients of tr L^k that are emitted beside Casimirs and energy. Of
+#: the n - 2 that are quadratic in M and no Casimir, the energy is a combination, which leaves n - 3.
 MANAKOV = {
     4: ((3, 1, Fraction(-1, 3)),),
     6: (
         *((3, 1, Fraction(-1, 3)), (4, 2, Fraction(-1, 4)), (5, 3, Fraction(-1, 5))),
-        *((6, 4, Fraction(-1, 6)), (5, 1, Fraction(1, 5))),
+        *((5, 1, Fraction(1, 5)), (6, 2, Fraction(1, 3))),
     ),
 }
 
@@ -110,11 +111,12 @@ def integrals(pair: dict[int, Rows], table: Sequence[tuple[int, int, Any]]) -> d
 
 # -- body in a quadratic potential: section 2.5.6 --------------------------------------------------
 
+#: As above: the energy is a combination of the coefficients (k, 2 k - 2).
 QUADRATIC = {
-    3: ((2, 2, Fraction(-1, 2)), (3, 4, Fraction(-1, 3))),
+    3: ((2, 2, Fraction(-1, 2)), (3, 2, Fraction(1, 3))),
     4: (
-        *((2, 2, Fraction(-1, 2)), (3, 4, Fraction(-1, 3)), (4, 6, Fraction(-1, 4))),
-        *((3, 2, Fraction(1, 3)), (4, 4, Fraction(1, 2))),
+        *((2, 2, Fraction(-1, 2)), (3, 4, Fraction(-1, 3)), (3, 2, Fraction(1, 3))),
+        *((4, 4, Fraction(1, 2)), (4, 2, Fraction(-1, 4))),
     ),
 }
 

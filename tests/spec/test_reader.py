@@ -40,7 +40,8 @@ def body(size):
 
 TWO, ONE = ("euler-poincare", "lie-poisson"), ("lie-poisson",)
 MANAKOV = ("euler-poincare", "matrix-euler-poincare", "lie-poisson", "lax", "manakov")
-ROTATING = (*TWO, "hamilton-pontryagin", "clebsch", "poincare", "cayley-klein")
+ADVECTING = (*TWO, "hamilton-pontryagin", "clebsch", "poincare")
+ROTATING = (*ADVECTING, "cayley-klein")
 TOPS = (*TWO, "hamilton-pontryagin", "newton-euler", "kaluza-klein")
 COMPLEX = ("lie-poisson", "complexification")
 CANONICAL = ("canonical", "poisson")
@@ -53,7 +54,7 @@ ONE_POINT = "r1 r2 r3 v1 v2 v3"
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
-    "rigid_body": ("Pi1 Pi2 Pi3", "I1 I2 I3", (*ROTATING, "newton-euler", "nambu")),
+    "rigid_body": ("Pi1 Pi2 Pi3", "I1 I2 I3", (*ROTATING, "newton-euler", "nambu", "manakov")),
     "rigid_body_attitude": (
         "q0 q1 q2 q3 Pi1 Pi2 Pi3",
         "I1 I2 I3",
@@ -64,10 +65,20 @@ SHIPPED = {
         "I1 I2 I3 m g chi1 chi2 chi3",
         (*ROTATING, "newton-euler", "kaluza-klein"),
     ),
+    "underwater_vehicle": (
+        " ".join(STATES["underwater_vehicle"]),
+        " ".join(PARAMETERS["underwater_vehicle"]),
+        ADVECTING,
+    ),
+    "coupled_bodies": (
+        " ".join(STATES["coupled_bodies"]),
+        " ".join(PARAMETERS["coupled_bodies"]),
+        (*TWO, "hamilton-pontryagin", "poincare"),
+    ),
     "kirchhoff": (
         "Pi1 Pi2 Pi3 P1 P2 P3",
         "I1 I2 I3 M1 M2 M3 D1 D2 D3",
-        (*TWO, "hamilton-pontryagin", "clebsch", "poincare"),
+        ADVECTING,
     ),
     **dict.fromkeys(
         ("heavy_top_kovalevskaya", "heavy_top_goryachev_chaplygin"),
@@ -79,7 +90,7 @@ SHIPPED = {
     "pt_rigid_body": ("x1 x2 x3", "K1 K2 K3", COMPLEX),
     "heisenberg": ("mu1 mu2 mu3", "", ONE),
     "se2_pendulum": ("m b1 b2", "", ONE),
-    "affine_line": ("mu1 mu2", "", TWO),
+    "affine_line": ("mu1 mu2", "", ADVECTING),
     "sl2_r2": ("h x y p1 p2", "I1 I2 I3 m", ONE),
     "so4_body": ("M1 M2 M3 N1 N2 N3", "I1 I2 I3 L1 L2 L3", TWO),
     "galilei": (GALILEI, INERTIA, ONE),
