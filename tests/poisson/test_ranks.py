@@ -1,7 +1,9 @@
 """Ranks at almost every point."""
 
+import pytest
+
 from coadjoint.exact import Field
-from coadjoint.poisson.ranks import generic_rank, is_exact
+from coadjoint.poisson.ranks import certain_rank, generic_rank, is_exact
 
 
 def test_ranks_with_functions_are_those_of_values():
@@ -29,3 +31,26 @@ def test_ranks_pass_over_poles_and_missing_roots():
     assert generic_rank(field, [{0: entry, 1: entry}, {0: y * entry, 1: y * entry}]) == 1
     assert generic_rank(field, [{0: entry}, {1: y}]) == 2
     assert generic_rank(field, [{}, {}]) == 0
+
+
+def test_ranks_with_functions_are_certain_where_their_arguments_are_zero():
+    """cos(x) and exp(x) are 1 there; a rank at one point bounds others, and may fall short."""
+    field = Field(["x", "y"], slots=8)
+    x, y = field["x"], field["y"]
+    cosine, sine, growth = (field.call(name, x) for name in ("cos", "sin", "exp"))
+    assert certain_rank(field, [{0: cosine, 1: sine}, {0: -sine, 1: cosine}]) == 2
+    assert certain_rank(field, [{0: growth + cosine, 1: y}, {0: x + 2, 1: y}]) == 1
+    assert generic_rank(field, [{0: growth + cosine, 1: y}, {0: x + 2, 1: y}]) == 2
+    assert certain_rank(field, [{0: x, 1: y}, {0: x * y, 1: y**2}]) == 1
+
+
+@pytest.mark.parametrize("name", ["log", "cos"])
+def test_values_that_are_not_rational_bound_no_rank(name):
+    """log(x) has a pole at 0, cos(x + 1) is irrational, 1/sin(x) is infinite."""
+    field = Field(["x", "y"], slots=4)
+    x, y = field["x"], field["y"]
+    value = field.call(name, x + (name == "cos"))
+    pole = field.one / field.call("sin", x)
+    for entry in (value, pole):
+        assert certain_rank(field, [{0: entry * y}]) == 0
+        assert generic_rank(field, [{0: entry * y}]) == 1

@@ -215,3 +215,21 @@ def test_a_long_casimir_is_described_by_its_size():
     text = described(field, whole)
     assert text == f"a function with {28 * 29 // 2} terms that begins with M12^2"
     assert described(field, field["M12"]) == "M12"
+
+
+@pytest.mark.parametrize(("function", "verdict"), [("exp", "proved"), ("log", "numerically")])
+def test_ranks_with_functions_are_proved_where_these_are_rational(function, verdict):
+    """A mass exp(x) is 1 at x = 0, so that no Casimir is proved; log(x) is known by numbers."""
+    text = f"""
+title = "a mass that depends on the place"
+routes = ["euler-lagrange"]
+[variables]
+x = {{ role = "coordinate" }}
+v = {{ role = "velocity", of = "x" }}
+[lagrangian]
+l = "{function}(x)*v^2/2"
+"""
+    claims = {claim.statement: claim for claim in prove(spec(text)).claims}
+    none = claims["there are no Casimirs but constants"]
+    assert none.verdict.value.startswith(verdict)
+    assert ("50-digit" in none.method) == (function == "log")

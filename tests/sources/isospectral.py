@@ -68,8 +68,8 @@ def coefficient(L: dict[int, Rows], k: int, power: int) -> Any:
 
 # -- Manakov's body: sections 2.4.2 to 2.4.5 -------------------------------------------------------
 
-#: (k, power, number) of the coefficients of tr L^k that are emitted beside Casimirs and energy. Of
-#: the n - 2 that are quadratic in M and no Casimir, the energy is a combination, which leaves n - 3.
+#: (k, power, number) of the coefficients of tr L^k that are emitted beside Casimirs and energy. The
+#: energy is a combination of a Casimir and the n - 2 others quadratic in M, which leaves n - 3.
 MANAKOV = {
     4: ((3, 1, Fraction(-1, 3)),),
     6: (

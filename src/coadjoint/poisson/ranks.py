@@ -4,7 +4,8 @@ Comes in: sparse rows of elements. Goes out: their rank at a random point. A ran
 point never exceeds the generic rank, and falls short of it only where a nonzero minor happens to
 vanish there: for polynomials of degree d with a chance below d/p, about 1e-17, at each of two
 points. Where sines or exponentials occur the rank is that of 50-digit values, and `is_exact` says
-that it bounds nothing. The points are the same in every run.
+that it bounds nothing; `certain_rank` does, since sin 0, cos 0 and exp 0 are whole numbers. The
+points are the same in every run.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import mpmath
 
 from coadjoint.algebra.linear import PRIME, rank_modulo
 from coadjoint.exact import Element, Field
+from coadjoint.exact.written import Adjoined
 
 #: Points at which a rank is taken; the largest counts.
 POINTS = 2
@@ -28,6 +30,10 @@ POINTS = 2
 #: which a pivot is nothing but rounding.
 DIGITS = 50
 NEGLIGIBLE = mpmath.mpf(10) ** -30
+#: Functions of 0, where they are rational.
+AT_ZERO = {"sin": 0, "cos": 1, "exp": 1}
+#: Points without a pole and with all square roots are looked for that often.
+TRIES = 50
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,42 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
         return _largest(map(_rank_of_values, islice(_valued(field, rows), POINTS)), len(rows))
 
 
+def certain_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
+    """A bound of the generic rank from below, without rounding.
+
+    Where functions occur, it is the rank where all symbols in their arguments are 0: no rank at a
+    point exceeds the generic one. 0 where they are not rational there, as ``log(x)``.
+
+    >>> field = Field(["x", "y"], slots=2)
+    >>> cosine = field.call("cos", field["x"])
+    >>> certain_rank(field, [{0: cosine, 1: field["y"]}, {0: field["x"], 1: cosine}])
+    2
+    """
+    entries = [entry for row in rows for entry in row.values()]
+    if is_exact(field, entries):
+        return generic_rank(field, rows)
+    functions = [f for f in _functions(field, entries) if f.function != "sqrt"]
+    resting = frozenset[str]().union(*(field.reach(f.argument) for f in functions))
+    if not all(_vanishes(field, f.argument) for f in functions):
+        return 0
+    source = random.Random(1)  # noqa: S311 (not for secrets)
+    for _ in range(TRIES):
+        with suppress(ZeroDivisionError):
+            point = _random_point(field, source) | dict.fromkeys(resting, Residue(0))
+            return rank_modulo(_residues(field, rows, point))
+    return 0
+
+
+def _vanishes(field: Field, argument: Element) -> bool:
+    """Whether an argument without functions is 0 where its symbols are."""
+    zeros = dict.fromkeys(field.names, Fraction(0))
+    with suppress(ZeroDivisionError):
+        return field.function_free(argument) and not field.evaluate(
+            argument, zeros, Fraction, lambda function, x: x
+        )
+    return False
+
+
 def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> list[int]:
     """Places of the rows that do not depend on those before them, at almost every point.
 
@@ -108,32 +150,45 @@ def _largest(ranks: Iterable[int], most: int) -> int:
 
 def is_exact(field: Field, elements: Iterable[Element]) -> bool:
     """Whether ranks of such entries are exact: no function occurs but ``sqrt``."""
-    reached = (field.adjoined[name] for e in elements for name in field.functions_in(e))
-    return all(known.function == "sqrt" for known in reached)
+    return all(known.function == "sqrt" for known in _functions(field, elements))
+
+
+def _functions(field: Field, elements: Iterable[Element]) -> Iterator[Adjoined]:
+    """The functions that occur in elements, or in the arguments of such."""
+    return (field.adjoined[name] for e in elements for name in field.functions_in(e))
 
 
 def _sampled(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[dict[int, int]]]:
     """The matrix at random points; poles, and points without the square roots, are passed over."""
     source = random.Random(1)  # noqa: S311 (not for secrets)
     while True:
-        point = {name: Residue(source.randrange(1, PRIME)) for name in field.names}
-        try:
-            yield [{j: _value(field, e, point).value for j, e in row.items()} for row in rows]
-        except ZeroDivisionError:
-            continue
+        with suppress(ZeroDivisionError):
+            yield _residues(field, rows, _random_point(field, source))
 
 
-def _value(field: Field, element: Element, point: Mapping[str, Residue]) -> Residue:
-    return field.evaluate(element, point, residue, _call)
+def _random_point(field: Field, source: random.Random) -> dict[str, Residue]:
+    return {name: Residue(source.randrange(1, PRIME)) for name in field.names}
+
+
+def _residues(
+    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, Residue]
+) -> list[dict[int, int]]:
+    """The matrix at a point."""
+    return [
+        {j: field.evaluate(e, point, residue, _call).value for j, e in row.items()} for row in rows
+    ]
 
 
 def _call(function: str, argument: Residue) -> Residue:
-    """A square root modulo `PRIME`.
+    """A square root modulo `PRIME`, or another function where its argument is 0.
 
     Raises:
-        ZeroDivisionError: There is no root, as at every other point.
+        ZeroDivisionError: There is no such value, for roots at every other point.
     """
-    assert function == "sqrt", function
+    if function in AT_ZERO and not argument.value:
+        return Residue(AT_ZERO[function])
+    if function != "sqrt":
+        raise ZeroDivisionError(f"{function}({argument.value}) is not rational")
     root = pow(argument.value, (PRIME + 1) // 4, PRIME)  # PRIME is 3 modulo 4
     if root * root % PRIME != argument.value:
         raise ZeroDivisionError(f"no square root of {argument.value} modulo {PRIME}")

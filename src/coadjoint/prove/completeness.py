@@ -17,7 +17,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, casimirs
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import generic_rank, is_exact
+from coadjoint.poisson.ranks import certain_rank, generic_rank, is_exact
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.zero import Decision
 
@@ -28,6 +28,7 @@ DEGREE = 4
 SHOWN = 120
 #: How the number of independent Casimirs is decided.
 METHOD = "rank of the gradients and of the bracket at random points modulo a prime"
+METHOD_WITH_FUNCTIONS = f"{METHOD}, where the arguments of functions are 0"
 NUMERIC = "rank of 50-digit values of the gradients and of the bracket"
 
 
@@ -41,7 +42,7 @@ class Completeness:
         expected: How many there are near almost every point: dimension - rank.
         missing: Why some are missing; empty if none is.
         generating: Places of coordinates whose brackets give all others.
-        exact: Whether the ranks were found without rounding.
+        method: How the ranks were found.
     """
 
     found: tuple[Element, ...]
@@ -49,7 +50,7 @@ class Completeness:
     expected: int
     missing: str
     generating: tuple[int, ...] = ()
-    exact: bool = True
+    method: str = METHOD
 
     @property
     def decision(self) -> Decision:
@@ -59,10 +60,8 @@ class Completeness:
         the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
         missing, the rank may be larger elsewhere, though that is most unlikely.
         """
-        if not self.exact:
-            return Decision(Verdict.SUPPORTED, NUMERIC)
-        whole = self.known == self.expected
-        return Decision(Verdict.PROVED if whole else Verdict.SUPPORTED, METHOD)
+        proved = self.known == self.expected and self.method != NUMERIC
+        return Decision(Verdict.PROVED if proved else Verdict.SUPPORTED, self.method)
 
     @property
     def statement(self) -> str:
@@ -103,8 +102,21 @@ def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
         generating = PolynomialBracket(structure).generating if results else generating
     whole = len(known) + len(found)
     missing = missing if whole < expected else ""
-    exact = is_exact(structure.field, (*claimed, *(e for row in structure.tensor for e in row)))
-    return Completeness(tuple(found), whole, expected, missing, tuple(generating), exact)
+    method = _method(structure, [*known, *found], expected)
+    return Completeness(tuple(found), whole, expected, missing, tuple(generating), method)
+
+
+def _method(structure: PoissonStructure, known: Sequence[Element], expected: int) -> str:
+    """How the ranks of the gradients of some Casimirs and of the bracket are known."""
+    field, slopes = structure.field, list(map(structure.gradient, known))
+    brackets = [dict(enumerate(row)) for row in structure.tensor]
+    if is_exact(field, (entry for row in (*slopes, *brackets) for entry in row.values())):
+        return METHOD
+    of_brackets = structure.dimension - expected
+    certain = certain_rank(field, slopes) == len(known) and certain_rank(field, brackets) == (
+        of_brackets
+    )
+    return METHOD_WITH_FUNCTIONS if certain else NUMERIC
 
 
 def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
