@@ -30,6 +30,10 @@ POINTS = 2
 #: which a pivot is nothing but rounding.
 DIGITS = 50
 NEGLIGIBLE = mpmath.mpf(10) ** -30
+#: How ranks are known, in words; the last way proves nothing.
+MODULO = "at random points modulo a prime"
+AT_REST = f"{MODULO}, where the arguments of functions are 0"
+BY_VALUES = f"by {DIGITS}-digit values"
 #: Functions of 0, where they are rational.
 AT_ZERO = {"sin": 0, "cos": 1, "exp": 1}
 #: Points without a pole and with all square roots are looked for that often.
@@ -101,6 +105,19 @@ def certain_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
             point = _random_point(field, source) | dict.fromkeys(resting, Residue(0))
             return rank_modulo(_residues(field, rows, point))
     return 0
+
+
+def source_of_ranks(field: Field, *ranks: tuple[Sequence[Mapping[int, Element]], int]) -> str:
+    """How the ranks of some matrices are known: `MODULO`, `AT_REST` or `BY_VALUES`.
+
+    >>> field = Field(["x"], slots=2)
+    >>> source_of_ranks(field, ([{0: field.call("cos", field["x"])}], 1))
+    'at random points modulo a prime, where the arguments of functions are 0'
+    """
+    if all(is_exact(field, row.values()) for rows, _ in ranks for row in rows):
+        return MODULO
+    certain = all(certain_rank(field, rows) == rank for rows, rank in ranks)
+    return AT_REST if certain else BY_VALUES
 
 
 def _vanishes(field: Field, argument: Element) -> bool:

@@ -23,13 +23,13 @@ from typing import Any
 from coadjoint.algebra.linear import nullspace
 from coadjoint.derive import Equations, Relation
 from coadjoint.exact import Element, element_text
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.poisson.ranks import BY_VALUES, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, decide_zero, random_points
 
 #: How the dimension of an image is decided.
-RANK = "rank of the map's derivative at random points modulo a prime"
+RANK = "rank of the map's derivative"
 
 
 class ChartMap:
@@ -115,15 +115,30 @@ class ChartMap:
     @cached_property
     def rank(self) -> int:
         """Dimension of the image, at almost every point of the chart."""
-        names = self.chart.variables
-        bound = [self._slopes(relation, names) for relation in self.domain.relations]
-        rows = [self._slopes(value, names) for value in self.chart.state]
-        together = generic_rank(self.field, [*bound, *rows])
-        return together - (generic_rank(self.field, bound) if bound else 0)
+        return self._ranks[1] - self._ranks[0]
 
-    def _slopes(self, function: Element, names: Sequence[str]) -> dict[int, Element]:
+    @cached_property
+    def source_of_rank(self) -> str:
+        """How the rank is known."""
+        bound, rows = self._derivatives
+        ranks = (bound, self._ranks[0]), ([*bound, *rows], self._ranks[1])
+        return source_of_ranks(self.field, *ranks)
+
+    @cached_property
+    def _derivatives(self) -> tuple[list[dict[int, Element]], list[dict[int, Element]]]:
+        """The derivatives of the relations and of the map."""
+        bound = [self._slopes(relation) for relation in self.domain.relations]
+        return bound, [self._slopes(value) for value in self.chart.state]
+
+    @cached_property
+    def _ranks(self) -> tuple[int, int]:
+        """The ranks of the derivatives of the relations, and of these and the map."""
+        bound, rows = self._derivatives
+        return generic_rank(self.field, bound), generic_rank(self.field, [*bound, *rows])
+
+    def _slopes(self, function: Element) -> dict[int, Element]:
         """The nonzero derivatives of a function, where the relations hold."""
-        slopes = self.field.gradient(function, names)
+        slopes = self.field.gradient(function, self.chart.variables)
         return {n: self.domain.on_zero_set(slope) for n, slope in enumerate(slopes) if slope}
 
     @cached_property
@@ -200,14 +215,19 @@ def reach(chart_map: ChartMap) -> tuple[str, Decision]:
     it from above: where the two meet, both are proved.
     """
     route, dimension = chart_map.other.route, len(chart_map.first.setting.state)
-    missing = dimension - chart_map.rank
+    missing, source = dimension - chart_map.rank, chart_map.source_of_rank
     if not missing:
-        return f"the route {route} reaches an open set of states", Decision(Verdict.PROVED, RANK)
+        return f"the route {route} reaches an open set of states", _decision(source)
     relations = chart_map.image_relations
     named = ", ".join(f"{relation.text} = 0" for relation in relations)
     statement = (
         f"the states that the route {route} reaches have dimension {chart_map.rank} of {dimension}"
         + (f": {named}" if named else "")
     )
-    verdict = Verdict.PROVED if len(relations) == missing else Verdict.SUPPORTED
-    return statement, Decision(verdict, RANK)
+    return statement, _decision(source, met=len(relations) == missing)
+
+
+def _decision(source: str, met: bool = True) -> Decision:
+    """What a rank proves, if it meets its bound from the other side."""
+    proved = met and source != BY_VALUES
+    return Decision(Verdict.PROVED if proved else Verdict.SUPPORTED, f"{RANK} {source}")

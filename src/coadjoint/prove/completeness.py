@@ -17,7 +17,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, casimirs
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import certain_rank, generic_rank, is_exact
+from coadjoint.poisson.ranks import BY_VALUES, MODULO, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.zero import Decision
 
@@ -26,10 +26,8 @@ from coadjoint.prove.zero import Decision
 DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
-#: How the number of independent Casimirs is decided.
-METHOD = "rank of the gradients and of the bracket at random points modulo a prime"
-METHOD_WITH_FUNCTIONS = f"{METHOD}, where the arguments of functions are 0"
-NUMERIC = "rank of 50-digit values of the gradients and of the bracket"
+#: What decides the number of independent Casimirs.
+RANKS = "rank of the gradients and of the bracket"
 
 
 @dataclass(frozen=True)
@@ -42,7 +40,7 @@ class Completeness:
         expected: How many there are near almost every point: dimension - rank.
         missing: Why some are missing; empty if none is.
         generating: Places of coordinates whose brackets give all others.
-        method: How the ranks were found.
+        source: How the ranks are known.
     """
 
     found: tuple[Element, ...]
@@ -50,7 +48,7 @@ class Completeness:
     expected: int
     missing: str
     generating: tuple[int, ...] = ()
-    method: str = METHOD
+    source: str = MODULO
 
     @property
     def decision(self) -> Decision:
@@ -60,8 +58,8 @@ class Completeness:
         the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
         missing, the rank may be larger elsewhere, though that is most unlikely.
         """
-        proved = self.known == self.expected and self.method != NUMERIC
-        return Decision(Verdict.PROVED if proved else Verdict.SUPPORTED, self.method)
+        proved = self.known == self.expected and self.source != BY_VALUES
+        return Decision(Verdict.PROVED if proved else Verdict.SUPPORTED, f"{RANKS} {self.source}")
 
     @property
     def statement(self) -> str:
@@ -102,21 +100,12 @@ def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
         generating = PolynomialBracket(structure).generating if results else generating
     whole = len(known) + len(found)
     missing = missing if whole < expected else ""
-    method = _method(structure, [*known, *found], expected)
-    return Completeness(tuple(found), whole, expected, missing, tuple(generating), method)
-
-
-def _method(structure: PoissonStructure, known: Sequence[Element], expected: int) -> str:
-    """How the ranks of the gradients of some Casimirs and of the bracket are known."""
-    field, slopes = structure.field, list(map(structure.gradient, known))
-    brackets = [dict(enumerate(row)) for row in structure.tensor]
-    if is_exact(field, (entry for row in (*slopes, *brackets) for entry in row.values())):
-        return METHOD
-    of_brackets = structure.dimension - expected
-    certain = certain_rank(field, slopes) == len(known) and certain_rank(field, brackets) == (
-        of_brackets
+    source = source_of_ranks(
+        structure.field,
+        ([structure.gradient(casimir) for casimir in (*known, *found)], whole),
+        ([dict(enumerate(row)) for row in structure.tensor], structure.dimension - expected),
     )
-    return METHOD_WITH_FUNCTIONS if certain else NUMERIC
+    return Completeness(tuple(found), whole, expected, missing, tuple(generating), source)
 
 
 def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:

@@ -23,9 +23,8 @@ from coadjoint.derive.integrals import (
 )
 from coadjoint.derive.pairs import LaxPair, lax_equations, text_of_entry
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.poisson.ranks import MODULO, generic_rank
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.charts import RANK
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.identities import drift
 from coadjoint.prove.zero import Decision, decide_zero
@@ -129,7 +128,7 @@ def _complete(first: Equations, found: Integrals, rank: int) -> Decision:
     own = _rank(first, known)
     together = _rank(first, [*known, *(each.value for each in found.coefficients)])
     if own == together == before + len(found.named):
-        return Decision(Verdict.PROVED, RANK.replace("the map's derivative", "the gradients"))
+        return Decision(Verdict.PROVED, f"rank of the gradients {MODULO}")
     return Decision(
         Verdict.REFUTED,
         f"gradients of rank {own}, with all coefficients of rank {together}",
