@@ -155,11 +155,15 @@ MUTANTS = (
         "{place: -self.taken(value) for",
     ),
     Mutant(DERIVE + "setting.py", 'return 1 if self.spec.invariance == "left" else -1', "return 1"),
-    Mutant(DERIVE + "legendre.py", "field[mu] - field.substitute", "field[mu] + field.substitute"),
     Mutant(
         DERIVE + "legendre.py",
-        "for mu, xi in pairs), -lagrangian)",
-        "for mu, xi in pairs), lagrangian)",
+        "(1 / w) - field.substitute",
+        "(1 / w) + field.substitute",
+    ),
+    Mutant(
+        DERIVE + "legendre.py",
+        "for mu, xi, w in pairs), -lagrangian)",
+        "for mu, xi, w in pairs), lagrangian)",
     ),
     Mutant(DERIVE + "interpret.py", "(-1) ** (i + j) * determinant", "determinant"),
     Mutant(DERIVE + "interpret.py", "(-1) ** j * x * determinant", "x * determinant"),
@@ -230,7 +234,7 @@ MUTANTS = (
         "density * minor * (-1) ** (i + j + 1)",
     ),
     Mutant(POISSON + "brackets.py", "(-1) ** place * rows[0][k]", "rows[0][k]"),
-    Mutant(POISSON + "brackets.py", "(a, n + a): field.one for", "(a, n + a): -field.one for"),
+    Mutant(POISSON + "brackets.py", "(a, n + a): scale[a] for", "(a, n + a): -scale[a] for"),
     Mutant(
         POISSON + "brackets.py", "entries[n + a, n + b] = value", "entries[n + a, n + b] = -value"
     ),
@@ -256,16 +260,14 @@ MUTANTS = (
     ),
     # proofs
     Mutant(PROVE + "identities.py", "tensor[i][j] + tensor[j][i]", "tensor[i][j] - tensor[j][i]"),
-    Mutant(
-        PROVE + "identities.py", "equations.closed(rate) - _dot", "equations.closed(rate) + _dot"
-    ),
+    Mutant(PROVE + "identities.py", "rate - _dot(field, in_vel", "rate + _dot(field, in_vel"),
     Mutant(
         PROVE + "claims.py",
         "first.closed(a) - other.closed(b)",
         "first.closed(a) + other.closed(b)",
     ),
     Mutant(PROVE + "equivalence.py", "- self.pull_back(second, b)", "+ self.pull_back(second, b)"),
-    Mutant(PROVE + "equivalence.py", "slope) - field[xi]", "slope) + field[xi]"),
+    Mutant(PROVE + "equivalence.py", "* w - field[xi]", "* w + field[xi]"),
     Mutant(
         PROVE + "equivalence.py",
         "equations.exact.energy) - energy]",
