@@ -32,14 +32,24 @@ def rational_points(names, count, seed=0):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Report how many mutants of the engine the tests have killed."""
-    reports = [report for found in terminalreporter.stats.values() for report in found]
-    outcomes = [
-        report.outcome
-        for report in reports
+    """Report how many mutants of the engine the tests have killed, in all and by route."""
+    reports = [
+        report
+        for found in terminalreporter.stats.values()
+        for report in found
         if "test_a_mutant_is_killed" in getattr(report, "nodeid", "")
         and getattr(report, "when", "") == "call"  # what was deselected has not run
     ]
-    if outcomes:
-        killed = outcomes.count("passed")
-        terminalreporter.write_line(f"mutants: {killed} killed / {len(outcomes)}")
+    if reports:
+        terminalreporter.write_line(f"mutants: {_score(reports)}")
+    by_route = {}
+    for report in reports:
+        by_route.setdefault(dict(report.user_properties).get("route"), []).append(report)
+    for route in sorted(by_route.keys() - {None}):
+        terminalreporter.write_line(f"  {route}: {_score(by_route[route])}")
+
+
+def _score(reports):
+    """``3 killed / 4``."""
+    killed = sum(report.outcome == "passed" for report in reports)
+    return f"{killed} killed / {len(reports)}"

@@ -143,6 +143,35 @@ def test_a_hamiltonian_of_velocities_needs_a_bracket():
     assert "dot(v, v)" in caught.value.parts["found"]
 
 
+def test_every_row_has_its_mass():
+    """M dv/dt = F column by column, for two particles in the plane and F = -k q."""
+    sample = spec("""
+title = "Two particles in the plane, the mass of one felt by the other"
+routes = ["newton"]
+[variables]
+q = { role = "coordinate", shape = [4], form = "matrix" }
+v = { role = "velocity", of = "q" }
+[parameters]
+M = { shape = [3], form = "symmetric" }
+k = {}
+[newton.q]
+mass = "M"
+force = "-k*q"
+""")
+    q = sympy.Matrix(2, 2, sympy.symbols("q11 q12 q21 q22"))
+    m1, c, m2, k = sympy.symbols("M11 M12 M22 k")
+    det = m1 * m2 - c**2
+    expected = [
+        -k * (m2 * q[0, 0] - c * q[1, 0]) / det,
+        -k * (m2 * q[0, 1] - c * q[1, 1]) / det,
+        -k * (m1 * q[1, 0] - c * q[0, 0]) / det,
+        -k * (m1 * q[1, 1] - c * q[0, 1]) / det,
+    ]
+    assert all(
+        sympy.cancel(a - b) == 0 for a, b in zip(derive(sample).rates[4:], expected, strict=True)
+    )
+
+
 def test_alignment_is_of_one_particle():
     """Two particles have no common quaternion."""
     with pytest.raises(DerivationError, match=r"one particle in three dimensions.*x1, .*y3"):

@@ -1,7 +1,8 @@
 """Single changes that must not survive: a sign or an index flipped in the engine.
 
 Each names a file, a piece of text that occurs exactly once in it, and what takes its place. A
-piece that is no longer there fails the campaign, so the list cannot rot.
+piece that is no longer there fails the campaign, so the list cannot rot. Derivations have a list of
+their own: `tests.mutation.routes`.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ FAMILIES = ALGEBRA + "families.py"
 GROUPS = "src/coadjoint/groups/"
 POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
-DERIVE = "src/coadjoint/derive/"
 PROVE = "src/coadjoint/prove/"
+DEFINITIONS = "src/coadjoint/spec/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 
@@ -65,17 +66,6 @@ SIGNS = (
         POISSON + "brackets.py",
         "mu[k] if sign * c == 1 else opposite[k]",
         "opposite[k] if sign * c == 1 else mu[k]",
-    ),
-    Mutant(
-        DERIVE + "euler_poincare.py",
-        "[sign * m for m in momentum]",
-        "[-sign * m for m in momentum]",
-    ),
-    Mutant(DERIVE + "structure.py", "sign = -setting.sign", "sign = setting.sign"),
-    Mutant(
-        DERIVE + "setting.py",
-        'return 1 if self.spec.invariance == "left" else -1',
-        'return -1 if self.spec.invariance == "left" else 1',
     ),
 )
 MUTANTS = (
@@ -127,48 +117,6 @@ MUTANTS = (
     Mutant(ALGEBRA + "extensions.py", "[k] = -c", "[k] = c"),
     Mutant(ALGEBRA + "extensions.py", "value if i < j else -value", "value"),
     Mutant(ALGEBRA + "extensions.py", "[(a + b) * d + k] = c", "[(a + b) * d + k] = -c"),
-    # derivation
-    Mutant(DERIVE + "euler_poincare.py", "[-sign * x for x in", "[sign * x for x in"),
-    Mutant(DERIVE + "euler_poincare.py", "[m + t for", "[m - t for"),
-    Mutant(DERIVE + "poisson.py", "sum(entry * slope for", "sum(-entry * slope for"),
-    Mutant(DERIVE + "nambu.py", "-multiplier * rate for", "multiplier * rate for"),
-    Mutant(
-        DERIVE + "nambu.py",
-        "[dh, *gradients[:-1]]",
-        "[*gradients[:-1], dh]",
-    ),
-    Mutant(DERIVE + "nambu.py", "(-1) ** i * determinant(minor)", "determinant(minor)"),
-    Mutant(
-        DERIVE + "structure.py",
-        "[(names[i], names[j]) for i, j in bracket.pairs]",
-        "[(names[j], names[i]) for i, j in bracket.pairs]",
-    ),
-    Mutant(
-        DERIVE + "structure.py",
-        "{(names[i], names[j]): value for",
-        "{(names[j], names[i]): value for",
-    ),
-    Mutant(DERIVE + "structure.py", "action.dual()) for name", "action) for name"),
-    Mutant(
-        DERIVE + "setting.py",
-        "{place: self.taken(value) for",
-        "{place: -self.taken(value) for",
-    ),
-    Mutant(DERIVE + "setting.py", 'return 1 if self.spec.invariance == "left" else -1', "return 1"),
-    Mutant(
-        DERIVE + "legendre.py",
-        "(1 / w) - field.substitute",
-        "(1 / w) + field.substitute",
-    ),
-    Mutant(
-        DERIVE + "legendre.py",
-        "for mu, xi, w in pairs), -lagrangian)",
-        "for mu, xi, w in pairs), lagrangian)",
-    ),
-    Mutant(DERIVE + "interpret.py", "(-1) ** (i + j) * determinant", "determinant"),
-    Mutant(DERIVE + "interpret.py", "(-1) ** j * x * determinant", "x * determinant"),
-    Mutant(DERIVE + "interpret.py", "_scale(-field.one,", "_scale(field.one,"),
-    Mutant(DERIVE + "interpret.py", "    return a - b\n", "    return a + b\n"),
     # exact calculus
     Mutant(
         EXACT + "element.py",
@@ -282,6 +230,78 @@ MUTANTS = (
         "expected = structure.dimension - structure",
         "expected = structure.dimension + 0 * structure",
     ),
+    # routes in variables of their own, ideals, zero where relations hold
+    Mutant(
+        PROVE + "charts.py",
+        "own - self.pull_back(self.first.closed(rate))",
+        "own - own",
+    ),
+    Mutant(PROVE + "charts.py", "yield whole - self.other.closed(self.field[name])", "yield own"),
+    Mutant(
+        PROVE + "charts.py",
+        "self.other.closed(self.carried(relation.element)) for",
+        "self.field.zero for",
+    ),
+    Mutant(PROVE + "charts.py", "self._ranks[1] - self._ranks[0]", "self._ranks[1]"),
+    Mutant(PROVE + "charts.py", "[*slopes, row]) > len(slopes)", "[*slopes, row]) >= len(slopes)"),
+    Mutant(PROVE + "charts.py", "met=len(relations) == missing", "met=bool(relations)"),
+    Mutant(PROVE + "ideals.py", "inner.rem(self._basis).terms()", "inner.terms()"),
+    Mutant(PROVE + "ideals.py", "root = -self.field.substitute", "root = self.field.substitute"),
+    Mutant(PROVE + "ideals.py", "point[name] - by", "point[name] + by"),
+    Mutant(PROVE + "ideals.py", "if len(polynomials) < 2:", "if len(polynomials) < 3:"),
+    Mutant(
+        PROVE + "ideals.py",
+        "value = self.field.substitute(relation, known)",
+        "value = relation",
+    ),
+    Mutant(
+        PROVE + "zero.py",
+        "map(where.remainder, elements) if rest != 0]",
+        "map(where.remainder, elements) if rest != rest]",
+    ),
+    Mutant(PROVE + "zero.py", "list(map(where.on_zero_set, elements))", "list(elements)"),
+    Mutant(PROVE + "zero.py", "if abs(largest) > ON_ZERO_SET:", "if abs(largest) < ON_ZERO_SET:"),
+    Mutant(PROVE + "zero.py", "    if not seen:\n", "    if seen:\n"),
+    # symmetries and Lax pairs
+    Mutant(PROVE + "symmetries.py", "if rate == 0]", "if rate != 0]"),
+    Mutant(PROVE + "symmetries.py", "lie_derivative(motion, X)", "lie_derivative(X, X)"),
+    Mutant(
+        PROVE + "symmetries.py",
+        "structure.bracket(a, b) for a in",
+        "structure.bracket(b, a) for a in",
+    ),
+    Mutant(PROVE + "symmetries.py", "sign = -1 if transformation", "sign = 1 if transformation"),
+    Mutant(PROVE + "lax.py", "settled(left - equation.right)", "settled(left - left)"),
+    Mutant(PROVE + "lax.py", "if own == together == before", "if own == before"),
+    Mutant(PROVE + "lax.py", "[same.value - value]", "[value - value]"),
+    Mutant(PROVE + "lax.py", "x * tensor[i][j] * y for", "x * tensor[i][i] * y for"),
+    # momentum maps
+    Mutant(POISSON + "momentum_maps.py", "[n] + moved)", "[n] - moved)"),
+    Mutant(POISSON + "momentum_maps.py", "- moved[a][b] + moved", "+ moved[a][b] + moved"),
+    Mutant(
+        POISSON + "momentum_maps.py",
+        "[a - b for a, b in zip(motion",
+        "[a + b for a, b in zip(motion",
+    ),
+    Mutant(POISSON + "momentum_maps.py", "- self._along(i, j)", "+ self._along(i, j)"),
+    Mutant(
+        POISSON + "momentum_maps.py",
+        "flip = self.sign if i < j else -self.sign",
+        "flip = self.sign",
+    ),
+    Mutant(POISSON + "momentum_maps.py", "value if a < b else -value", "value"),
+    Mutant(POISSON + "momentum_maps.py", "= -value * weight", "= value * weight"),
+    Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
+    # definitions
+    Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
+    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
+    Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
+    Mutant(
+        DEFINITIONS,
+        "expand(read_expression(expression, functions(known)), known,",
+        "expand(read_expression(expression, functions(known)), {},",
+    ),
     # lowering
     Mutant(
         LOWER + "lowering.py",
@@ -352,48 +372,6 @@ MUTANTS = (
         "{% endfor %}\n{% endif %}\n    # results",
         "python_assignment(to=statement.name ~ ' = -', column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
-    ),
-    # mass points, cyclic coordinates, found functions, complex momenta, sections
-    Mutant(DERIVE + "newton_euler.py", "subtract(torque, turning)", "add(torque, turning)"),
-    Mutant(DERIVE + "newton_euler.py", "setting.field, -_at_rest(", "setting.field, _at_rest("),
-    Mutant(DERIVE + "newton_euler.py", "half = trace(inertia) / 2", "half = trace(inertia)"),
-    Mutant(
-        DERIVE + "newton_euler.py",
-        "lambda x, y: cross(x, cross(omega, cross(omega, y)))",
-        "lambda x, y: cross(x, cross(omega, cross(y, omega)))",
-    ),
-    Mutant(
-        DERIVE + "newton_euler.py",
-        "lambda x: cross(x, cross(omega, v))",
-        "lambda x: cross(x, cross(v, omega))",
-    ),
-    Mutant(
-        DERIVE + "newton_euler.py",
-        "(mass[2][4], mass[0][5], mass[1][3])",
-        "(mass[1][5], mass[2][3], mass[0][4])",
-    ),
-    Mutant(DERIVE + "kaluza_klein.py", "varied -= dot(", "varied += dot("),
-    Mutant(
-        DERIVE + "kaluza_klein.py", "kinetic = lagrangian - dot(level, a)", "kinetic = lagrangian"
-    ),
-    Mutant(DERIVE + "kaluza_klein.py", "append(sign * varied)", "append(varied)"),
-    Mutant(DERIVE + "kaluza_klein.py", "scale(-sign, setting", "scale(sign, setting"),
-    Mutant(DERIVE + "kaluza_klein.py", "algebra.bracket(xi, eta)", "algebra.bracket(eta, xi)"),
-    Mutant(DERIVE + "kaluza_klein.py", "field[name] - value", "field[name] + value"),
-    Mutant(DERIVE + "nambu.py", "b = tuple(-tensor[i][j]", "b = tuple(tensor[i][j]"),
-    Mutant(DERIVE + "nambu.py", "dot(x, b) / 2", "dot(x, b)"),
-    Mutant(DERIVE + "nambu.py", "(1, 2), (2, 0), (0, 1)", "(1, 2), (0, 2), (0, 1)"),
-    Mutant(DERIVE + "nambu.py", "b[place] / slopes[place]", "slopes[place] / b[place]"),
-    Mutant(DERIVE + "nambu.py", "slopes[i][j] - slopes[j][i]", "slopes[i][j] + slopes[j][i]"),
-    Mutant(DERIVE + "complexification.py", "*(z.im for z in moved)", "*(-z.im for z in moved)"),
-    Mutant(DERIVE + "complexification.py", "*(-z.im for z in zeta)", "*(z.im for z in zeta)"),
-    Mutant(DERIVE + "complexification.py", "setting.sign * part", "-setting.sign * part"),
-    Mutant(DERIVE + "complexification.py", "Complex(x, y) for x", "Complex(y, x) for x"),
-    Mutant(DERIVE + "complexification.py", "real.bracket(zeta, eta)", "real.bracket(eta, zeta)"),
-    Mutant(
-        DERIVE + "complexification.py",
-        "_continued(setting, slope, L) for slope",
-        "Complex(slope, setting.field.zero) for slope",
     ),
     Mutant(
         PROVE + "reductions.py",

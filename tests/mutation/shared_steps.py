@@ -1,0 +1,118 @@
+"""Changes of what routes share: setting, Legendre transform, formulas, solves, momentum maps.
+
+Where all routes go wrong together, no equality of routes sees it: then claims do, or the book.
+Read next: `tests.mutation.changed_specs`.
+"""
+
+from __future__ import annotations
+
+from tests.mutation.route_mutants import of
+
+SETTING = "tests/derive/test_setting.py"
+SOLVER = ("tests/derive/test_solver.py", "-k", "definitions_solve")
+TIME = ("tests/sources/test_momentum_maps.py", "-k", "2_3_1")
+PT = ("tests/sources/test_complex.py", "-k", "pt_symmetric")
+TOP = ("heavy_top_goryachev_chaplygin",)
+
+SHARED = (
+    *of(
+        "setting",
+        "setting",
+        TOP,
+        (
+            'return 1 if self.spec.invariance == "left" else -1',
+            'return -1 if self.spec.invariance == "left" else 1',
+        ),
+        ("{place: self.taken(value) for", "{place: -self.taken(value) for"),
+    ),
+    *of(
+        "setting",
+        "setting",
+        (),
+        ('return 1 if self.spec.invariance == "left" else -1', "return 1"),
+        tests=(SETTING, "-k", "sign_is_that"),
+    ),
+    *of(
+        "legendre",
+        "legendre",
+        TOP,
+        ("for mu, xi, w in pairs), -lagrangian)", "for mu, xi, w in pairs), lagrangian)"),
+        ("for row in inverse(matrix))", "for row in matrix)"),
+    ),
+    *of(
+        "legendre",
+        "legendre",
+        (),
+        ("(1 / w) - field.substitute(slope", "(1 / w) + field.substitute(slope"),
+        tests=("tests/derive/test_routes.py",),
+    ),
+    *of(
+        "formulas",
+        "interpret",
+        ("bloch_iserles_3",),
+        ("(-1) ** j * x * determinant", "x * determinant"),
+    ),
+    *of(
+        "formulas",
+        "interpret",
+        TOP,
+        ("    return a - b\n", "    return a + b\n"),
+        ("_scale(1 / b, a)", "_scale(b, a)"),
+    ),
+    *of(
+        "formulas",
+        "interpret",
+        ("kepler",),
+        ("_scale(-field.one,", "_scale(field.one,"),
+    ),
+    *of(
+        "formulas",
+        "interpret",
+        (),
+        ("(-1) ** (i + j) * determinant", "determinant"),
+        tests=("tests/derive/test_routes.py",),
+    ),
+    *of(
+        "solver",
+        "solver",
+        (),
+        ("known[i] - before", "known[i] + before"),
+        ("matrix[i][j] - removed", "matrix[i][j] + removed"),
+        ("- field.sum(after)", "+ field.sum(after)"),
+        ("factors[j, k] * pivots[k] for", "factors[j, k] for"),
+        ("rest / pivots[j]", "rest * pivots[j]"),
+        tests=SOLVER,
+    ),
+    *of(
+        "momentum-maps",
+        "symmetries",
+        ("spd_motion",),
+        ("covector[q] * moved for", "-covector[q] * moved for"),
+        ("{q: field[p] / weight for", "{q: field[p] for"),
+        (
+            'sign = 1 if symmetry.side == "left" else -1',
+            'sign = -1 if symmetry.side == "left" else 1',
+        ),
+    ),
+    *of(
+        "momentum-maps",
+        "symmetries",
+        ("c3_oscillators",),
+        ("a * x for a, x in zip(row", "-a * x for a, x in zip(row"),
+    ),
+    *of(
+        "momentum-maps",
+        "symmetries",
+        (),
+        ("value = value - energy *", "value = value + energy *"),
+        ("X = X - motion.like(", "X = X + motion.like("),
+        tests=TIME,
+    ),
+    *of(
+        "reductions",
+        "reductions",
+        (),
+        ("kept = tuple(rates[name] for", "kept = tuple(-rates[name] for"),
+        tests=PT,
+    ),
+)
