@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from coadjoint.cli.arguments import load_system
+from tests.specs import RIGID_BODY
 
 
 def test_invariants_of_a_shipped_system_are_kept(run):
@@ -118,3 +119,16 @@ def test_motion_that_leaves_the_finite_numbers_has_status_1(run, rigid_body):
     assert record["status"] == "STEP_UNDERFLOW"
     assert record["time"] == 0
     assert record["drift"]["energy"] is None
+
+
+def test_a_system_begins_where_its_spec_says(folder, run):
+    """A default of a quantity is taken; what is given on the command line is stronger."""
+    text = RIGID_BODY.replace(
+        'Pi = { role = "momentum"', 'Pi = { role = "momentum", default = [3, 0, "0.5"]'
+    )
+    assert text != RIGID_BODY
+    (folder / "body.toml").write_text(text)
+    initial = json.loads(run("simulate", "body.toml", "--json").stdout)["initial"]
+    assert [initial[f"Pi{n}"] for n in (1, 2, 3)] == [3, 0, 0.5]
+    given = json.loads(run("simulate", "body.toml", "--state", "Pi2=1", "--json").stdout)["initial"]
+    assert [given[f"Pi{n}"] for n in (1, 2, 3)] == [3, 1, 0.5]

@@ -6,6 +6,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
+from coadjoint.errors import SpecError
 from tests.spec.texts import BY_BRACKETS, refused
 from tests.specs import RIGID_BODY, spec
 
@@ -194,3 +195,18 @@ def test_single_component_may_be_a_matrix():
     text = MANAKOV.replace("so(4)", "so(2)").replace("Q[4, 3]", "Q[2, 1]")
     M = spec(text).variables[0]
     assert (M.shape, M.components, M.matrix_size) == ((1,), ("M12",), 2)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"momentum" }', '"momentum", default = [1, 2] }', r"(?s)default of 'Pi'.*a list of 3.*\[1, 2\]"),
+        ('"velocity" }', '"velocity", default = 1 }', "velocity 'Omega' has a default.*state"),
+    ],
+)
+def test_where_a_motion_begins_fits_the_state(old, new, said):
+    """A default has the shape of its quantity, and velocities of an algebra have none."""
+    with pytest.raises(SpecError, match=said):
+        spec(RIGID_BODY, (old, new))
+    momentum = spec(RIGID_BODY, ('"momentum" }', '"momentum", default = [1, 2, "0.5"] }')).state[0]
+    assert momentum.default == (1, 2, Fraction(1, 2))

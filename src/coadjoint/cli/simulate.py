@@ -59,7 +59,8 @@ def _assignments(
     callback=_assignments,
     multiple=True,
     help="Initial value of a quantity or component, e.g. Pi=1,0,0, or of the whole state without "
-    "a name. Default: each vector of unit length along (1, 2, 3, ...), each scalar 1. Repeatable.",
+    "a name. Default: what the spec says, else each vector of unit length along (1, 2, 3, ...), "
+    "each scalar 1. Repeatable.",
 )
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long.")
 @click.option("--method", default="auto", show_default=True, help="auto is DOP853.")
@@ -142,17 +143,17 @@ def chosen_parameters(
 
 
 def default_state(quantities: Quantities) -> list[float]:
-    """Each vector of unit length, no special direction; each scalar 1.
+    """What the spec says; else each vector of unit length, no special direction, each scalar 1.
 
     The first is along (1, 2, ..., n), the next along (2, ..., n, 1) and so on: were position and
     velocity parallel, a particle would fall into a centre of attraction.
     """
-    state = []
+    state: list[float] = []
     for place, quantity in enumerate(quantities.values()):
         count = len(quantity.components)
         direction = [(place + n) % count + 1 for n in range(count)]
         length = math.sqrt(sum(n * n for n in direction))
-        state += [n / length for n in direction]
+        state += quantity.default or [n / length for n in direction]
     return state
 
 

@@ -31,6 +31,7 @@ class Variable:
         of: The coordinate whose velocity or momentum it is; "" over an algebra.
         elements: Matrices of which a velocity is the sum, weighted by its components, in formulas;
             empty where the form says it all.
+        default: Where a simulation begins, one exact value per component; None if nothing is said.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Variable:
     form: str = ""
     of: str = ""
     elements: tuple[SparseMatrix, ...] = ()
+    default: tuple[Fraction, ...] | None = None
 
     @property
     def components(self) -> tuple[str, ...]:

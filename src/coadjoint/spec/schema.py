@@ -102,6 +102,11 @@ class VariablePart(Part):
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, those with the diagonal, or all, row by row",
     )
+    default: Numbers | None = Field(
+        None,
+        description="where `coadjoint simulate` begins unless told otherwise: a number for all "
+        "components, or a list of them",
+    )
     unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")
 

@@ -31,12 +31,13 @@ _OWN_KEYS = {
     "representation": "advected quantities",
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
+    "default": "quantities of the state",
 }
 _KEYS_OF = {
-    "velocity": ("block", "of"),
-    "momentum": ("block", "of"),
-    "advected": ("representation",),
-    "coordinate": ("shape",),
+    "velocity": ("block", "of", "default"),
+    "momentum": ("block", "of", "default"),
+    "advected": ("representation", "default"),
+    "coordinate": ("shape", "default"),
 }
 
 
@@ -68,6 +69,8 @@ def read_variable(
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
+    if part.default is not None and not _is_state(part, parts):
+        raise _alien_key(source, (*key, "default"), part)
     block: tuple[int, ...] = ()
     representation = None
     if part.role == "coordinate" or algebra is None:
@@ -95,10 +98,25 @@ def read_variable(
     elif form == "antisymmetric" and block and algebra is not None:
         _check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
-    of = part.of or ""
     return Variable(
-        name, part.role, shape, block, representation, part.unit, part.doc, form, of, elements
+        name,
+        part.role,
+        shape,
+        block,
+        representation,
+        part.unit,
+        part.doc,
+        form,
+        part.of or "",
+        elements,
+        _default(source, (*key, "default"), part.default, shape),
     )
+
+
+def _is_state(part: VariablePart, parts: Mapping[str, VariablePart]) -> bool:
+    """Whether a variable is part of the state; see `coadjoint.spec.quantities.state_of`."""
+    given = {each.of for each in parts.values() if each.role == "momentum"}
+    return part.role != "velocity" or (part.of is not None and part.of not in given)
 
 
 def _as_partner(
@@ -279,24 +297,30 @@ def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
         if len(shape) > 1 or matrix_size(shape[0], form) is None:
             raise _misfit(source, ("parameters", name, "form"), prod(shape), form)
     key: KeyPath = ("parameters", name, "default")
-    default = None
-    if part.default is not None:
-        default = _spread(part.default, shape)
-        if default is None:
-            raise source.fault(
-                key,
-                f"the default of {name!r} does not have its shape {list(shape)}",
-                found=_shape_text(part.default),
-                expected=f"one number for all components, or {_shape_words(shape)}",
-            )
-        if part.positive and min(default) <= 0:
-            raise source.fault(
-                key,
-                f"the default {min(default)} of {name!r} is not positive",
-                found=str(min(default)),
-                expected="positive numbers, since positive = true",
-            )
+    default = _default(source, key, part.default, shape)
+    if default is not None and part.positive and min(default) <= 0:
+        raise source.fault(
+            key,
+            f"the default {min(default)} of {name!r} is not positive",
+            found=str(min(default)),
+            expected="positive numbers, since positive = true",
+        )
     return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
+
+
+def _default(
+    source: Source, key: KeyPath, value: object, shape: Shape
+) -> tuple[Fraction, ...] | None:
+    """The declared default, one number for each component; None if there is none."""
+    spread = None if value is None else _spread(value, shape)
+    if spread is None and value is not None:
+        raise source.fault(
+            key,
+            f"the default of {str(key[-2])!r} does not have its shape {list(shape)}",
+            found=_shape_text(value),
+            expected=f"one number for all components, or {_shape_words(shape)}",
+        )
+    return spread
 
 
 def _spread(value: object, shape: Shape) -> tuple[Fraction, ...] | None:
