@@ -14,7 +14,7 @@ from coadjoint.derive import derive
 from coadjoint.derive.document import ADDENDS, document, formula, formula_line
 from coadjoint.derive.equations import symbol
 from coadjoint.exact import Field
-from coadjoint.render.document import FORMATS, latex_escaped, render_document
+from coadjoint.render.document import FORMATS, WIDTH, latex_escaped, render_document
 from tests.specs import shipped
 
 ESCAPED = {"text": str, "latex": latex_escaped, "html": escape}
@@ -196,3 +196,15 @@ def test_long_sums_are_continued_in_latex():
     assert all(f"x_{{{n}}}" in latex for n in range(20))
     assert "- x_{3}" in latex
     assert formula_line(field, symbol("C"), field["x1"]).latex == "C &= x_{1}"
+
+
+def test_paragraphs_of_the_text_fit_whatever_their_line_breaks():
+    """A description with line breaks of its own is one paragraph; a long law goes on indented."""
+    long = " ".join(["words"] * 40)
+    section = {"title": "Step", "law": long, "law_latex": "", "lines": (), "words": (), "table": ()}
+    top = {"title": "T", "about": "A.", "source": long, "description": "one\ntwo"}
+    text = render_document({**top, "sections": [section]})
+    assert "\none two\n" in text
+    assert max(map(len, text.splitlines())) <= WIDTH
+    assert text.count("words") == 80
+    assert "\n      words" in text  # the law, under itself

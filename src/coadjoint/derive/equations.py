@@ -36,6 +36,15 @@ def symbol(name: str) -> Left:
     return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
 
 
+def signed(sign: int, text: str) -> str:
+    """A sum, or minus it in brackets.
+
+    >>> signed(1, "a + b"), signed(-1, "a + b")
+    ('a + b', '-(a + b)')
+    """
+    return text if sign == 1 else f"-({text})"
+
+
 def rate(name: str) -> Left:
     """Its time derivative: ``dPi1/dt``."""
     of = symbol(name)

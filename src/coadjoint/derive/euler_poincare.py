@@ -16,7 +16,7 @@ other road to the same motion.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, signed, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting, setting_of
@@ -71,7 +71,11 @@ def _steps(
     rates: tuple[Element, ...],
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    turn, back = ("", "-") if setting.sign == 1 else ("-", "")
+    back = "-" if setting.sign == 1 else ""
+    turned = signed(setting.sign, "ad*_xi mu + dl/da <> a")
+    turned_latex = signed(
+        setting.sign, r"\mathrm{ad}^*_\xi \mu + (\partial l / \partial a) \diamond a"
+    )
     momenta = (partial("l", velocity) for velocity in setting.velocities)
     return (
         Step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", ((symbol("l"), lagrangian),)),
@@ -89,9 +93,8 @@ def _steps(
         ),
         Step(
             "Euler-Poincare equations and advection",
-            f"dmu/dt = {turn}(ad*_xi mu + dl/da <> a),  da/dt = {back}rho(xi) a",
-            rf"\dot\mu = {turn}(\mathrm{{ad}}^*_\xi \mu + (\partial l / \partial a) \diamond a), "
-            rf"\qquad \dot a = {back}\rho(\xi) a",
+            f"dmu/dt = {turned},  da/dt = {back}rho(xi) a",
+            rf"\dot\mu = {turned_latex}, \qquad \dot a = {back}\rho(\xi) a",
             tuple(zip(map(rate, setting.state), rates, strict=True)),
         ),
     )

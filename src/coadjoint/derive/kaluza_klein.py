@@ -30,6 +30,7 @@ from coadjoint.derive.equations import (
     Step,
     partial,
     rate,
+    signed,
     symbol,
 )
 from coadjoint.derive.legendre import legendre_transform
@@ -163,7 +164,9 @@ def _steps(
     rates: tuple[Element, ...],
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    turn, back = ("", "-") if setting.sign == 1 else ("-", "")
+    back = "-" if setting.sign == 1 else ""
+    work = signed(setting.sign, "<mu, [xi, eta]> - p . rho(eta) a")
+    work_latex = signed(setting.sign, r"\langle\mu, [\xi, \eta]\rangle - p \cdot \rho(\eta) a")
     momenta = setting.field.gradient(whole, setting.velocities)
     _, names = _cyclic(setting)
     cyclic = [setting.field[name] for name in names]
@@ -191,10 +194,9 @@ def _steps(
         ),
         Step(
             "Variation of the group with dl/da = p",
-            f"<dmu/dt, eta> = {turn}(<mu, [xi, eta]> - p . rho(eta) a),  "
-            f"da/dt = {back}rho(xi) a,  dp/dt = 0",
-            rf"\langle\dot\mu, \eta\rangle = {turn}(\langle\mu, [\xi, \eta]\rangle "
-            rf"- p \cdot \rho(\eta) a), \quad \dot a = {back}\rho(\xi) a, \quad \dot p = 0",
+            f"<dmu/dt, eta> = {work},  da/dt = {back}rho(xi) a,  dp/dt = 0",
+            rf"\langle\dot\mu, \eta\rangle = {work_latex}, \quad "
+            rf"\dot a = {back}\rho(\xi) a, \quad \dot p = 0",
             tuple(zip(map(rate, chart.variables), rates, strict=True)),
         ),
         Step(

@@ -75,14 +75,16 @@ def find_pair(setting: Setting) -> LaxPair:
     a, b = _by_sums(body) or _by_differences(setting, body)
     spectral, turn = field[SPECTRAL], field.number(setting.sign)
     terms, texts = [(field.one, body.momentum), (spectral, diagonal(field, b))], _texts(setting)
-    L = f"{texts[0]} + {SPECTRAL}*{_diagonal_text(setting, b)}"
+    A = _diagonal_text(setting, a)
+    B = f"{A}^2" if b == tuple(x**2 for x in a) else _diagonal_text(setting, b)
+    L = f"{texts[0]} + {SPECTRAL}*{B}"
     if body.field is not None:
         share = _share(setting, body, a)
         terms = [(-share, body.field), *((spectral * factor, matrix) for factor, matrix in terms)]
         lead = {"1": "-", "-1": ""}.get(element_text(field, share))
         lead = f"-({element_text(field, share)})*" if lead is None else lead
-        L = f"{lead}S + {SPECTRAL}*{texts[0]} + {SPECTRAL}^2*{_diagonal_text(setting, b)}"
-    M = f"{texts[1]} + {SPECTRAL}*{_diagonal_text(setting, a)}"
+        L = f"{lead}S + {SPECTRAL}*{texts[0]} + {SPECTRAL}^2*{B}"
+    M = f"{texts[1]} + {SPECTRAL}*{A}"
     turning = combined(field, (turn, body.velocity), (turn * spectral, diagonal(field, a)))
     pair = L, M if setting.sign == 1 else f"-({M})"
     return LaxPair(SPECTRAL, combined(field, *terms), turning, pair)

@@ -21,7 +21,7 @@ from collections.abc import Callable, Sequence
 
 from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
-from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, signed, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
 from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
@@ -200,6 +200,12 @@ def _steps(
     """The derivation as a person would write it down."""
     momenta = (partial("l", velocity) for velocity in setting.velocities)
     sign = "" if setting.sign == 1 else "-"
+    turned = signed(setting.sign, "tr(M^T (xi e - e xi)) + tr((dl/da)^T delta a)")
+    turned_latex = signed(
+        setting.sign,
+        r"\mathrm{tr}(M^T (\xi e - e \xi)) "
+        r"+ \mathrm{tr}((\partial l/\partial a)^T \delta a)",
+    )
     return (
         Step(
             "Momentum matrix in the span of the algebra",
@@ -215,10 +221,9 @@ def _steps(
         ),
         Step(
             "Matrix Euler-Poincare equations and advection",
-            f"d tr(M^T e)/dt = {sign}(tr(M^T (xi e - e xi)) + tr((dl/da)^T delta a)), with delta a "
-            f"and {sign}da/dt by products of -e and -xi with a",
-            rf"\tfrac{{d}}{{dt}} \mathrm{{tr}}(M^T e) = {sign}(\mathrm{{tr}}(M^T (\xi e - e \xi)) "
-            r"+ \mathrm{tr}((\partial l/\partial a)^T \delta a))",
+            f"d tr(M^T e)/dt = {turned}, with delta a and {sign}da/dt by products of -e and -xi "
+            "with a",
+            rf"\tfrac{{d}}{{dt}} \mathrm{{tr}}(M^T e) = {turned_latex}",
             tuple(zip(map(rate, setting.state), rates, strict=True)),
         ),
     )

@@ -86,6 +86,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         "abreast": abreast,
         "described": described,
         "tabulated": tabulated,
+        "wrapped": wrapped,
     }
     return made
 
@@ -111,6 +112,21 @@ def latex_escaped(text: str) -> str:
     '\\textbackslash{}write18\\{rm\\}'
     """
     return printable(text).translate(_LATEX_ESCAPES)
+
+
+def wrapped(text: str, indent: int = 0) -> list[str]:
+    r"""A paragraph in lines of the text format, whatever its own line breaks.
+
+    >>> wrapped("one\ntwo")
+    ['one two']
+    """
+    return textwrap.wrap(
+        text,
+        WIDTH - indent,
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def aligned(lines: Sequence[Mapping[str, str]]) -> list[str]:
