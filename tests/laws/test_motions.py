@@ -6,28 +6,28 @@ the declared state, and neither has a restricted motion: there it is asked that 
 """
 
 from fractions import Fraction
-from functools import cache
 
 import pytest
 import sympy
 
-from coadjoint.derive import derive, make_setting
 from tests.conftest import SYSTEMS, rational_points
 from tests.sources import textbook
-from tests.sources.test_equations import BY_ROUTE, carried, digits, in_chart, same, solved, values
+from tests.sources.test_equations import (
+    BY_ROUTE,
+    carried,
+    derived,
+    digits,
+    emitted,
+    in_chart,
+    same,
+    solved,
+    values,
+)
 from tests.specs import shipped
 
 WITH_BRACKET = sorted(textbook.TENSORS)
 #: The largest system has 3276 triples of coordinates; the laws of so(6) are those of so(8).
 WITHOUT_SO8 = [name for name in WITH_BRACKET if name != "so8_body"]
-
-
-@cache
-def derived(name):
-    """The equations of a system by every route, in one field."""
-    declared = shipped(name)
-    setting = make_setting(declared)
-    return {route: derive(declared, route, setting=setting) for route in declared.routes}
 
 
 def bracketed(name):
@@ -36,11 +36,6 @@ def bracketed(name):
     assert found
     assert all(equations.poisson_tensor is not None for equations in found)
     return found
-
-
-def emitted(name):
-    """The equations by the first route."""
-    return derived(name)[shipped(name).routes[0]]
 
 
 def point_of(equations):
