@@ -1,5 +1,7 @@
 """Routes by matrices and Lax pairs: what they give beside the books, and what they refuse."""
 
+import dataclasses
+
 import pytest
 
 from coadjoint.derive import derive, make_setting
@@ -155,6 +157,21 @@ def test_long_integrals_are_conserved_by_the_trace_identity(monkeypatch):
     spoiled = spec(text_of("manakov_so4"), ('"Omega + lambda*diag(a)"', '"Omega - lambda*diag(a)"'))
     (claim,) = [c for c in prove(spoiled).claims if c.statement.startswith("integral1")]
     assert claim.verdict is Verdict.REFUTED
+
+
+def test_a_long_integral_that_no_trace_has_is_refuted(monkeypatch):
+    """The trace identity speaks of the coefficient alone, not of what is emitted in its place."""
+    monkeypatch.setattr(examined, "LONGEST", 5)
+    setting = make_setting(shipped("manakov_so4"))
+    routes = [derive(setting.spec, route, setting=setting) for route in setting.spec.routes]
+    field, first = setting.field, routes[0]
+    seen = dict(first.exact.observables)
+    seen["integral1"] += field["M12"]
+    exact = dataclasses.replace(first.exact, observables=tuple(seen.items()))
+    spoiled = [dataclasses.replace(first, exact=exact), *routes[1:]]
+    examine = {text: decide for text, _, decide in examined.about_pairs(spoiled)}
+    (decide,) = [decide for text, decide in examine.items() if text.startswith("integral1, from")]
+    assert decide().verdict is Verdict.REFUTED
 
 
 def test_an_integral_that_is_missing_is_noticed():

@@ -236,7 +236,11 @@ MUTANTS = (
         "own - self.pull_back(self.first.closed(rate))",
         "own - own",
     ),
-    Mutant(PROVE + "charts.py", "yield whole - self.other.closed(self.field[name])", "yield own"),
+    Mutant(
+        PROVE + "charts.py",
+        "yield whole - self.other.closed(self.field[name])",
+        "yield whole - whole",
+    ),
     Mutant(
         PROVE + "charts.py",
         "self.other.closed(self.carried(relation.element)) for",

@@ -95,6 +95,15 @@ def test_submanifold_is_found_without_a_claim():
     assert relation.text == "Pi1*Gamma1 + Pi2*Gamma2 + Pi3*Gamma3"
 
 
+def test_relations_too_few_for_what_is_missing_prove_no_dimension():
+    """Pi = (t^2, t^3, t^2) has Pi1 = Pi3, and its cubic relation is beyond what is looked for."""
+    first, other = pair(spec(), lambda P, Q: (Q[0] ** 2, Q[0] ** 3, Q[0] ** 2))
+    statement, decision = reach(ChartMap(first, other))
+    assert "dimension 1 of 3: " in statement
+    assert statement.count(" = 0") == 1
+    assert decision.verdict is Verdict.SUPPORTED
+
+
 def test_weight_with_the_other_sign_is_refuted():
     """A top that falls upwards is another motion."""
     wrong = lambda rates: [  # noqa: E731

@@ -99,6 +99,17 @@ def test_several_relations_are_reduced_together():
     assert cubic.is_solved
 
 
+def test_relations_that_share_a_symbol_are_solved_one_after_the_other():
+    """Both x = y and x = z leave one symbol free, and give the other two."""
+    field = Field(["x", "y", "z"])
+    x, y, z = field["x"], field["y"], field["z"]
+    diagonal = Ideal(field, [x - y, x - z], "x = y = z")
+    assert dict(diagonal.solved) == {"x": z, "y": z}
+    decision = decide_zero([x + y - z], field, diagonal)
+    assert decision.verdict is Verdict.REFUTED
+    assert decision.method.startswith("exact")
+
+
 def test_only_named_variables_are_solved_for(plane):
     """Parameters are not solved for where variables are named."""
     field, _, product = plane
