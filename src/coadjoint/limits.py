@@ -36,8 +36,8 @@ EXPRESSION_CHARACTERS = 4096
 EXPRESSION_NESTING = 48
 #: Numbers, names, operations and calls of one expression.
 EXPRESSION_NODES = 1000
-#: Parts that definitions put into all expressions of a spec together; a name of one letter may stand
-#: for 1000 parts, and a spec has room for thousands of such names.
+#: Parts that definitions put into all expressions of a spec together; a name of one letter may
+#: stand for 1000 parts, and a spec has room for thousands of such names.
 DEFINED_PARTS = 20_000
 #: Size of an exponent, which is a literal integer.
 EXPONENT = 32

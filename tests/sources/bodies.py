@@ -53,7 +53,7 @@ def rigid_body_tensor(state: Vector) -> list[list[Any]]:
     return hat(state)
 
 
-# -- with its attitude as a quaternion: Holm (2011), sections 4.1 to 4.1.3 and 3.2 ------------------
+# -- with its attitude as a quaternion: Holm (2011), sections 4.1 to 4.1.3 and 3.2 -----------------
 
 
 def rigid_body_attitude_rates(state: Vector, parameters: Vector) -> list[Any]:

@@ -54,7 +54,7 @@ def test_rows_move_as_the_attitude_of_a_left_invariant_system():
     ],
 )
 def test_mistakes_are_told(old, new, found):
-    """An unknown block, none at all, both kinds, a doubled name: the offender stands in the text."""
+    """An unknown block, none, both kinds, a doubled name: the offender stands in the text."""
     spec(BODIES)
     with pytest.raises(CoadjointError, match=re.escape(found)) as error:
         spec(BODIES, (old, new))

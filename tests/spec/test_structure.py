@@ -200,7 +200,11 @@ def test_single_component_may_be_a_matrix():
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('"momentum" }', '"momentum", default = [1, 2] }', r"(?s)default of 'Pi'.*a list of 3.*\[1, 2\]"),
+        (
+            '"momentum" }',
+            '"momentum", default = [1, 2] }',
+            r"(?s)default of 'Pi'.*a list of 3.*\[1, 2\]",
+        ),
         ('"velocity" }', '"velocity", default = 1 }', "velocity 'Omega' has a default.*state"),
     ],
 )

@@ -48,8 +48,8 @@ def command(system: str, points: int, as_json: bool) -> None:
 def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """Figures of the ladder as JSON values; runs in a bounded child."""
     from coadjoint.crosscheck.ladder import crosscheck
-    from coadjoint.derive.reference import Reference
     from coadjoint.derive import derive
+    from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
     from coadjoint.solve.system import load_folder
     from coadjoint.spec import read_spec

@@ -7,7 +7,7 @@ Read next: `coadjoint.derive.structure`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Exact
+from coadjoint.derive.equations import Exact, Step, symbol
 from coadjoint.derive.legendre import LegendreTransform
 from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting
@@ -29,3 +29,13 @@ def emission(setting: Setting, transform: LegendreTransform, rates: tuple[Elemen
     seen = observables(setting, energy)
     tensor = poisson_structure(setting).tensor
     return Exact(transform.definitions, rates, energy, seen, tensor, transform.solves)
+
+
+def velocities_step(transform: LegendreTransform) -> Step:
+    """The step that solves for the velocities."""
+    return Step(
+        "Legendre transform",
+        "xi solved from mu = dl/dxi",
+        r"\xi = \xi(\mu, a)",
+        tuple((symbol(name), value) for name, value in transform.definitions),
+    )

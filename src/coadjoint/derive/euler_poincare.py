@@ -16,11 +16,10 @@ other road to the same motion.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, signed, symbol
+from coadjoint.derive.emission import emission, lagrangian_of, velocities_step
+from coadjoint.derive.equations import Equations, Step, partial, rate, signed, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting, setting_of
-from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -32,17 +31,10 @@ def derive(given: Spec | Setting) -> Equations:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
     setting = setting_of(given)
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian on this route"
-    lagrangian = setting.formula(formula)
+    lagrangian = lagrangian_of(setting)
     transform = legendre_transform(setting, lagrangian)
     rates = _rates(setting, lagrangian)
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = setting.field.substitute(transform.energy, velocities)
-    tensor = poisson_structure(setting).tensor
-    exact = Exact(
-        transform.definitions, rates, energy, observables(setting, energy), tensor, transform.solves
-    )
+    exact = emission(setting, transform, rates)
     return Equations(
         setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
     )
@@ -85,12 +77,7 @@ def _steps(
             r"\mu = \partial l / \partial \xi",
             tuple(zip(momenta, transform.momenta, strict=True)),
         ),
-        Step(
-            "Legendre transform",
-            "xi solved from mu = dl/dxi",
-            r"\xi = \xi(\mu, a)",
-            tuple((symbol(name), value) for name, value in transform.definitions),
-        ),
+        velocities_step(transform),
         Step(
             "Euler-Poincare equations and advection",
             f"dmu/dt = {turned},  da/dt = {back}rho(xi) a",

@@ -26,7 +26,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from coadjoint.derive.emission import emission, lagrangian_of
+from coadjoint.derive.emission import emission, lagrangian_of, velocities_step
 from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.setting import Setting, setting_of
@@ -161,12 +161,7 @@ def _steps(
             r"\mu = \partial l / \partial \xi",
             tuple(zip(momenta, transform.momenta, strict=True)),
         ),
-        Step(
-            "Legendre transform",
-            "xi solved from mu = dl/dxi",
-            r"\xi = \xi(\mu, a)",
-            tuple((symbol(name), value) for name, value in transform.definitions),
-        ),
+        velocities_step(transform),
         Step(
             f"Variation of mu: the reconstruction {motion[0]}",
             f"{motion[0]}, that is deps/dt = xi at eps = 0",

@@ -22,6 +22,7 @@ Chart of momenta, advected quantities and p. Read next: `coadjoint.prove.charts`
 
 from __future__ import annotations
 
+from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.equations import (
     Chart,
     Equations,
@@ -59,9 +60,7 @@ def derive(given: Spec | Setting) -> Equations:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
     """
     setting = setting_of(given)
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian on this route"
-    lagrangian, names = setting.formula(formula), _advected(setting)
+    lagrangian, names = lagrangian_of(setting), _advected(setting)
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)
     velocities, momenta = _cyclic(setting)

@@ -21,13 +21,12 @@ from collections.abc import Callable, Sequence
 
 from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
-from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, signed, symbol
+from coadjoint.derive.emission import emission, lagrangian_of, velocities_step
+from coadjoint.derive.equations import Equations, Step, partial, rate, signed
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.observables import observables
 from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, setting_of, weighted
-from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Spec
 from coadjoint.spec.faults import listed
@@ -47,17 +46,10 @@ def derive(given: Spec | Setting) -> Equations:
     """
     setting = setting_of(given)
     _check_matrices(setting)
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian on this route"
-    lagrangian = setting.formula(formula)
+    lagrangian = lagrangian_of(setting)
     transform = legendre_transform(setting, lagrangian)
     rates = _rates(setting, lagrangian)
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = setting.field.substitute(transform.energy, velocities)
-    tensor = poisson_structure(setting).tensor
-    exact = Exact(
-        transform.definitions, rates, energy, observables(setting, energy), tensor, transform.solves
-    )
+    exact = emission(setting, transform, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, rates))
 
 
@@ -213,12 +205,7 @@ def _steps(
             r"\mathrm{tr}(M^T e) = \langle \partial l / \partial \xi, e \rangle",
             tuple(zip(momenta, transform.momenta, strict=True)),
         ),
-        Step(
-            "Legendre transform",
-            "xi solved from mu = dl/dxi",
-            r"\xi = \xi(\mu, a)",
-            tuple((symbol(name), value) for name, value in transform.definitions),
-        ),
+        velocities_step(transform),
         Step(
             "Matrix Euler-Poincare equations and advection",
             f"d tr(M^T e)/dt = {turned}, with delta a and {sign}da/dt by products of -e and -xi "

@@ -23,12 +23,11 @@ from dataclasses import dataclass
 from functools import reduce
 
 from coadjoint.algebra import algebra_by_name, same_constants
-from coadjoint.derive.equations import Equations, Exact, Step, rate, symbol
+from coadjoint.derive.emission import emission, lagrangian_of
+from coadjoint.derive.equations import Equations, Step, rate, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform, mass_matrix
-from coadjoint.derive.observables import observables
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, setting_of
-from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vectors import (
     Matrix,
@@ -81,17 +80,12 @@ def derive(given: Spec | Setting) -> Equations:
     """
     setting = setting_of(given)
     _check_motions(setting)
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian on this route"
-    lagrangian = setting.formula(formula)
+    lagrangian = lagrangian_of(setting)
     transform = legendre_transform(setting, lagrangian)
     points = mass_points(setting, lagrangian)
     forces = _forces(setting, lagrangian)
     rates = _rates(setting, points, forces)
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = setting.field.substitute(transform.energy, velocities)
-    tensor = poisson_structure(setting).tensor
-    exact = Exact(transform.definitions, rates, energy, observables(setting, energy), tensor)
+    exact = emission(setting, transform, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, points, forces, rates))
 
 

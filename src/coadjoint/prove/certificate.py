@@ -28,7 +28,8 @@ class Claim:
 
     Attributes:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
-        kind: ``algebra``, ``jacobi``, ``legendre``, ``casimir``, ``conserved``, ``lax`` or ``equivalence``.
+        kind: ``algebra``, ``jacobi``, ``legendre``, ``equivalence``, ``reduction``, ``casimir``,
+            ``conserved``, ``lax``, ``galilean``, ``symmetry``, ``bracket`` or ``transformation``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.
