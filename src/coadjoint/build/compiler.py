@@ -36,8 +36,14 @@ BUILDS: Mapping[str, str] = {"exact": "-ffp-contract=off", "fast": "-ffp-contrac
 _FLAGS = ("-std=c11", "-O3", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedantic")
 _NATIVE = "-march=native"
 #: Passes of GCC that take more than half of its time on long straight loops and gain nothing there
-#: (docs/decisions/compiler.md has the figures).
-_GNU = ("-fno-gcse-after-reload", "-fno-tree-loop-distribution", "-fno-tree-slp-vectorize")
+#: (docs/decisions/compiler.md has the figures). The last leaves the members that fill no vector to
+#: scalar code, in the place of a second and third copy of the loop with shorter vectors.
+_GNU = (
+    "-fno-gcse-after-reload",
+    "-fno-tree-loop-distribution",
+    "-fno-tree-slp-vectorize",
+    "--param=vect-epilogues-nomask=0",
+)
 _SHARED = ("-fPIC", "-shared")
 
 
