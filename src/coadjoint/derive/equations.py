@@ -9,7 +9,7 @@ Read next: `coadjoint.prove.claims` and `coadjoint.lower.lowering`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import sympy
 from sympy.printing.mathml import mathml
@@ -30,6 +30,7 @@ class Left:
     mathml: str
 
 
+@cache  # every route writes the same names
 def symbol(name: str) -> Left:
     """The symbol itself: ``Pi1``."""
     plain = sympy.Symbol(name)

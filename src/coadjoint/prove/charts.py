@@ -152,9 +152,8 @@ class ChartMap:
         state = self.first.setting.state
         found: list[Relation] = []
         slopes: list[dict[int, Element]] = []
-        for relation in self._candidates():
-            if len(found) == len(state) - self.rank:
-                break
+        candidates = self._candidates()  # all polynomials, once the Casimirs have been tried
+        while len(found) < len(state) - self.rank and (relation := next(candidates, None)):
             slope = map(self.pull_back, self.field.gradient(relation.element, state))
             row = {n: value for n, each in enumerate(slope) if (value := self.field.normal(each))}
             if generic_rank(self.field, [*slopes, row]) > len(slopes):

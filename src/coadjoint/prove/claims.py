@@ -92,11 +92,12 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
     """All claims in the order of the certificate."""
     first = routes[0]
     yield from _about_structure(first)
-    if first.spec.lagrangian is not None:
-        yield from _about_legendre(routes)
+    pulled = LegendreMap(first) if first.spec.lagrangian is not None else None
+    if pulled is not None:
+        yield from _about_legendre(routes, pulled)
     yield from about_reduction(first)
     for other in routes[1:]:
-        yield from _about_equality(first, other)
+        yield from _about_equality(first, other, pulled)
     yield from _about_motion(first)
     yield from about_pairs(routes)
 
@@ -144,9 +145,8 @@ def _constants(algebra: LieAlgebra) -> Decision:
     return Decision(Verdict.PROVED, CONSTANTS)
 
 
-def _about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
+def _about_legendre(routes: Sequence[Equations], pulled: LegendreMap) -> Iterator[Examined]:
     """The Legendre transform and its energy, on every route."""
-    pulled = LegendreMap(routes[0])
     yield (
         "the Legendre transform is invertible for generic parameters",
         "legendre",
@@ -182,15 +182,17 @@ def _invertible(pulled: LegendreMap) -> Decision:
     return Decision(Verdict.PROVED, "nonzero determinants of the blocks of d2l/dxi2")
 
 
-def _about_equality(first: Equations, other: Equations) -> Iterator[Examined]:
+def _about_equality(
+    first: Equations, other: Equations, pulled: LegendreMap | None
+) -> Iterator[Examined]:
     """That two routes give the same motion."""
     if other.chart is not None:
         yield from _about_chart(first, other)
-    elif LegendreMap.applies(first):
+    elif pulled is not None and pulled.momenta:
         yield (
             f"{first.route} and {other.route} give the same motion, through the Legendre transform",
             "equivalence",
-            lambda: LegendreMap(first).rate_defects(first, other),
+            partial(pulled.rate_defects, first, other),
         )
     else:
         yield (

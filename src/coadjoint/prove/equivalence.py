@@ -39,6 +39,7 @@ class LegendreMap:
         scaled = zip(self.slopes, setting.weights or (1,) * len(self.slopes), strict=True)
         given = [slope * w for slope, w in scaled] if setting.momenta else []
         self.momenta = dict(zip(setting.momenta, given, strict=True))
+        self._images: dict[str, dict[str, Element]] = {}
 
     @staticmethod
     def applies(equations: Equations) -> bool:
@@ -47,14 +48,15 @@ class LegendreMap:
 
     def pull_back(self, equations: Equations, element: Element) -> Element:
         """An element of one route's Equations in velocities and advected quantities alone."""
-        field = self.setting.field
-        # what the kernel solves for is what mu = dl/dxi was solved for: its own symbol
-        velocities = {
-            name: field.substitute(value, self.momenta)
-            for name, value in equations.exact.definitions
-            if name not in equations.kept
-        }
-        return field.substitute(element, self.momenta | velocities)
+        if equations.route not in self._images:
+            # what the kernel solves for is what mu = dl/dxi was solved for: its own symbol
+            velocities = {
+                name: self.setting.field.substitute(value, self.momenta)
+                for name, value in equations.exact.definitions
+                if name not in equations.kept
+            }
+            self._images[equations.route] = self.momenta | velocities
+        return self.setting.field.substitute(element, self._images[equations.route])
 
     @cached_property
     def blocks(self) -> list[tuple[tuple[int, ...], Matrix]]:
