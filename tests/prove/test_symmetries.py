@@ -172,3 +172,32 @@ def test_noether_on_configuration_spaces_sees_a_potential(changes):
     wrong = prove(spec(CHARGE, *changes, ("dot(q, q)^2", "q1*q2")))
     assert "J is conserved" in statements_of_refuted(wrong)
     assert not any("Noether" in statement for statement in statements(wrong))
+
+
+FORCED = """
+title = "a particle with friction"
+routes = ["newton"]
+[variables]
+x = { role = "coordinate", shape = [3] }
+u = { role = "velocity", of = "x" }
+[poisson]
+canonical = [["x", "u"]]
+[newton]
+x = { force = "-u" }
+[symmetries.J]
+algebra = "so(3)"
+vector = "xi"
+generators = { x = "cross(xi, x)" }
+[claims.brackets]
+"{J, J}" = "-hat(J)"
+"""
+
+
+def test_claims_about_a_bracket_are_made_without_an_energy():
+    """Forces with a bracket and no energy: maps and brackets are examined, nothing is conserved."""
+    claims = prove(spec(FORCED)).claims
+    assert {claim.kind for claim in claims} >= {"symmetry", "bracket"}
+    assert prove(spec(FORCED)).holds
+    assert not any("Noether" in claim.statement for claim in claims)
+    (wrong,) = prove(spec(FORCED, ('"-hat(J)"', '"hat(J)"'))).refuted
+    assert wrong.statement == "{J, J} = hat(J)"

@@ -38,12 +38,14 @@ def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterato
     """
     spec = first.spec
     energy = first.exact.energy
-    if first.exact.poisson_tensor is not None and energy is not None:
+    if first.exact.poisson_tensor is not None:
         for symmetry in spec.symmetries:
             J = momentum_map(first, symmetry)
             yield from _about_map(first, symmetry, J)
-            yield from _noether(first, symmetry, J, first.closed(energy))
-        yield from _about_integrals(first, known)
+            if energy is not None:
+                yield from _noether(first, symmetry, J, first.closed(energy))
+        if energy is not None:
+            yield from _about_integrals(first, known)
         for claim in spec.brackets:
             text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
             yield (
