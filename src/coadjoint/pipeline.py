@@ -187,7 +187,11 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
         for each in spec.spatial
     ]
     velocities = map(_quantity, spec.defined)
-    return (*energy, *casimirs, *velocities, *declared, *maps, *of_pair, *of_space)
+    reactions = [
+        _emitted(each.reaction, each.unit, each.shape, conserved=False)
+        for each in spec.constraints
+    ]
+    return (*energy, *casimirs, *velocities, *reactions, *declared, *maps, *of_pair, *of_space)
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:

@@ -14,8 +14,10 @@ from coadjoint.derive import (
     cayley_klein,
     clebsch,
     complexification,
+    constrained,
     euler_lagrange,
     euler_poincare,
+    hamel,
     hamilton_pontryagin,
     kaluza_klein,
     lax,
@@ -26,6 +28,7 @@ from coadjoint.derive import (
     nambu,
     newton,
     newton_euler,
+    nonholonomic,
     poincare,
     poisson,
     reductions,
@@ -69,6 +72,8 @@ ROUTES: Mapping[str, Callable[[Spec | Setting], Equations]] = MappingProxyType(
         "canonical": canonical.derive,
         "newton": newton.derive,
         "alignment": alignment.derive,
+        "nonholonomic": nonholonomic.derive,
+        "hamel": hamel.derive,
     }
 )
 
@@ -79,10 +84,12 @@ SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType(
         "canonical": canonical.symbols,
         "cayley-klein": cayley_klein.symbols,
         "clebsch": clebsch.symbols,
+        "hamel": constrained.symbols,
         "hamilton-pontryagin": hamilton_pontryagin.symbols,
         "kaluza-klein": kaluza_klein.symbols,
         "lax": lax.symbols,
         "manakov": manakov.symbols,
+        "nonholonomic": constrained.symbols,
     }
 )
 

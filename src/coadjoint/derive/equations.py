@@ -11,14 +11,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 
+from typing import TYPE_CHECKING
+
 import sympy
 from sympy.printing.mathml import mathml
 
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.solver import Solve, is_intermediate
+from coadjoint.derive.solver import Solve, solver_names
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
+
+if TYPE_CHECKING:
+    from coadjoint.derive.distribution import Distribution
 
 
 @dataclass(frozen=True)
@@ -107,6 +112,7 @@ class Exact:
         observables: Name and value of each scalar emitted beside the dynamics, energy included.
         poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
         solves: Linear equations that definitions solve in the kernel, in that order.
+        residuals: What vanishes on the constraints, by the names of these.
     """
 
     definitions: tuple[tuple[str, Element], ...]
@@ -115,6 +121,7 @@ class Exact:
     observables: tuple[tuple[str, Element], ...]
     poisson_tensor: tuple[tuple[Element, ...], ...] | None
     solves: tuple[Solve, ...] = ()
+    residuals: tuple[tuple[str, Element], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -159,6 +166,7 @@ class Equations:
         chart: The route's own variables and the map to the declared state; None if that is what
             the route moves.
         pair: The Lax pair by which the route goes, if it is one of those.
+        distribution: What the constraints allow; None for motions that are free.
     """
 
     setting: Setting
@@ -167,6 +175,7 @@ class Equations:
     steps: tuple[Step, ...]
     chart: Chart | None = None
     pair: LaxPair | None = None
+    distribution: Distribution | None = None
 
     @property
     def spec(self) -> Spec:
@@ -234,11 +243,16 @@ class Equations:
     @cached_property
     def kept(self) -> tuple[str, ...]:
         """Definitions without a closed form: intermediates of a solve, and what rests on them."""
-        names: list[str] = []
+        solved, names = self.intermediates, list[str]()
         for name, value in self.exact.definitions:
-            if is_intermediate(name) or self.setting.field.reach(value) & set(names):
+            if name in solved or self.setting.field.reach(value) & set(names):
                 names.append(name)
         return tuple(names)
+
+    @cached_property
+    def intermediates(self) -> frozenset[str]:
+        """Names of L, D, y and z of the solves in the kernel."""
+        return frozenset(name for each in self.exact.solves for name in solver_names(each.block))
 
     @cached_property
     def moving(self) -> frozenset[str]:

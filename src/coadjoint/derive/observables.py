@@ -7,10 +7,12 @@ from space where the state has the attitude.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
+from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.reconstruction import spatial_momentum
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, shaped
 from coadjoint.derive.symmetries import momentum_maps
 from coadjoint.exact import Element
 from coadjoint.spec import Formula
@@ -28,10 +30,16 @@ def observables(setting: Setting, energy: Element | None) -> tuple[tuple[str, El
     velocities = [
         (name, setting.field[name]) for variable in spec.defined for name in variable.components
     ]
+    reactions = [
+        (name, setting.field[name]) for each in spec.constraints for name in each.reactions
+    ]
+    known: dict[str, Quantity] = dict(reactions)
+    for each in spec.constraints:
+        known[each.reaction] = shaped([known[name] for name in each.reactions], each.shape)
     declared = [
         part
         for entry in spec.observables
-        for part in _named(entry.components, setting, entry.formula)
+        for part in _named(entry.components, setting, entry.formula, known)
     ]
     values = momentum_maps(setting, energy)
     maps = [
@@ -42,7 +50,7 @@ def observables(setting: Setting, energy: Element | None) -> tuple[tuple[str, El
     of_pair = setting.integrals.named if setting.integrals is not None else ()
     first = () if energy is None else (("energy", energy),)
     of_space = _spatial(setting) if spec.spatial else ()
-    return (*first, *casimirs, *velocities, *declared, *maps, *of_pair, *of_space)
+    return (*first, *casimirs, *velocities, *reactions, *declared, *maps, *of_pair, *of_space)
 
 
 def _spatial(setting: Setting) -> list[tuple[str, Element]]:
@@ -56,7 +64,10 @@ def _spatial(setting: Setting) -> list[tuple[str, Element]]:
 
 
 def _named(
-    names: tuple[str, ...], setting: Setting, formula: Formula
+    names: tuple[str, ...],
+    setting: Setting,
+    formula: Formula,
+    known: Mapping[str, Quantity] = MappingProxyType({}),
 ) -> Iterator[tuple[str, Element]]:
     """The components of a formula with their names."""
-    return zip(names, setting.components(formula), strict=True)
+    return zip(names, setting.components(formula, known), strict=True)

@@ -41,7 +41,8 @@ class Reference:
         """All outputs of one function, row by row.
 
         Args:
-            function: ``rhs``, ``jacobian``, ``energy``, ``observables`` or ``poisson_tensor``.
+            function: ``rhs``, ``jacobian``, ``energy``, ``observables``,
+                ``poisson_tensor`` or ``constraint_residual``.
             inputs: State and parameter components by name.
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function by name.
@@ -63,6 +64,8 @@ class Reference:
                 return [value(observable) for _, observable in exact.observables]
             case "poisson_tensor" if exact.poisson_tensor is not None:
                 return [value(entry) for row in exact.poisson_tensor for entry in row]
+            case "constraint_residual":
+                return [value(residual) for _, residual in exact.residuals]
         assert function == "jacobian", function
         return self._jacobian(value, number)
 

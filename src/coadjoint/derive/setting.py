@@ -258,6 +258,12 @@ def formulas(spec: Spec) -> tuple[Formula, ...]:
     if spec.reduction is not None:
         stated += spec.reduction.section.values()
     stated += [formula for law in spec.newton for formula in (law.mass, law.force)]
+    stated += [side for each in spec.constraints for side in (each.left, each.right)]
+    stated += [*spec.forces.values(), *([spec.dissipation] if spec.dissipation else ())]
+    stated += [side for each in spec.domain for side in (each.left, each.right)]
+    stated += [spec.rolling.arm] if spec.rolling is not None else []
+    stated += [each.rate for each in spec.reconstruction if each.rate is not None]
+    stated += [formula for each in spec.sections for formula in each.section.values()]
     declared = [observable.formula for observable in spec.observables]
     claimed = [f for claim in spec.conserved for f in (claim.formula, *claim.where)]
     for symmetry in spec.symmetries:

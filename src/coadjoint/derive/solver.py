@@ -51,11 +51,6 @@ def scaled_name(i: int) -> str:
     return f"_z{i + 1}"
 
 
-def is_intermediate(name: str) -> bool:
-    """Whether a definition is an intermediate of a solve and no quantity of the spec."""
-    return name.startswith("_")
-
-
 @dataclass(frozen=True)
 class Solve:
     """``A x = b`` for one block of coupled unknowns.

@@ -43,6 +43,8 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
             return [equations.closed(value) for _, value in exact.observables]
         case "poisson_tensor" if exact.poisson_tensor is not None:
             return [equations.closed(entry) for row in exact.poisson_tensor for entry in row]
+        case "constraint_residual":
+            return [equations.closed(residual) for _, residual in exact.residuals]
     raise AssertionError(name)
 
 

@@ -10,9 +10,10 @@ Read next: `coadjoint.lower.check`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 from coadjoint.derive import Equations
-from coadjoint.derive.solver import Solve, factor_name, is_intermediate, pivot_name
+from coadjoint.derive.solver import Solve, factor_name, pivot_name
 from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
@@ -22,44 +23,71 @@ from coadjoint.lower.program import Program
 Slopes = dict[str, int]
 
 
-def residual_slopes(equations: Equations) -> list[tuple[str, Element]]:
-    """``d(b - A x)_i / dx_j`` at fixed x of all solves, labelled, row by row."""
-    field, slopes = equations.setting.field, []
+@dataclass(frozen=True)
+class ResidualSlope:
+    """How a residual ``(b - A x)_i`` changes at fixed x.
+
+    Attributes:
+        row: Of the residual, counted through all solves.
+        by: A component of the state, or a definition through which the residual depends on it.
+        slope: The partial derivative.
+    """
+
+    row: int
+    by: str
+    slope: Element
+
+
+def residual_slopes(equations: Equations) -> list[ResidualSlope]:
+    """The derivatives of ``b - A x`` of all solves by what they name, zeros left out."""
+    field, found, row = equations.setting.field, list[ResidualSlope](), 0
+    solved = {name for solve in equations.exact.solves for name in solve.names}
+    inner = {name for name, _ in equations.exact.definitions}
+    inner -= solved | equations.intermediates
     for solve in equations.exact.solves:
-        for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
+        for entries, known in zip(solve.matrix, solve.known, strict=True):
             unknowns = (field[unknown] for unknown in solve.names)
-            products = (entry * x for entry, x in zip(row, unknowns, strict=True))
-            gradient = field.gradient(known - field.sum(products), equations.setting.state)
-            labels = (f"slope of {name} by {x}" for x in equations.setting.state)
-            slopes += list(zip(labels, gradient, strict=True))
-    return slopes
+            products = (entry * x for entry, x in zip(entries, unknowns, strict=True))
+            residual = known - field.sum(products)
+            names = [*equations.setting.state, *sorted(inner & field.reach(residual))]
+            slopes = zip(names, field.gradient(residual, names), strict=True)
+            found += [ResidualSlope(row, name, slope) for name, slope in slopes if slope != 0]
+            row += 1
+    return found
 
 
-def jacobian(rhs: Program, equations: Equations) -> Program:
+def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlope]) -> Program:
     """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program.
 
     Definitions keep their names; temporaries are found anew where they are still shared.
 
     Args:
-        rhs: Its outputs are the rates, and behind them the `residual_slopes`.
+        rhs: Its outputs are the rates, and behind them the slopes of the residuals.
         equations: What it was lowered from.
+        residuals: What these are the slopes of.
     """
     graph, n = Graph(), len(rhs.state)
     definitions, values = _inserted(graph, rhs, {name for name, _ in equations.exact.definitions})
     slopes: dict[int, Slopes] = {graph.symbol(name): {name: graph.number(1)} for name in rhs.state}
     slopes |= {graph.symbol(name): {} for name in rhs.parameters}
+    rows: dict[int, dict[str, int]] = {}
+    for residual, node in zip(residuals, values[n:], strict=True):
+        rows.setdefault(residual.row, {})[residual.by] = node
     solved: dict[str, Slopes] = {}
-    residuals = [values[row : row + n] for row in range(n, len(values), n)]
-    for solve in equations.exact.solves:
-        own, residuals = residuals[: len(solve.names)], residuals[len(solve.names) :]
-        solved |= _solved(graph, solve, rhs.state, own, definitions)
     # By the unknowns first, and by the state through them at the very end: carrying the derivatives
     # of all unknowns by all of the state through the rates took twice the operations.
+    unknowns = {name for solve in equations.exact.solves for name in solve.names}
     for name, value in definitions.items():
-        if name in solved:
+        if name in unknowns:
             slopes[graph.symbol(name)] = {name: graph.number(1)}
-        elif not is_intermediate(name):
+        elif name not in equations.intermediates:
             slopes[graph.symbol(name)] = graph.derivative(value, slopes)
+    first = 0
+    for solve in equations.exact.solves:
+        own = [rows.get(first + k, {}) for k in range(len(solve.names))]
+        columns = [_through(graph, row, slopes, rhs.state) for row in own]
+        solved |= _solved(graph, solve, rhs.state, columns, definitions)
+        first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
         slope = graph.derivative(value, slopes)
@@ -69,6 +97,21 @@ def jacobian(rhs: Program, equations: Equations) -> Program:
     return Naming(graph, list(definitions.items()), outputs, rhs.parameters).program(
         "jacobian", rhs.state, rhs.parameters, (n, n)
     )
+
+
+def _through(
+    graph: Graph, row: Mapping[str, int], slopes: Mapping[int, Slopes], state: Sequence[str]
+) -> list[int]:
+    """Derivatives of a residual by each component of the state, through definitions too."""
+    columns = []
+    for name in state:
+        addends = [row[name]] if name in row else []
+        for by, slope in row.items():
+            inner = {} if by in state else slopes[graph.symbol(by)]
+            if name in inner:
+                addends.append(graph.multiply(slope, inner[name]))
+        columns.append(graph.sum(addends))
+    return columns
 
 
 def _total(graph: Graph, slope: Slopes, solved: Mapping[str, Slopes], name: str) -> int:

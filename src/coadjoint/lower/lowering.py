@@ -1,7 +1,7 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
 Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``energy``, ``observables`` and ``poisson_tensor``. An element becomes a sum of products in
+them, ``energy``, ``observables``, ``poisson_tensor`` and ``constraint_residual``. An element becomes a sum of products in
 the order of the field; what depends on parameters alone is gathered into the coefficients, equal
 coefficients are factored out, and pairs of factors that recur are shared. Definitions keep their
 names: a kernel reads like the book.
@@ -261,8 +261,9 @@ def lower(equations: Equations) -> dict[str, Program]:
     rates = [(f"d{x}/dt", rate) for x, rate in zip(setting.state, exact.rates, strict=True)]
     rhs = _program(equations, "rhs", rates)
     slopes = residual_slopes(equations)
-    wide = _program(equations, "rhs", [*rates, *slopes]) if slopes else rhs
-    programs = {"rhs": rhs, "jacobian": jacobian(wide, equations)}
+    labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
+    wide = _program(equations, "rhs", [*rates, *labelled]) if slopes else rhs
+    programs = {"rhs": rhs, "jacobian": jacobian(wide, equations, slopes)}
     if exact.energy is not None:
         programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
     if exact.observables:
@@ -274,6 +275,10 @@ def lower(equations: Equations) -> dict[str, Program]:
             for b, entry in zip(setting.state, row, strict=True)
         ]
         programs["poisson_tensor"] = _program(equations, "poisson_tensor", brackets, (n, n))
+    if exact.residuals:
+        programs["constraint_residual"] = _program(
+            equations, "constraint_residual", exact.residuals
+        )
     return programs
 
 

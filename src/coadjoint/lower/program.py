@@ -114,7 +114,8 @@ class Program:
     """One function of a kernel.
 
     Attributes:
-        name: ``rhs``, ``jacobian``, ``energy``, ``observables`` or ``poisson_tensor``.
+        name: ``rhs``, ``jacobian``, ``energy``, ``observables``, ``poisson_tensor`` or
+            ``constraint_residual``.
         state: Component names of the state, in order.
         parameters: Component names of the parameters, in order.
         statements: In the order of evaluation, those of level ``parameters`` first.

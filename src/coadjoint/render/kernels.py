@@ -33,6 +33,7 @@ SUMMARIES: Final = {
     "energy": "Energy",
     "observables": "Observables, one row for each component",
     "poisson_tensor": "Poisson tensor, brackets of the components of the state",
+    "constraint_residual": "Left minus right sides of the constraints",
 }
 
 NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."

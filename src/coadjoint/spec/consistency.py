@@ -15,8 +15,11 @@ from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
 from coadjoint.spec.faults import listed
 from coadjoint.spec.model import (
+    Constraint,
     Observable,
     Parameter,
+    Reconstructed,
+    Section,
     SpatialMomentum,
     Symmetry,
     Variable,
@@ -33,6 +36,11 @@ _HOW = {
     "hamiltonian": 'Write [hamiltonian] and below it h = "dot(Pi, inverse(diag(I))*Pi)/2".',
     "lagrangian": 'Write [lagrangian] and below it l = "dot(Omega, diag(I)*Omega)/2".',
 }
+#: Tables that are there for routes alone.
+_ROUTED = (
+    *("hamiltonian", "lagrangian", "lax", "newton", "clebsch"),
+    *("constraints", "forces", "dissipation"),
+)
 #: What a kind of spec has, in words.
 _KINDS = {
     "algebra": "[algebra]",
@@ -40,6 +48,15 @@ _KINDS = {
     "nambu": "nambu functions in [poisson]",
     "canonical": "canonical pairs in [poisson]",
     "configuration": "coordinates with velocities or momenta",
+}
+#: What is emitted beside the state, or may be named there.
+Emitted = Observable | Symmetry | SpatialMomentum | Section | Constraint | Reconstructed
+_TABLES = {
+    Observable: "observables",
+    Symmetry: "symmetries",
+    Section: "momenta",
+    Constraint: "constraints",
+    Reconstructed: "reconstruction",
 }
 #: A declared thing: its key, its name, the names of its components, and the names of its rates.
 _Declared = tuple[KeyPath, str, tuple[str, ...], tuple[str, ...]]
@@ -49,7 +66,7 @@ def check_names(
     source: Source,
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Sequence[Observable | Symmetry | SpatialMomentum] = (),
+    observables: Sequence[Emitted] = (),
     others: Mapping[KeyPath, str] = MappingProxyType({}),
 ) -> None:
     """Every name is free and declared once, components and rates included.
@@ -90,7 +107,7 @@ def check_names(
 def _declared(
     variables: Sequence[Variable],
     parameters: Sequence[Parameter],
-    observables: Sequence[Observable | Symmetry | SpatialMomentum],
+    observables: Sequence[Emitted],
 ) -> Iterable[_Declared]:
     for variable in variables:
         moving = variable in state_of(variables)
@@ -102,8 +119,10 @@ def _declared(
         if isinstance(entry, SpatialMomentum):
             yield ("variables", entry.momentum.name), entry.name, entry.components, ()
             continue
-        table = "symmetries" if isinstance(entry, Symmetry) else "observables"
-        yield (table, entry.name), entry.name, entry.components, ()
+        if isinstance(entry, Constraint):
+            yield ("constraints", entry.name), entry.reaction, entry.reactions, ()
+        rates = derived_names(entry.components) if isinstance(entry, Reconstructed) else ()
+        yield (_TABLES[type(entry)], entry.name), entry.name, entry.components, tuple(rates)
 
 
 def check_sizes(
@@ -236,13 +255,14 @@ def _check_use(source: Source, file: SpecFile) -> None:
     """A Hamiltonian, a Lagrangian or another table that no route reads is a mistake."""
     kinds = kinds_of(file)
     used = {table for route in file.routes for table in energies_of(route, kinds)}
-    used |= {name for each in file.routes for name in (STARTS[each].table, STARTS[each].option)}
-    for table in ("hamiltonian", "lagrangian", "lax", "newton", "clebsch"):
-        if getattr(file, table) is not None and table not in used:
+    starts = [STARTS[route] for route in file.routes]
+    used |= {name for start in starts for name in (start.table, *start.options)}
+    for table in _ROUTED:
+        if getattr(file, table) and table not in used:
             readers = [
                 name
                 for name, start in STARTS.items()
-                if table in (*energies_of(name, kinds), start.table, start.option)
+                if table in (*energies_of(name, kinds), start.table, *start.options)
                 and set(start.kinds) & set(kinds)
             ]
             raise source.fault(
@@ -267,7 +287,10 @@ def check_covered(
         SpecError: Some direction or coordinate has none.
     """
     if algebra is not None:
-        _check_covered(source, "momentum", "Pi", variables, algebra)
+        if file.constraints is None:
+            _check_covered(source, "momentum", "Pi", variables, algebra)
+        elif any(variable.role == "coordinate" for variable in variables):
+            _check_partners(source, file, variables)
         if file.lagrangian is not None:
             _check_covered(source, "velocity", "Omega", variables, algebra)
     elif file.poisson is None or file.lagrangian is not None:

@@ -16,12 +16,15 @@ from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.components import FORMS, Shape, component_names, matrix_size, unpacked
+from coadjoint.spec.constrained import Condition, Constraint, Reconstructed, Rolling, Section
 from coadjoint.spec.quantities import Parameter, Variable, state_of
 from coadjoint.spec.tree import Node, walk
 
 __all__ = [
     "FORMS",
     "ClaimedBracket",
+    "Condition",
+    "Constraint",
     "Definition",
     "Force",
     "Formula",
@@ -30,6 +33,9 @@ __all__ = [
     "Observable",
     "Parameter",
     "Poisson",
+    "Reconstructed",
+    "Rolling",
+    "Section",
     "Shape",
     "Spec",
     "Symmetry",
@@ -313,6 +319,13 @@ class Spec:
         brackets: Claimed brackets of observables, momentum maps and state.
         galilean: Whether Newton's law is claimed to be that of every Galilean observer.
         reduction: The submanifold to which a motion is restricted, whose state this is, or None.
+        constraints: Equations between velocities; empty for motions that are free.
+        forces: What acts beside the Lagrangian, by the name of the velocity that it works on.
+        dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
+        domain: Where the system is defined, as far as declared.
+        rolling: How the body rolls on a plane, if it does.
+        reconstruction: Variables that follow from the motion.
+        sections: Sections of the constraint distribution with their momenta.
     """
 
     name: str
@@ -342,6 +355,13 @@ class Spec:
     brackets: tuple[ClaimedBracket, ...] = ()
     galilean: bool = False
     reduction: Reduction | None = None
+    constraints: tuple[Constraint, ...] = ()
+    forces: Mapping[str, Formula] = field(default_factory=dict)
+    dissipation: Formula | None = None
+    domain: tuple[Condition, ...] = ()
+    rolling: Rolling | None = None
+    reconstruction: tuple[Reconstructed, ...] = ()
+    sections: tuple[Section, ...] = ()
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
@@ -352,7 +372,7 @@ class Spec:
         """The state of the kernels, in declared order: what is no velocity that another gives.
 
         Velocities follow from momenta; only where a coordinate has no momentum is its velocity
-        part of the state.
+        part of the state. Under constraints, those velocities are that no constraint gives.
         """
         return state_of(self.variables)
 

@@ -32,6 +32,7 @@ class Variable:
         elements: Matrices of which a velocity is the sum, weighted by its components, in formulas;
             empty where the form says it all.
         default: Where a simulation begins, one exact value per component; None if nothing is said.
+        independent: Under constraints, whether a velocity is part of the state; None without any.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Variable:
     of: str = ""
     elements: tuple[SparseMatrix, ...] = ()
     default: tuple[Fraction, ...] | None = None
+    independent: bool | None = None
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -68,7 +70,9 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     return tuple(
         variable
         for variable in variables
-        if variable.role != "velocity" or (variable.of and variable.of not in given)
+        if variable.independent
+        or variable.role != "velocity"
+        or (variable.independent is None and variable.of and variable.of not in given)
     )
 
 

@@ -32,11 +32,13 @@ from coadjoint.spec.consistency import (
     check_sizes,
     check_tables,
 )
+from coadjoint.spec.constraints import ConstraintReader, solved_velocities
 from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.lax import read_lax
 from coadjoint.spec.model import (
+    Constraint,
     Definition,
     Force,
     Formula,
@@ -44,6 +46,7 @@ from coadjoint.spec.model import (
     Lax,
     Observable,
     Parameter,
+    Section,
     Spec,
     Symmetry,
     Variable,
@@ -132,11 +135,15 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     check_routes(source, file)
     check_covered(source, file, variables, algebra)
     check_claims(source, file, variables)
-    formulas = _Formulas(source, file, variables, parameters, definitions)
-    observables = formulas.observables()
+    quantities: tuple[Quantity, ...] = (*variables, *parameters, *definitions)
+    constrained = ConstraintReader(source, file, variables, quantities)
+    constraints = constrained.constraints()
+    formulas = _Formulas(source, file, variables, quantities)
+    observables = formulas.observables(constraints)
     actions = SymmetryReader(source, state_of(variables), formulas.quantities, observables)
     symmetries = actions.symmetries(file.symmetries, name, Scalars(parameters))
-    emitted: list[Observable | Symmetry] = [*observables, *symmetries]
+    sections, followed = constrained.sections(), constrained.reconstruction()
+    emitted: list[Observable | Symmetry | Section] = [*observables, *symmetries, *sections]
     check_names(source, variables, parameters, emitted, defined)  # now with their components
     spec = Spec(
         name=name,
@@ -165,8 +172,16 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         symmetries=symmetries,
         transformations=actions.transformations(file.transformations),
         brackets=actions.brackets(file.claims.brackets),
+        constraints=constraints,
+        forces=constrained.forces(),
+        dissipation=constrained.dissipation(),
+        domain=constrained.domain(),
+        rolling=constrained.rolling(algebra),
+        reconstruction=followed,
+        sections=sections,
     )
-    check_names(source, variables, parameters, [*emitted, *spec.spatial], defined)
+    named = [*emitted, *spec.spatial, *constraints, *followed]
+    check_names(source, variables, parameters, named, defined)
     return spec if file.reduction is None else restricted(source, file.reduction, spec)
 
 
@@ -183,8 +198,11 @@ def _read_structure(
             named = file.clebsch.representation
             pair = representation_of(source, at, algebra, named, representations)
     invariance = file.algebra.invariance if file.algebra is not None else "left"
+    solved = solved_velocities(file)
     variables = tuple(
-        read_variable(source, variable, part, algebra, representations, file.variables, invariance)
+        read_variable(
+            source, variable, part, algebra, representations, file.variables, invariance, solved
+        )
         for variable, part in file.variables.items()
     )
     return algebra, variables, pair
@@ -198,15 +216,16 @@ class _Formulas:
         source: Source,
         file: SpecFile,
         variables: Sequence[Variable],
-        parameters: Sequence[Parameter],
-        definitions: Sequence[Definition],
+        quantities: Sequence[Quantity],
     ) -> None:
-        self.source, self.file = source, file
-        self.quantities: tuple[Quantity, ...] = (*variables, *parameters, *definitions)
+        self.source, self.file, self.quantities = source, file, quantities
         # all momenta or, of coordinates without them, velocities; the reader refuses a mixture
         self.state = tuple(dict.fromkeys(variable.role for variable in state_of(variables)))
         self.motion = tuple(dict.fromkeys(("velocity", *self.state)))
         self.fixed = ("advected",) if file.algebra is not None else ("coordinate",)
+        if file.constraints is not None:  # an algebra and coordinates may stand side by side
+            present = [variable.role for variable in variables if variable.role != "velocity"]
+            self.fixed = tuple(dict.fromkeys(present)) or self.fixed
 
     def lagrangian(self) -> Formula | None:
         if self.file.lagrangian is None:
@@ -230,8 +249,11 @@ class _Formulas:
             return ()
         return read_newton(self.source, self.file.newton, variables, self.quantities)
 
-    def observables(self) -> tuple[Observable, ...]:
-        scope, found = make_scope("an observable", self.motion, self.quantities), []
+    def observables(self, constraints: Sequence[Constraint]) -> tuple[Observable, ...]:
+        reactions = {name: () for each in constraints for name in each.reactions}
+        reactions |= {each.reaction: each.shape for each in constraints}
+        scope = make_scope("an observable", self.motion, self.quantities, reactions)
+        found = []
         for name, part in self.file.observables.items():
             key: KeyPath = ("observables", name)
             # An observable may be its expression alone.
@@ -246,7 +268,7 @@ class _Formulas:
         key: KeyPath = ("claims", "casimirs")
         return self._formulas(key, self.file.claims.casimirs, scope)
 
-    def conserved(self, emitted: Sequence[Observable | Symmetry]) -> tuple[Integral, ...]:
+    def conserved(self, emitted: Sequence[Observable | Symmetry | Section]) -> tuple[Integral, ...]:
         named = emitted_shapes(emitted)
         if self.file.hamiltonian is None and self.file.lagrangian is None:
             del named["energy"]

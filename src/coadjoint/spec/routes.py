@@ -22,25 +22,28 @@ class Start:
         kinds: The kinds of spec that it goes with, of those that `kinds_of` returns.
         energies: The tables of which it takes one; empty if it takes none.
         table: A table of its own, without which it cannot start; "" if none.
-        option: A table of its own that may be left out; "" if none.
+        options: Tables of its own that may be left out.
     """
 
     kinds: tuple[str, ...]
     energies: tuple[str, ...] = ()
     table: str = ""
-    option: str = ""
+    options: tuple[str, ...] = ()
 
 
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
 _ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN)
+_CONSTRAINED = Start(
+    ("algebra", "configuration"), _LAGRANGIAN, "constraints", ("forces", "dissipation")
+)
 
 STARTS: Mapping[str, Start] = MappingProxyType(
     {
         "euler-poincare": _ON_ALGEBRA,
         "lie-poisson": Start(("algebra",), _EITHER),
         "hamilton-pontryagin": _ON_ALGEBRA,
-        "clebsch": Start(("algebra",), _LAGRANGIAN, option="clebsch"),
+        "clebsch": Start(("algebra",), _LAGRANGIAN, options=("clebsch",)),
         "poincare": _ON_ALGEBRA,
         "matrix-euler-poincare": _ON_ALGEBRA,
         "newton-euler": _ON_ALGEBRA,
@@ -55,6 +58,8 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN),
         "newton": Start(("configuration", "poisson"), (), "newton"),
         "alignment": Start(("configuration", "poisson"), (), "newton"),
+        "nonholonomic": _CONSTRAINED,
+        "hamel": _CONSTRAINED,
     }
 )
 

@@ -173,6 +173,58 @@ class ReductionPart(Part):
     where: list[str] = Field([], description="functions of all variables that vanish there")
 
 
+class DissipationPart(Part):
+    """Dissipation by a function of the velocities."""
+
+    R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
+
+
+class RollingPart(Part):
+    """A body that rolls on a plane."""
+
+    arm: str = Field(
+        description="from the point of contact to the centre of mass, seen from the body"
+    )
+    normal: str = Field(description="the advected vector normal to the plane")
+
+
+class ReconstructedPart(Part):
+    """A variable that follows from the motion and does not act on it."""
+
+    model_config = ConfigDict(json_schema_extra=also_text)
+
+    rate: str | None = Field(None, description="its time derivative")
+    attitude: Literal["quaternion"] | None = Field(
+        None, description="'quaternion' for the attitude that the angular velocity turns"
+    )
+    default: Numbers | None = Field(None, description="where it begins; by default at zero")
+    unit: Unit = Field("1", description="unit, such as 'm'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: object) -> object:
+        return {"rate": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ReconstructedPart:
+        if (self.rate is None) == (self.attitude is None):
+            raise ValueError("either rate or attitude")
+        return self
+
+
+class SectionPart(Part):
+    """The momentum along a section of the constraint distribution."""
+
+    section: Annotated[dict[str, str], Field(min_length=1)] = Field(
+        description="components of the section, as Omega = 's', by the names of the velocities "
+        "that no constraint gives; those left out are zero",
+        json_schema_extra=named(),
+    )
+    unit: Unit = Field("1", description="unit of the momentum; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+
 class ObservablePart(Part):
     """A scalar, vector or matrix emitted beside the dynamics."""
 
@@ -298,6 +350,8 @@ RouteName = Literal[
     "euler-lagrange",
     "newton",
     "alignment",
+    "nonholonomic",
+    "hamel",
 ]
 
 
@@ -348,6 +402,31 @@ class SpecFile(Part):
     )
     reduction: ReductionPart | None = Field(
         None, description="the submanifold to which the motion is restricted"
+    )
+    constraints: Annotated[dict[str, str], Field(min_length=1)] | None = Field(
+        None,
+        description="equations between velocities, as rolling = 'Y == cross(Omega, s)'",
+        json_schema_extra=named(),
+    )
+    forces: dict[str, str] = Field(
+        {},
+        description="forces beside the Lagrangian, by the names of the velocities they work on",
+        json_schema_extra=named(),
+    )
+    dissipation: DissipationPart | None = Field(None, description="dissipation by a function R")
+    domain: dict[str, str] = Field(
+        {},
+        description="where the system is defined, as tilted = 'Gamma3^2 < 1'",
+        json_schema_extra=named(),
+    )
+    rolling: RollingPart | None = Field(None, description="a body that rolls on a plane")
+    reconstruction: dict[str, ReconstructedPart] = Field(
+        {}, description="what follows from the motion, as x = 'v'", json_schema_extra=named()
+    )
+    momenta: dict[str, SectionPart] = Field(
+        {},
+        description="momenta along sections of the constraint distribution, by name",
+        json_schema_extra=named(),
     )
     observables: dict[str, ObservablePart] = Field(
         {}, description="what is emitted beside the dynamics", json_schema_extra=named()

@@ -6,7 +6,7 @@ Comes in: the validated tables, and the algebra where there is one. Goes out: re
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 from math import prod
 from types import MappingProxyType
@@ -49,6 +49,7 @@ def read_variable(
     representations: Mapping[str, Representation],
     parts: Mapping[str, VariablePart] = MappingProxyType({}),
     invariance: str = "left",
+    solved: Collection[str] | None = None,
 ) -> Variable:
     """A variable with its place in the algebra, or its shape where there is none.
 
@@ -60,6 +61,7 @@ def read_variable(
         representations: Declared ones, by name.
         parts: All that is declared, for coordinates that others are velocities of.
         invariance: Of the motion: the side from which an attitude is seen.
+        solved: Velocities that constraints give; None without constraints.
 
     Raises:
         SpecError: A key does not go with the role, the role not with the spec, the block or the
@@ -69,12 +71,16 @@ def read_variable(
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
-    if part.default is not None and not _is_state(part, parts):
+    if part.default is not None and not _is_state(name, part, parts, solved):
         raise _alien_key(source, (*key, "default"), part)
     block: tuple[int, ...] = ()
     representation = None
-    if part.role == "coordinate" or algebra is None:
-        _check_role(source, key, part, algebra)
+    constrained = solved is not None
+    if part.role == "momentum" and constrained:
+        raise _constrained_momentum(source, key)
+    if part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
+        if not constrained or part.role == "advected":
+            _check_role(source, key, part, algebra)
         if part.role != "coordinate":
             part = _as_partner(source, key, part, parts)
         count = prod(part.shape or [1])
@@ -109,14 +115,32 @@ def read_variable(
         form,
         part.of or "",
         elements,
-        _default(source, (*key, "default"), part.default, shape),
+        read_default(source, (*key, "default"), part.default, shape),
+        name not in solved if solved is not None and part.role == "velocity" else None,
     )
 
 
-def _is_state(part: VariablePart, parts: Mapping[str, VariablePart]) -> bool:
+def _is_state(
+    name: str,
+    part: VariablePart,
+    parts: Mapping[str, VariablePart],
+    solved: Collection[str] | None,
+) -> bool:
     """Whether a variable is part of the state; see `coadjoint.spec.quantities.state_of`."""
+    if solved is not None:
+        return name not in solved
     given = {each.of for each in parts.values() if each.role == "momentum"}
     return part.role != "velocity" or (part.of is not None and part.of not in given)
+
+
+def _constrained_momentum(source: Source, key: KeyPath) -> CoadjointError:
+    return source.fault(
+        (*key, "role"),
+        f"{key[-1]!r} is a momentum beside [constraints]",
+        found="momentum",
+        expected="velocities, which are the state of a constrained motion",
+        hint="Remove it; the velocities that no constraint gives are the state.",
+    )
 
 
 def _as_partner(
@@ -297,7 +321,7 @@ def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
         if len(shape) > 1 or matrix_size(shape[0], form) is None:
             raise _misfit(source, ("parameters", name, "form"), prod(shape), form)
     key: KeyPath = ("parameters", name, "default")
-    default = _default(source, key, part.default, shape)
+    default = read_default(source, key, part.default, shape)
     if default is not None and part.positive and min(default) <= 0:
         raise source.fault(
             key,
@@ -308,7 +332,7 @@ def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
     return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
 
 
-def _default(
+def read_default(
     source: Source, key: KeyPath, value: object, shape: Shape
 ) -> tuple[Fraction, ...] | None:
     """The declared default, one number for each component; None if there is none."""

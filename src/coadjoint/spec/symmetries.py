@@ -22,6 +22,7 @@ from coadjoint.spec.model import (
     ClaimedBracket,
     Formula,
     Observable,
+    Section,
     Shape,
     Symmetry,
     Transformation,
@@ -41,7 +42,7 @@ _MULTILINEAR = ("dot", "cross", "outer", "commutator")
 _LINEAR = ("trace", "transpose", "hat", "diag", "rows")
 
 
-def emitted_shapes(entries: Iterable[Observable | Symmetry]) -> dict[str, Shape]:
+def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[str, Shape]:
     """Shapes of the energy, of observables and momentum maps, and of their components."""
     named: dict[str, Shape] = {"energy": ()}
     for entry in entries:

@@ -1,0 +1,230 @@
+r"""The nonholonomic route: Lagrange and d'Alembert's principle on a system with a frame.
+
+Theorem (Holm 2011, sections 12.2 and 12.3.2; Schneider 2002): with constraints
+:math:`\xi = B(z)\,\eta + \beta(z)`, imposed after the variation, virtual displacements are the
+columns of B, and
+
+.. math::
+    B^T \Big( \frac{d}{dt}\frac{\partial l}{\partial \xi}
+        - \mathrm{ad}^*_\xi \frac{\partial l}{\partial \xi}
+        - \frac{\partial l}{\partial a} \diamond a - f \Big) = 0.
+
+With :math:`p = \partial l/\partial\xi`, :math:`M = \partial^2 l/\partial\xi^2` and
+:math:`\dot\xi = B\dot\eta + c`, :math:`c = \dot B \eta + \dot\beta`, this is
+
+.. math::
+    B^T M B\,\dot\eta = B^T (F - M c - \partial_z p\,\dot z), \qquad
+    F = \mathrm{ad}^*_\xi p + \frac{\partial l}{\partial a} \diamond a + f,
+
+which the kernel solves. Constraints :math:`A\eta = b` that are kept join it with their multipliers.
+The multipliers are recovered from the complementary projection, with the sign of
+
+.. math:: \dot p - F = A^T \lambda, \qquad A = \partial(\text{left} - \text{right})/\partial\xi.
+
+Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
+Read next: `coadjoint.derive.hamel`, the road by the constrained Lagrangian.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.constrained import ConstrainedMotion, Matrix, emission
+from coadjoint.derive.distribution import Row, distribution
+from coadjoint.derive.emission import lagrangian_of
+from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
+from coadjoint.derive.frames import Frame
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.solver import Definition
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by Lagrange and d'Alembert's principle.
+
+    Raises:
+        DerivationError: A constraint is not linear in the velocities or not independent of the
+            others, the Lagrangian is not quadratic, or its reduced mass matrix is singular.
+    """
+    setting = setting_of(given)
+    motion = ConstrainedMotion(distribution(setting))
+    lagrangian = lagrangian_of(setting)
+    mass = mass_matrix(motion.frame, lagrangian)
+    forces, named = _forces(motion, lagrangian, mass)
+    reduced = _projected(motion, mass)
+    known = _known(motion, forces)
+    definitions = [*motion.kinematics(), *named]
+    reactions = motion.reactions(mass, forces)
+    exact = emission(motion, lagrangian, definitions, reduced, known, reactions)
+    steps = _steps(motion, lagrangian, reduced, known, reactions)
+    return Equations(setting, "nonholonomic", exact, steps, distribution=motion.distribution)
+
+
+def mass_matrix(frame: Frame, lagrangian: Element) -> Matrix:
+    """``d2l/dxi2`` in all velocities of a frame.
+
+    Raises:
+        DerivationError: It depends on velocities.
+    """
+    field, names = frame.setting.field, frame.velocities
+    slopes = field.gradient(lagrangian, names)
+    mass = tuple(field.gradient(slope, names) for slope in slopes)
+    for row, name in zip(mass, names, strict=True):
+        found = sorted(set().union(*map(field.reach, row)) & set(names))
+        if found:
+            formula = frame.setting.spec.lagrangian
+            assert formula is not None
+            raise DerivationError(
+                f"{frame.setting.spec.path}:{formula.line}: {formula.key}: the Lagrangian is not "
+                f"quadratic in the velocities: its second derivative by {name} depends on "
+                f"{', '.join(found)}; expected a kinetic energy quadratic in the velocities.",
+                path=str(frame.setting.spec.path),
+                line=formula.line,
+                key=formula.key,
+                found=name,
+            )
+    return mass
+
+
+def external_forces(frame: Frame) -> Row:
+    """The declared forces, and ``-dR/dxi``, along each velocity of a frame."""
+    setting = frame.setting
+    field, spec = setting.field, setting.spec
+    found = dict.fromkeys(frame.velocities, field.zero)
+    for variable in spec.variables:
+        if variable.name in spec.forces:
+            parts = setting.components(spec.forces[variable.name])
+            found |= dict(zip(variable.components, parts, strict=True))
+    if spec.dissipation is not None:
+        slopes = field.gradient(setting.formula(spec.dissipation), frame.velocities)
+        found = {
+            name: found[name] - s for name, s in zip(frame.velocities, slopes, strict=True)
+        }
+    return tuple(found[name] for name in frame.velocities)
+
+
+def _forces(
+    motion: ConstrainedMotion, lagrangian: Element, mass: Matrix
+) -> tuple[Row, list[Definition]]:
+    """``F - M c - dp/dz dz/dt`` along each velocity, with names along those that are given."""
+    frame, field = motion.frame, motion.frame.setting.field
+    xi = frame.setting.elements(frame.velocities)
+    momenta = field.gradient(lagrangian, frame.velocities)
+    parts = zip(
+        frame.inertial(momenta, xi),
+        frame.slopes(lagrangian),
+        external_forces(frame),
+        mass,
+        momenta,
+        strict=True,
+    )
+    forces = []
+    named: list[Definition] = []
+    for n, (inertial, slope, force, row, p) in enumerate(parts):
+        convected = field.sum(m * c for m, c in zip(row, motion.c, strict=True))
+        value = inertial + slope + force - convected - motion.moved(p)
+        if n in motion.solved and value != 0:
+            name = f"_k{n + 1}"
+            named.append((name, value))
+            value = field[name]
+        forces.append(value)
+    return tuple(forces), named
+
+
+def _projected(motion: ConstrainedMotion, mass: Matrix) -> Matrix:
+    """``B^T M B``."""
+    field, columns = motion.frame.setting.field, list(zip(*motion.B, strict=True))
+    turned = [
+        [field.sum(m * b for m, b in zip(row, column, strict=True) if m and b) for row in mass]
+        for column in columns
+    ]
+    return tuple(
+        tuple(field.sum(b * x for b, x in zip(column, other, strict=True) if b) for other in turned)
+        for column in columns
+    )
+
+
+def _known(motion: ConstrainedMotion, forces: Row) -> Row:
+    """``B^T`` times the forces."""
+    field = motion.frame.setting.field
+    return tuple(
+        field.sum(b * f for b, f in zip(column, forces, strict=True) if b and f)
+        for column in zip(*motion.B, strict=True)
+    )
+
+
+def _steps(
+    motion: ConstrainedMotion,
+    lagrangian: Element,
+    reduced: Matrix,
+    known: Row,
+    reactions: list[Definition],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    setting, found = motion.frame.setting, motion.distribution
+    momenta = setting.field.gradient(lagrangian, motion.frame.velocities)
+    accelerations = [f"d{name}_dt" for name in found.independent]
+    return (
+        Step("Reduced Lagrangian", "l(xi, z)", r"l(\xi, z)", ((symbol("l"), lagrangian),)),
+        Step(
+            "Constraints, imposed after the variation",
+            "left - right = 0",
+            r"A \xi = b",
+            tuple((symbol(each.name), each.residual) for each in found.equations),
+        ),
+        Step(
+            "Distribution",
+            "xi = B(z) eta + beta(z)",
+            r"\xi = B(z) \eta + \beta(z)",
+            tuple((symbol(name), value) for name, value in found.solved.items()),
+        ),
+        Step(
+            "Momenta",
+            "p = dl/dxi",
+            r"p = \partial l / \partial \xi",
+            tuple(
+                zip((partial("l", v) for v in motion.frame.velocities), momenta, strict=True)
+            ),
+        ),
+        Step(
+            "Kinematics",
+            "z' = X_xi z, c = B' eta + beta'",
+            r"\dot z = X_\xi z, \qquad c = \dot B \eta + \dot \beta",
+            tuple((symbol(name), value) for name, value in motion.kinematics()),
+        ),
+        Step(
+            "Reduced mass matrix",
+            "B^T M B",
+            "B^T M B",
+            tuple(
+                (symbol(f"M_{i + 1}{j + 1}"), entry)
+                for i, row in enumerate(reduced)
+                for j, entry in enumerate(row)
+                if j >= i and entry != 0
+            ),
+        ),
+        Step(
+            "Equations of motion, solved for the accelerations in the kernel",
+            "B^T M B eta' = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z')",
+            r"B^T M B \dot\eta = B^T (\mathrm{ad}^*_\xi p + (\partial l/\partial a) \diamond a + f"
+            r" - M c - \partial_z p \, \dot z)",
+            tuple(
+                (symbol(f"(B^T M B eta')_{n + 1}"), value) for n, value in enumerate(known)
+            ),
+        ),
+        Step(
+            "Accelerations of the other velocities, and reactions",
+            "p' - F = A^T lambda",
+            r"\dot p - F = A^T \lambda",
+            tuple((symbol(name), value) for name, value in reactions),
+        ),
+        Step(
+            "Motion",
+            "eta', z'",
+            r"\dot\eta, \dot z",
+            tuple(
+                (rate(name), setting.field[rate_of])
+                for name, rate_of in zip(found.independent, accelerations, strict=True)
+            ),
+        ),
+    )

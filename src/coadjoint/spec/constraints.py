@@ -1,0 +1,301 @@
+"""Constraints: the tables of a constrained motion, read in the scopes of their formulas.
+
+Comes in: the validated tables [constraints], [forces], [dissipation], [domain], [rolling],
+[reconstruction] and [momenta]. Goes out: records of `coadjoint.spec.constrained`. Which velocities
+a constraint gives is found before there are variables, since that decides what the state is.
+Read next: `coadjoint.derive.distribution`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.errors import CoadjointError
+from coadjoint.spec.constrained import Condition, Constraint, Reconstructed, Rolling, Section
+from coadjoint.spec.expressions import read_expression
+from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
+from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.model import Formula, Shape, Variable
+from coadjoint.spec.positions import KeyPath
+from coadjoint.spec.relations import EQUATION, INEQUALITIES, read_relation
+from coadjoint.spec.schema import ReconstructedPart, SpecFile
+from coadjoint.spec.shapes import words
+from coadjoint.spec.source import Source
+from coadjoint.spec.structure import read_default
+from coadjoint.spec.tree import Index, Name, Node, walk
+
+_COMPONENT = re.compile(r"(?P<name>.*?)_?\d+(_\d+)?")
+_SIDES = 2
+
+
+def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
+    """The velocities that constraints give, each with its constraint and the side it stands on.
+
+    A constraint gives a velocity if one side is that velocity alone and the other one does not
+    depend on it, also not through velocities that earlier constraints give.
+
+    Args:
+        file: The validated tables; formulas that cannot be read yet are passed over.
+
+    Returns:
+        Constraint and side (1 for left, -1 for right) by velocity; None without constraints.
+    """
+    if file.constraints is None:
+        return None
+    velocities = {name for name, part in file.variables.items() if part.role == "velocity"}
+    found: dict[str, tuple[str, int]] = {}
+    reached: dict[str, set[str]] = {}
+    for constraint, text in file.constraints.items():
+        sides = [_parsed(side) for side in text.split("==")]
+        if len(sides) != _SIDES:
+            continue
+        for own, other, sign in ((*sides, 1), (*reversed(sides), -1)):
+            if not isinstance(own, Name) or own.name not in velocities - set(found):
+                continue
+            if other is None:
+                continue
+            names = _names(other, file) & velocities
+            names = names.union(*(reached[name] for name in names if name in reached))
+            if own.name not in names:
+                found[own.name] = constraint, sign
+                reached = {
+                    name: {*rest, *names} if own.name in rest else rest
+                    for name, rest in reached.items()
+                }
+                reached[own.name] = names
+                break
+    return found
+
+
+def _parsed(text: str) -> Node | None:
+    try:
+        return read_expression(text)
+    except ExpressionError:
+        return None
+
+
+def _names(node: Node, file: SpecFile) -> set[str]:
+    """Variables that an expression names, whole or by component, also through definitions."""
+    defined = {key.split("(")[0].strip(): text for key, text in file.definitions.items()}
+    pending, seen, found = [node], set[str](), set[str]()
+    while pending:
+        for part in walk(pending.pop()):
+            name = getattr(part, "name", None) or getattr(part, "function", "")
+            if name in defined and name not in seen:
+                seen.add(name)
+                inner = _parsed(defined[name])
+                pending += [] if inner is None else [inner]
+            elif isinstance(part, Name | Index):
+                match = _COMPONENT.fullmatch(name)
+                found |= {name} | ({match["name"]} if match else set())
+    return found
+
+
+class ConstraintReader:
+    """The tables of a constrained motion.
+
+    Args:
+        source: The text of the spec.
+        file: Its tables.
+        variables: All variables.
+        quantities: Variables, parameters and definitions.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        file: SpecFile,
+        variables: Sequence[Variable],
+        quantities: Sequence[Quantity],
+    ) -> None:
+        self.source, self.file = source, file
+        self.variables, self.quantities = variables, quantities
+        roles = (variable.role for variable in variables)
+        self.motion = tuple(dict.fromkeys(("velocity", *roles)))
+        self.velocities = {each.name: each for each in variables if each.role == "velocity"}
+
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The constraints in declared order.
+
+        Raises:
+            SpecError: One is no equation between velocities.
+        """
+        solved = {
+            name: (velocity, sign)
+            for velocity, (name, sign) in (solved_velocities(self.file) or {}).items()
+        }
+        scope = make_scope("a constraint", self.motion, self.quantities)
+        found = []
+        for name, text in (self.file.constraints or {}).items():
+            key: KeyPath = ("constraints", name)
+            left, _, right = read_relation(self.source, key, text, EQUATION, scope)
+            found.append(Constraint(name, left, right, *solved.get(name, ())))
+        return tuple(found)
+
+    def forces(self) -> dict[str, Formula]:
+        """The declared forces by the velocity that they work on.
+
+        Raises:
+            SpecError: There is no such velocity, or the force has another shape.
+        """
+        scope = make_scope("a force", self.motion, self.quantities)
+        return {
+            name: self._along(("forces", name), text, scope, self.velocities)
+            for name, text in self.file.forces.items()
+        }
+
+    def dissipation(self) -> Formula | None:
+        """Rayleigh's function."""
+        if self.file.dissipation is None:
+            return None
+        scope = make_scope("a dissipation", self.motion, self.quantities)
+        return read_formula(
+            self.source, ("dissipation", "R"), self.file.dissipation.R, scope
+        )
+
+    def domain(self) -> tuple[Condition, ...]:
+        """The declared inequalities.
+
+        Raises:
+            SpecError: One is no inequality between scalars.
+        """
+        scope = make_scope("a condition", self.motion, self.quantities)
+        found = []
+        for name, text in self.file.domain.items():
+            key: KeyPath = ("domain", name)
+            left, sign, right = read_relation(self.source, key, text, INEQUALITIES, scope)
+            if left.shape:
+                raise self.source.fault(
+                    key,
+                    f"both sides are {words(left.shape)}",
+                    found=text,
+                    expected="two scalars",
+                )
+            found.append(Condition(name, left, sign, right))
+        return tuple(found)
+
+    def sections(self) -> tuple[Section, ...]:
+        """The declared sections, each a formula for every velocity that it names.
+
+        Raises:
+            SpecError: There is no such independent velocity, or a shape differs.
+        """
+        scope = make_scope("a section", self._fixed, self.quantities)
+        independent = {name: v for name, v in self.velocities.items() if v.independent}
+        return tuple(
+            Section(
+                name,
+                {
+                    velocity: self._along(
+                        ("momenta", name, "section", velocity), text, scope, independent
+                    )
+                    for velocity, text in part.section.items()
+                },
+                part.unit,
+                part.doc,
+            )
+            for name, part in self.file.momenta.items()
+        )
+
+    def rolling(self, algebra: LieAlgebra | None) -> Rolling | None:
+        """How a body rolls.
+
+        Raises:
+            SpecError: There is no body in space with an advected normal.
+        """
+        part = self.file.rolling
+        if part is None:
+            return None
+        blocks = {} if algebra is None else algebra.blocks
+        of_block = {
+            label: next((n for n, v in self.velocities.items() if v.block == tuple(block)), "")
+            for label, block in blocks.items()
+        }
+        names = [of_block.get(label, "") for label in ("rotation", "translation")]
+        if not all(names):
+            raise self.source.fault(
+                ("rolling",),
+                "there is no velocity of the block rotation and none of translation",
+                found=listed(self.velocities),
+                expected='the algebra "se(3)" with a velocity over each of these blocks',
+            )
+        vectors = [v.name for v in self.variables if v.role == "advected" and v.shape == (3,)]
+        if part.normal not in vectors:
+            raise self.source.fault(
+                ("rolling", "normal"),
+                f"there is no advected vector {part.normal!a}",
+                found=part.normal,
+                expected=f"one of {listed(vectors)}",
+                hint=did_you_mean(part.normal, vectors),
+            )
+        scope = make_scope("an arm", self._fixed, self.quantities)
+        arm = read_formula(self.source, ("rolling", "arm"), part.arm, scope, any_shape=True)
+        if arm.shape != (3,):
+            raise self.source.fault(
+                ("rolling", "arm"),
+                f"the arm is {words(arm.shape)}",
+                found=words(arm.shape),
+                expected="a 3-vector",
+            )
+        return Rolling(arm, part.normal, *names)
+
+    def reconstruction(self) -> tuple[Reconstructed, ...]:
+        """The variables that follow from the motion; rates may name all scalars among them.
+
+        Raises:
+            SpecError: A default has another shape, or an attitude has nothing that turns it.
+        """
+        parts = self.file.reconstruction
+        scalars = [name for name, part in parts.items() if part.attitude is None]
+        scope = make_scope("a rate", self.motion, self.quantities, scalars)
+        return tuple(self._reconstructed(name, part, scope) for name, part in parts.items())
+
+    def _reconstructed(self, name: str, part: ReconstructedPart, scope: Scope) -> Reconstructed:
+        key: KeyPath = ("reconstruction", name)
+        shape: Shape = (4,) if part.attitude else ()
+        rate = None
+        if part.rate is not None:
+            inner = (*key, "rate")
+            at = inner if inner in self.source.positions.values else key
+            rate = read_formula(self.source, at, part.rate, scope)
+        default = read_default(self.source, (*key, "default"), part.default, shape)
+        return Reconstructed(
+            name, rate, part.attitude or "", shape, default, part.unit, part.doc
+        )
+
+    @property
+    def _fixed(self) -> tuple[str, ...]:
+        """Roles of what positions know: not the velocities."""
+        return tuple(role for role in self.motion if role != "velocity") or ("advected",)
+
+    def _along(
+        self, key: KeyPath, text: str, scope: Scope, velocities: Mapping[str, Variable]
+    ) -> Formula:
+        """A formula of the shape of the velocity that its key names."""
+        name = str(key[-1])
+        if name not in velocities:
+            raise self._no_velocity(key, name, velocities)
+        formula = read_formula(self.source, key, text, scope, any_shape=True)
+        wanted = velocities[name].shape
+        if formula.shape != wanted:
+            raise self.source.fault(
+                key,
+                f"the value is {words(formula.shape)}",
+                found=words(formula.shape),
+                expected=f"{words(wanted)}, as {name!r} is",
+            )
+        return formula
+
+    def _no_velocity(
+        self, key: KeyPath, name: str, velocities: Mapping[str, Variable]
+    ) -> CoadjointError:
+        return self.source.fault(
+            key,
+            f"there is no such velocity as {name!a}",
+            found=name,
+            expected=f"one of {listed(velocities)}",
+            hint=did_you_mean(name, velocities),
+            at=self.source.positions.key(key),
+        )
