@@ -188,10 +188,20 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     ]
     velocities = map(_quantity, spec.defined)
     reactions = [
-        _emitted(each.reaction, each.unit, each.shape, conserved=False)
-        for each in spec.constraints
+        _emitted(each.reaction, each.unit, each.shape, conserved=False) for each in spec.constraints
     ]
-    return (*energy, *casimirs, *velocities, *reactions, *declared, *maps, *of_pair, *of_space)
+    momenta = [_emitted(each.name, each.unit, conserved=False) for each in spec.sections]
+    return (
+        *energy,
+        *casimirs,
+        *velocities,
+        *reactions,
+        *momenta,
+        *declared,
+        *maps,
+        *of_pair,
+        *of_space,
+    )
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:

@@ -28,6 +28,7 @@ from coadjoint.exact import Element
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.poisson.ranks import generic_rank
 from coadjoint.spec import Spec
+from coadjoint.spec.model import Section
 from coadjoint.spec.names import derived_names
 
 Matrix = tuple[Row, ...]
@@ -171,7 +172,7 @@ class ConstrainedMotion:
         return [n for n in range(len(self.frame.velocities)) if n not in self.solved]
 
     @cached_property
-    def B(self) -> Matrix:  # noqa: N802 (the book's letter)
+    def B(self) -> Matrix:
         """``d xi / d eta`` with names for its moving entries."""
         return tuple(tuple(map(self.named, row)) for row in self.distribution.B)
 
@@ -287,9 +288,7 @@ class ConstrainedMotion:
         turned = [
             field.sum(b * x for b, x in zip(row, self.accelerations, strict=True)) for row in self.B
         ]
-        rates = [
-            (rate_name(self.frame.velocities[n]), turned[n] + self.c[n]) for n in self.solved
-        ]
+        rates = [(rate_name(self.frame.velocities[n]), turned[n] + self.c[n]) for n in self.solved]
         values = {
             equation.reaction: -field[multiplier_name(n)]
             for n, (equation, _) in enumerate(found.kept)
@@ -304,9 +303,7 @@ class ConstrainedMotion:
             free = [
                 n
                 for n in waiting
-                if all(
-                    given[self.frame.velocities[o]][1][n] == 0 for o in waiting if o != n
-                )
+                if all(given[self.frame.velocities[o]][1][n] == 0 for o in waiting if o != n)
             ]
             assert free, "no constraint gives a velocity in terms of itself"
             for n in free:
@@ -357,10 +354,39 @@ def emission(
         (*definitions, *solved, *reactions),
         rates,
         energy,
-        observables(setting, energy),
+        observables(setting, energy, section_momenta(motion.distribution, lagrangian)),
         None,
         solves,
         residuals,
+    )
+
+
+def section_momenta(found: Distribution, lagrangian: Element) -> list[tuple[str, Element]]:
+    """``<dl/dxi, B sigma>`` of every declared section sigma, in all velocities."""
+    setting, names = found.setting, found.frame.velocities
+    momenta = setting.field.gradient(lagrangian, names)
+    return [
+        (
+            each.name,
+            setting.field.sum(
+                p * x for p, x in zip(momenta, section_vector(found, each), strict=True) if x != 0
+            ),
+        )
+        for each in setting.spec.sections
+    ]
+
+
+def section_vector(found: Distribution, section: Section) -> Row:
+    """``B sigma``: a section as a vector of the frame."""
+    setting = found.setting
+    parts = dict.fromkeys(found.independent, setting.field.zero)
+    for variable in setting.spec.variables:
+        if variable.name in section.section:
+            values = setting.components(section.section[variable.name])
+            parts |= dict(zip(variable.components, values, strict=True))
+    along = list(parts.values())
+    return tuple(
+        setting.field.sum(b * x for b, x in zip(row, along, strict=True)) for row in found.B
     )
 
 

@@ -84,7 +84,7 @@ class Distribution:
         return known
 
     @cached_property
-    def B(self) -> tuple[Row, ...]:  # noqa: N802 (the book's letter)
+    def B(self) -> tuple[Row, ...]:
         """``d xi_l / d eta_k``: a row for each velocity of the frame."""
         field = self.setting.field
         return tuple(field.gradient(value, self.independent) for value in self.xi)
@@ -103,10 +103,12 @@ class Distribution:
         return tuple(field.substitute(value, rest) for value in self.xi)
 
     @cached_property
-    def A(self) -> tuple[Row, ...]:  # noqa: N802 (the book's letter)
+    def A(self) -> tuple[Row, ...]:
         """``d residual / d xi``: a row for each constraint, in all velocities."""
         field = self.setting.field
-        return tuple(field.gradient(each.residual, self.frame.velocities) for each in self.equations)
+        return tuple(
+            field.gradient(each.residual, self.frame.velocities) for each in self.equations
+        )
 
     @cached_property
     def kept(self) -> tuple[tuple[Equation, Element], ...]:

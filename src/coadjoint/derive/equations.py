@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-
 from typing import TYPE_CHECKING
 
 import sympy

@@ -216,5 +216,6 @@ _TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "diag": _diag,
     "outer": lambda a, b: tuple(tuple(x * y for y in b) for x in a),
     "rows": lambda *rows: rows,
+    "vector": lambda *components: components,
     "commutator": lambda a, b: _subtract(_multiply(a, b), _multiply(b, a)),
 }

@@ -97,9 +97,7 @@ def external_forces(frame: Frame) -> Row:
             found |= dict(zip(variable.components, parts, strict=True))
     if spec.dissipation is not None:
         slopes = field.gradient(setting.formula(spec.dissipation), frame.velocities)
-        found = {
-            name: found[name] - s for name, s in zip(frame.velocities, slopes, strict=True)
-        }
+        found = {name: found[name] - s for name, s in zip(frame.velocities, slopes, strict=True)}
     return tuple(found[name] for name in frame.velocities)
 
 
@@ -182,9 +180,7 @@ def _steps(
             "Momenta",
             "p = dl/dxi",
             r"p = \partial l / \partial \xi",
-            tuple(
-                zip((partial("l", v) for v in motion.frame.velocities), momenta, strict=True)
-            ),
+            tuple(zip((partial("l", v) for v in motion.frame.velocities), momenta, strict=True)),
         ),
         Step(
             "Kinematics",
@@ -208,9 +204,7 @@ def _steps(
             "B^T M B eta' = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z')",
             r"B^T M B \dot\eta = B^T (\mathrm{ad}^*_\xi p + (\partial l/\partial a) \diamond a + f"
             r" - M c - \partial_z p \, \dot z)",
-            tuple(
-                (symbol(f"(B^T M B eta')_{n + 1}"), value) for n, value in enumerate(known)
-            ),
+            tuple((symbol(f"(B^T M B eta')_{n + 1}"), value) for n, value in enumerate(known)),
         ),
         Step(
             "Accelerations of the other velocities, and reactions",

@@ -7,7 +7,7 @@ from space where the state has the attitude.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from coadjoint.derive.interpret import Quantity
@@ -19,8 +19,16 @@ from coadjoint.spec import Formula
 from coadjoint.spec.model import component_names
 
 
-def observables(setting: Setting, energy: Element | None) -> tuple[tuple[str, Element], ...]:
-    """Name and value of each component, in the order in which kernels return them."""
+def observables(
+    setting: Setting, energy: Element | None, momenta: Sequence[tuple[str, Element]] = ()
+) -> tuple[tuple[str, Element], ...]:
+    """Name and value of each component, in the order in which kernels return them.
+
+    Args:
+        setting: The spec and its field.
+        energy: Of the route, or None.
+        momenta: Along sections of a constraint distribution.
+    """
     spec = setting.spec
     casimirs = [
         part
@@ -50,7 +58,17 @@ def observables(setting: Setting, energy: Element | None) -> tuple[tuple[str, El
     of_pair = setting.integrals.named if setting.integrals is not None else ()
     first = () if energy is None else (("energy", energy),)
     of_space = _spatial(setting) if spec.spatial else ()
-    return (*first, *casimirs, *velocities, *reactions, *declared, *maps, *of_pair, *of_space)
+    return (
+        *first,
+        *casimirs,
+        *velocities,
+        *reactions,
+        *momenta,
+        *declared,
+        *maps,
+        *of_pair,
+        *of_space,
+    )
 
 
 def _spatial(setting: Setting) -> list[tuple[str, Element]]:

@@ -133,6 +133,7 @@ class Setting:
         places = {
             place: name
             for variable in self.spec.having_role(role)
+            if not variable.of  # of coordinates beside the algebra
             for place, name in zip(variable.block, variable.components, strict=True)
         }
         return tuple(places[place] for place in sorted(places))

@@ -24,6 +24,7 @@ from coadjoint.exact import Element
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
+from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.duality import about_duality
 from coadjoint.prove.equivalence import LegendreMap, in_velocities
 from coadjoint.prove.galilean import about_galilean
@@ -92,6 +93,11 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
     """All claims in the order of the certificate."""
     first = routes[0]
     yield from _about_structure(first)
+    if first.distribution is not None:
+        yield from about_constraints(routes)
+        for claim in first.spec.conserved:
+            yield _statement(claim), "conserved", partial(_constrained_integral, first, claim)
+        return
     pulled = LegendreMap(first) if first.spec.lagrangian is not None else None
     if pulled is not None:
         yield from _about_legendre(routes, pulled)
@@ -246,12 +252,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     if tensor is not None:
         yield from _about_completeness(first)
     for claim in spec.conserved:
-        where = _vanishing(claim)
-        yield (
-            f"{claim.formula.in_one_line} is conserved" + (f" where {where}" if where else ""),
-            "conserved",
-            partial(_integral, first, claim),
-        )
+        yield _statement(claim), "conserved", partial(_integral, first, claim)
     yield from about_galilean(first)
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
@@ -299,6 +300,25 @@ def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision
     if ideal.contains(field.one):  # on an empty set anything is conserved
         return Decision(Verdict.REFUTED, f"{ideal.text} holds nowhere", {}, "1")
     return decide_zero([*kept, *rates], field, ideal)
+
+
+def _statement(claim: Integral) -> str:
+    where = _vanishing(claim)
+    return f"{claim.formula.in_one_line} is conserved" + (f" where {where}" if where else "")
+
+
+def _constrained_integral(first: Equations, claim: Integral) -> Decision:
+    """The rates of a claimed integral of a constrained motion, where its constraints hold."""
+    motion, names = ConstrainedRates(first), _emitted(first)
+    parts = first.setting.components(claim.formula, names)
+    level = [g for f in claim.where for g in first.setting.components(f, names)]
+    rates = [motion.rate(part) for part in (*level, *parts)]
+    functions = [*map(first.closed, level), *motion.where.relations]
+    text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
+    ideal = Ideal(motion.field, functions, text)
+    if claim.where and ideal.contains(motion.field.one):  # on an empty set anything is conserved
+        return Decision(Verdict.REFUTED, f"{ideal.text} holds nowhere", {}, "1")
+    return decide_zero(rates, motion.field, ideal)
 
 
 def _vanishing(claim: Integral) -> str:

@@ -139,6 +139,21 @@ class System:
         """Brackets ``{x_i, x_j}`` of the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
         return self.evaluate("poisson_tensor", state, parameters, target, out)
 
+    def constraint_residual(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """Left minus right sides of the constraints, ``(c, *batch)``; arguments as in `rhs`.
+
+        Rows follow the declared constraints. What a constraint gives a velocity is put in, so
+        that its rows are 0; those of other constraints stay at the level of rounding along a
+        trajectory that begins on them.
+        """
+        return self.evaluate("constraint_residual", state, parameters, target, out)
+
     def evaluate(
         self,
         function: str,

@@ -121,8 +121,9 @@ def _declared(
             continue
         if isinstance(entry, Constraint):
             yield ("constraints", entry.name), entry.reaction, entry.reactions, ()
-        rates = derived_names(entry.components) if isinstance(entry, Reconstructed) else ()
-        yield (_TABLES[type(entry)], entry.name), entry.name, entry.components, tuple(rates)
+        followed = entry.components if isinstance(entry, Reconstructed) else ()
+        rates = tuple(derived_names(followed))
+        yield (_TABLES[type(entry)], entry.name), entry.name, entry.components, rates
 
 
 def check_sizes(

@@ -51,10 +51,10 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
         sides = [_parsed(side) for side in text.split("==")]
         if len(sides) != _SIDES:
             continue
-        for own, other, sign in ((*sides, 1), (*reversed(sides), -1)):
-            if not isinstance(own, Name) or own.name not in velocities - set(found):
-                continue
-            if other is None:
+        left, right = sides
+        for own, other, sign in ((left, right, 1), (right, left, -1)):
+            free = isinstance(own, Name) and own.name in velocities - set(found)
+            if not isinstance(own, Name) or not free or other is None:
                 continue
             names = _names(other, file) & velocities
             names = names.union(*(reached[name] for name in names if name in reached))
@@ -82,14 +82,14 @@ def _names(node: Node, file: SpecFile) -> set[str]:
     pending, seen, found = [node], set[str](), set[str]()
     while pending:
         for part in walk(pending.pop()):
-            name = getattr(part, "name", None) or getattr(part, "function", "")
+            name = str(getattr(part, "name", "") or getattr(part, "function", ""))
             if name in defined and name not in seen:
                 seen.add(name)
                 inner = _parsed(defined[name])
                 pending += [] if inner is None else [inner]
             elif isinstance(part, Name | Index):
                 match = _COMPONENT.fullmatch(name)
-                found |= {name} | ({match["name"]} if match else set())
+                found |= {name, match["name"]} if match else {name}
     return found
 
 
@@ -151,9 +151,7 @@ class ConstraintReader:
         if self.file.dissipation is None:
             return None
         scope = make_scope("a dissipation", self.motion, self.quantities)
-        return read_formula(
-            self.source, ("dissipation", "R"), self.file.dissipation.R, scope
-        )
+        return read_formula(self.source, ("dissipation", "R"), self.file.dissipation.R, scope)
 
     def domain(self) -> tuple[Condition, ...]:
         """The declared inequalities.
@@ -261,9 +259,7 @@ class ConstraintReader:
             at = inner if inner in self.source.positions.values else key
             rate = read_formula(self.source, at, part.rate, scope)
         default = read_default(self.source, (*key, "default"), part.default, shape)
-        return Reconstructed(
-            name, rate, part.attitude or "", shape, default, part.unit, part.doc
-        )
+        return Reconstructed(name, rate, part.attitude or "", shape, default, part.unit, part.doc)
 
     @property
     def _fixed(self) -> tuple[str, ...]:

@@ -47,6 +47,7 @@ from coadjoint.spec.model import (
     Observable,
     Parameter,
     Section,
+    Shape,
     Spec,
     Symmetry,
     Variable,
@@ -180,8 +181,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         reconstruction=followed,
         sections=sections,
     )
-    named = [*emitted, *spec.spatial, *constraints, *followed]
-    check_names(source, variables, parameters, named, defined)
+    others = [*emitted, *spec.spatial, *constraints, *followed]
+    check_names(source, variables, parameters, others, defined)
     return spec if file.reduction is None else restricted(source, file.reduction, spec)
 
 
@@ -222,7 +223,7 @@ class _Formulas:
         # all momenta or, of coordinates without them, velocities; the reader refuses a mixture
         self.state = tuple(dict.fromkeys(variable.role for variable in state_of(variables)))
         self.motion = tuple(dict.fromkeys(("velocity", *self.state)))
-        self.fixed = ("advected",) if file.algebra is not None else ("coordinate",)
+        self.fixed: tuple[str, ...] = ("advected",) if file.algebra is not None else ("coordinate",)
         if file.constraints is not None:  # an algebra and coordinates may stand side by side
             present = [variable.role for variable in variables if variable.role != "velocity"]
             self.fixed = tuple(dict.fromkeys(present)) or self.fixed
@@ -250,7 +251,7 @@ class _Formulas:
         return read_newton(self.source, self.file.newton, variables, self.quantities)
 
     def observables(self, constraints: Sequence[Constraint]) -> tuple[Observable, ...]:
-        reactions = {name: () for each in constraints for name in each.reactions}
+        reactions: dict[str, Shape] = {n: () for each in constraints for n in each.reactions}
         reactions |= {each.reaction: each.shape for each in constraints}
         scope = make_scope("an observable", self.motion, self.quantities, reactions)
         found = []

@@ -83,6 +83,10 @@ def _rows(*rows: Shape) -> Shape | None:
     return (len(rows), *rows[0]) if len(rows[0]) == 1 and set(rows) == {rows[0]} else None
 
 
+def _vector(*components: Shape) -> Shape | None:
+    return None if any(components) else (len(components),)
+
+
 def _elementary(a: Shape) -> Shape | None:
     return () if a == () else None
 
@@ -127,6 +131,7 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
             1, _diag, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"
         ),
         "outer": Function(2, _outer, "two vectors", "matrix a_i b_j"),
+        "vector": Function(0, _vector, "scalars", "vector of these components"),
         "rows": Function(0, _rows, "vectors of one length", "matrix with these rows"),
         "norm": Function(1, _norm, "a vector", "sqrt(dot(a, a))"),
         "sqrt": Function(1, _elementary, "a scalar", "square root"),

@@ -194,13 +194,13 @@ def _function(node: Node, function: str, argument: Size) -> Size:
 
 def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) -> Size:
     """A function that is made of sums and products."""
-    a, n = below[0], shape[0][0]
+    a, n = below[0], (*shape[0], 1)[0]
     match function:
         case "dot":
             return _product(a, below[1], n)
         case "outer":
             return _product(a, below[1])
-        case "rows":
+        case "rows" | "vector":
             return _largest(below)
         case "cross":
             return _product(a, below[1], 2)

@@ -39,7 +39,7 @@ from coadjoint.spec.tree import Binary, Call, Index, Name, Negate, Node, Power, 
 #: Functions that are linear in each argument, so that degrees add up.
 _MULTILINEAR = ("dot", "cross", "outer", "commutator")
 #: Functions that are linear in all arguments together.
-_LINEAR = ("trace", "transpose", "hat", "diag", "rows")
+_LINEAR = ("trace", "transpose", "hat", "diag", "rows", "vector")
 
 
 def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[str, Shape]:

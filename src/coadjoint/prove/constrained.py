@@ -1,0 +1,215 @@
+r"""Constrained motions: what is claimed of constraints, of both roads and of the energy.
+
+Comes in: Equations with a distribution. Goes out: claims for the certificate. A rate is affine in
+the accelerations, which solve :math:`\mathcal{M} x = k`; its value is written with
+determinants,
+
+.. math:: c \cdot x + d = d - \det \begin{pmatrix} \mathcal{M} & k \\ c & 0 \end{pmatrix}
+    \Big/ \det \mathcal{M},
+
+so that it is a rational function with a decidable zero. Constraints that are kept are relations.
+Read next: `coadjoint.prove.claims`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.constrained import rate_name
+from coadjoint.derive.interpret import determinant
+from coadjoint.derive.nonholonomic import external_forces
+from coadjoint.derive.solver import Solve, solution_defects
+from coadjoint.exact import Element
+from coadjoint.poisson.ranks import generic_rank
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.zero import Decision, decide_zero
+
+#: (statement, kind, what must be zero or a decision already made)
+Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
+
+
+class ConstrainedRates:
+    """Rates of functions along a constrained motion, as functions of the state alone.
+
+    Args:
+        equations: By a route with constraints.
+    """
+
+    def __init__(self, equations: Equations) -> None:
+        assert equations.distribution is not None, equations.route
+        self.equations, self.distribution = equations, equations.distribution
+        self.field = equations.setting.field
+
+    @cached_property
+    def where(self) -> Ideal:
+        """The constraints that are kept, as relations of the state."""
+        kept = self.distribution.kept
+        text = ", ".join(f"{equation.name} = 0" for equation, _ in kept)
+        return Ideal(self.field, [residual for _, residual in kept], text)
+
+    @cached_property
+    def rates(self) -> dict[str, Element]:
+        """``dx/dt`` of the state, the accelerations by their names."""
+        names = self.equations.setting.state
+        return dict(zip(names, map(self.equations.closed, self.equations.exact.rates), strict=True))
+
+    def rate(self, function: Element) -> Element:
+        """The time derivative of a function of state and velocities."""
+        names, closed = self.equations.setting.state, self.equations.closed(function)
+        slopes = zip(self.field.gradient(closed, names), names, strict=True)
+        return self.value(self.field.sum(s * self.rates[name] for s, name in slopes if s != 0))
+
+    def value(self, element: Element) -> Element:
+        """An element affine in accelerations and multipliers, in the state alone."""
+        rest = self.equations.closed(element)
+        parts = []
+        for matrix, known, names in self._blocks:
+            slopes = self.field.gradient(rest, names)
+            if all(slope == 0 for slope in slopes):
+                continue
+            bordered = (
+                *((*row, k) for row, k in zip(matrix, known, strict=True)),
+                (*slopes, self.field.zero),
+            )
+            parts.append(-determinant(bordered) / determinant(matrix))
+        unknown = {name: self.field.zero for *_, names in self._blocks for name in names}
+        return self.field.sum([self.field.substitute(rest, unknown), *parts])
+
+    @cached_property
+    def _blocks(
+        self,
+    ) -> list[tuple[tuple[tuple[Element, ...], ...], list[Element], Sequence[str]]]:
+        """Matrix, right side and unknowns of every solve, in the state alone."""
+        closed = self.equations.closed
+        return [
+            (
+                tuple(tuple(map(closed, row)) for row in solve.matrix),
+                [closed(k) for k in solve.known],
+                solve.names,
+            )
+            for solve in self.equations.exact.solves
+        ]
+
+    def energy_balance(self) -> Element:
+        """``dE/dt`` minus the power of declared forces and of constraints that move."""
+        setting, found = self.equations.setting, self.distribution
+        field, energy = self.field, self.equations.exact.energy
+        assert energy is not None, "a Lagrangian has an energy"
+        xi = setting.elements(found.frame.velocities)
+        power = [f * x for f, x in zip(external_forces(found.frame), xi, strict=True)]
+        rest = dict.fromkeys(found.frame.velocities, field.zero)
+        work = [-field.substitute(e.residual, rest) * field[e.reaction] for e in found.equations]
+        closed, names = self.equations.closed(energy), setting.state
+        slopes = zip(field.gradient(closed, names), names, strict=True)
+        changed = field.sum(s * self.rates[name] for s, name in slopes if s != 0)
+        return self.value(changed - field.sum([*power, *work]))
+
+
+def about_constraints(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """The constraints, the solve in the kernel, the equality of routes and the energy."""
+    first = routes[0]
+    found = first.distribution
+    assert found is not None, first.route
+    motion = ConstrainedRates(first)
+    count = len(found.equations)
+    text = f"the {count} constraints are" if count > 1 else "the constraint is"
+    yield f"{text} independent: {_rank_text(first)}", "constraint", partial(_rank, first)
+    yield (
+        "the kernel solves for the accelerations: L D L^T = B^T M B",
+        "constraint",
+        lambda: _solved(first),
+    )
+    for other in routes[1:]:
+        yield (
+            f"{first.route} and {other.route} give the same motion",
+            "equivalence",
+            partial(_same_solves, first, other),
+        )
+    yield (
+        _balance_text(first),
+        "conserved",
+        lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
+    )
+    for equation, residual in found.kept:
+        yield (
+            f"the motion keeps {equation.name}",
+            "constraint",
+            partial(_kept, motion, residual),
+        )
+
+
+def _kept(motion: ConstrainedRates, residual: Element) -> list[Element]:
+    return [motion.rate(residual)]
+
+
+def _rank_text(first: Equations) -> str:
+    """Where the rank is certain."""
+    found = first.distribution
+    assert found is not None
+    if not found.kept:
+        return f"rank {len(found.equations)} everywhere, each gives a velocity"
+    return f"rank {len(found.equations)} at almost every point"
+
+
+def _rank(first: Equations) -> Decision:
+    """The rank of A, which the derivation has refused to be less."""
+    found = first.distribution
+    assert found is not None
+    rows = [{k: e for k, e in enumerate(row) if e != 0} for row in found.A]
+    assert generic_rank(first.setting.field, rows) == len(rows), "distribution refuses these"
+    if not found.kept:
+        return Decision(Verdict.PROVED, "a minor of A that is 1 or -1")
+    return Decision(Verdict.PROVED, "rank of A at a random point")
+
+
+def _solved(first: Equations) -> list[Element]:
+    """What vanishes if the definitions solve the linear equations."""
+    definitions = dict(first.exact.definitions)
+    return [
+        defect
+        for solve in first.exact.solves
+        for defect in solution_defects(first.setting.field, solve, definitions)
+    ]
+
+
+def _same_solves(first: Equations, other: Equations) -> list[Element]:
+    """Differences of the linear equations of two routes, and of the rates they do not solve for."""
+    defects: list[Element] = []
+    pairs = zip(first.exact.solves, other.exact.solves, strict=True)
+    for one, two in pairs:
+        defects += _differences(first, other, one, two)
+    rates = zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True)
+    return [
+        *defects,
+        *(
+            first.closed(a) - other.closed(b)
+            for name, a, b in rates
+            if first.setting.field[rate_name(name)] != a
+        ),
+    ]
+
+
+def _differences(first: Equations, other: Equations, one: Solve, two: Solve) -> list[Element]:
+    assert list(one.names) == list(two.names), "both routes solve for the same accelerations"
+    entries = [
+        first.closed(a) - other.closed(b)
+        for rows in zip(one.matrix, two.matrix, strict=True)
+        for a, b in zip(*rows, strict=True)
+    ]
+    sides = zip(one.known, two.known, strict=True)
+    return [*entries, *(first.closed(a) - other.closed(b) for a, b in sides)]
+
+
+def _balance_text(first: Equations) -> str:
+    """The law of the energy."""
+    spec, found = first.spec, first.distribution
+    assert found is not None
+    driven = bool(spec.forces or spec.dissipation)
+    if not driven and found.is_linear:
+        return "the energy is conserved"
+    gains = ["the power of the forces"] * driven
+    gains += ["the work of the moving constraints"] * (not found.is_linear)
+    return f"the energy changes by {' and '.join(gains)}"
