@@ -1,11 +1,10 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
 Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``energy``, ``observables``, ``poisson_tensor`` and ``constraint_residual``. An element becomes
-a sum of products in the order of the field; what depends on parameters alone is gathered into the
+them, ``energy``, ``observables``, ``poisson_tensor`` and ``constraint_residual``. An element is a
+sum of products in the order of the field; what depends on parameters alone is gathered into the
 coefficients, equal coefficients are factored out, and pairs of factors that recur are shared.
-Definitions keep their
-names: a kernel reads like the book.
+Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
 
