@@ -27,7 +27,6 @@ class Constraint:
         right: The other side, of the same shape.
         solves: The velocity that it gives, if one side is that velocity alone; else "".
         sign: 1 if that velocity is the left side, -1 if it is the right one.
-        unit: Unit of the multiplier.
     """
 
     name: str
@@ -35,7 +34,6 @@ class Constraint:
     right: Formula
     solves: str = ""
     sign: int = 1
-    unit: str = ""
 
     @property
     def shape(self) -> Shape:

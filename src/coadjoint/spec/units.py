@@ -108,7 +108,7 @@ def _of_call(function: str, arguments: list[Unit | None]) -> Unit | None:
         return first
     if function in _PRODUCT:
         return _combined("*", first, arguments[1])
-    if function == "rows":
+    if function in ("rows", "vector"):
         return first if all(argument == first for argument in arguments) else None
     if function == "inverse":
         return _raised(first, Fraction(-1))
