@@ -34,7 +34,7 @@ from coadjoint.prove import Certificate, prove
 from coadjoint.render.kernels import KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Parameter, Spec, Variable
-from coadjoint.spec.model import Shape, component_names
+from coadjoint.spec.model import Constraint, Shape, component_names
 from coadjoint.spec.units import Unit, parse_unit, product_of, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
@@ -188,7 +188,8 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     ]
     velocities = map(_quantity, spec.defined)
     reactions = [
-        _emitted(each.reaction, each.unit, each.shape, conserved=False) for each in spec.constraints
+        _emitted(each.reaction, _unit_of_reaction(spec, each), each.shape, conserved=False)
+        for each in spec.constraints
     ]
     momenta = [_emitted(each.name, each.unit, conserved=False) for each in spec.sections]
     return (
@@ -212,6 +213,18 @@ def _unit(spec: Spec, formula: Formula | None) -> str:
     """The unit of a formula, as far as the declared units tell."""
     assert formula is not None, "the reader asks for a Lagrangian or a Hamiltonian"
     return unit_text(unit_of(formula.tree, _units(spec)))
+
+
+def _unit_of_reaction(spec: Spec, constraint: Constraint) -> str:
+    """The unit of a multiplier: with the residual of its constraint it makes a power."""
+    units, energy = _units(spec), spec.lagrangian
+    assert energy is not None, "the reader asks for a Lagrangian beside constraints"
+    known = {
+        "energy": unit_of(energy.tree, units),
+        "time": parse_unit("s"),
+        "residual": unit_of(constraint.left.tree, units) or unit_of(constraint.right.tree, units),
+    }
+    return unit_text(product_of(known, [("energy", 1), ("time", -1), ("residual", -1)]))
 
 
 def _unit_of_value(equations: Equations, element: Element) -> str:
