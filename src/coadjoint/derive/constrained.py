@@ -11,12 +11,12 @@ Read next: `coadjoint.derive.nonholonomic`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.configuration import fault
-from coadjoint.derive.distribution import Distribution, Row, distribution
+from coadjoint.derive.distribution import Distribution, Equation, Row, distribution
 from coadjoint.derive.equations import Exact
 from coadjoint.derive.frames import Frame
 from coadjoint.derive.legendre import coupled_blocks
@@ -283,8 +283,7 @@ class ConstrainedMotion:
             mass: ``d2l/dxi2`` in the frame.
             forces: ``F - M c - dp/dz dz/dt`` in the frame, as a route names them.
         """
-        setting, found = self.frame.setting, self.distribution
-        field = setting.field
+        field, found = self.frame.setting.field, self.distribution
         turned = [
             field.sum(b * x for b, x in zip(row, self.accelerations, strict=True)) for row in self.B
         ]
@@ -293,30 +292,31 @@ class ConstrainedMotion:
             equation.reaction: -field[multiplier_name(n)]
             for n, (equation, _) in enumerate(found.kept)
         }
-        # (p' - F)_n = sum over the constraints of A_jn lambda_j, solved from those that no other
-        # velocity's constraint names
-        given = {e.solves: (e, row) for e, row in zip(found.equations, found.A, strict=True)}
-        rows = {e.reaction: row for e, row in zip(found.equations, found.A, strict=True)}
-        waiting = list(self.solved)
-        order: list[str] = []
+        rows = dict(zip((each.reaction for each in found.equations), found.A, strict=True))
+        for place, equation in self._unravelled():
+            inertia = field.sum(m * t for m, t in zip(mass[place], turned, strict=True))
+            others = field.sum(
+                rows[name][place] * field[name] for name in values if rows[name][place] != 0
+            )
+            own = rows[equation.reaction][place]
+            values[equation.reaction] = (inertia - forces[place] - others) / own
+        return [*rates, *values.items()]
+
+    def _unravelled(self) -> Iterator[tuple[int, Equation]]:
+        """Given velocities with their constraints, those first that no other constraint names.
+
+        Along such a velocity ``p' - F = A^T lambda`` has but one multiplier that is not known yet.
+        """
+        found, waiting = self.distribution, list(self.solved)
+        giving = {
+            self.frame.velocities.index(each.solves): (each, row)
+            for each, row in zip(found.equations, found.A, strict=True)
+            if each.solves
+        }
         while waiting:
-            free = [
-                n
-                for n in waiting
-                if all(given[self.frame.velocities[o]][1][n] == 0 for o in waiting if o != n)
-            ]
-            assert free, "no constraint gives a velocity in terms of itself"
-            for n in free:
-                equation, own = given[self.frame.velocities[n]]
-                inertia = field.sum(m * t for m, t in zip(mass[n], turned, strict=True))
-                others = field.sum(
-                    rows[name][n] * field[name] for name in values if rows[name][n] != 0
-                )
-                values[equation.reaction] = (inertia - forces[n] - others) / own[n]
-                order.append(equation.reaction)
-                waiting.remove(n)
-        kept = [equation.reaction for equation, _ in found.kept]
-        return [*rates, *((name, values[name]) for name in (*kept, *order))]
+            place = next(n for n in waiting if all(giving[o][1][n] == 0 for o in waiting if o != n))
+            waiting.remove(place)
+            yield place, giving[place][0]
 
 
 def emission(
