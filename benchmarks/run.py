@@ -16,6 +16,7 @@ BENCHMARKS = (
     "start",
     "derivation",
     "algebra",
+    "rolling",
     "emission",
     "c_kernels",
     "numpy_kernels",
