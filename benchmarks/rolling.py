@@ -91,7 +91,8 @@ print(sum(sp.count_ops(value) for _, value in names) + sum(map(sp.count_ops, val
 from coadjoint.systems import chaplygin_ball
 at = dict(zip((*I, *chi, *w, *n, m, g, r), (1, 2, 2.5, 0.1, -0.3, 0.2, 0.7, -0.2, 1.1, 0, 0.6, 0.8,
     1.3, 9.81, 0.8)))
-ours = chaplygin_ball.rhs([0.7, -0.2, 1.1, 0, 0.6, 0.8], [1, 2, 2.5, 1.3, 0.8, 9.81, 0.1, -0.3, 0.2])
+state, parameters = [0.7, -0.2, 1.1, 0, 0.6, 0.8], [1, 2, 2.5, 1.3, 0.8, 9.81, 0.1, -0.3, 0.2]
+ours = chaplygin_ball.rhs(state, parameters)
 assert all(abs(float(a.subs(at)) - b) < 1e-11 for a, b in zip(rates, ours)), (rates.subs(at), ours)
 """
 
