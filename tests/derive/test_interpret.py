@@ -38,6 +38,7 @@ def value(text, definitions=()):
         ("outer(a, b)*b/dot(b, b) - a", (FIELD.zero, FIELD.zero)),
         ("rows(a, 2*a)", ((x["a1"], x["a2"]), (2 * x["a1"], 2 * x["a2"]))),
         ("rows(b)", ((x["b1"], x["b2"], x["b3"]),)),
+        ("vector(a1, 2*b2)", (x["a1"], 2 * x["b2"])),
         ("A[2]", (x["A21"], x["A22"])),
         ("rows(A[2], A[1])*a", (x["A21"] * x["a1"] + x["A22"] * x["a2"],
                                 x["A11"] * x["a1"] + x["A12"] * x["a2"])),

@@ -48,8 +48,12 @@ def test_lowering_is_undone_exactly(system):
     """Every Program run on the symbols gives the equations back."""
     equations = derive(shipped(system))
     programs = lower(equations)
-    without = {"energy": equations.energy is None, "poisson_tensor": not equations.poisson_tensor}
-    named = ("rhs", "jacobian", "energy", "observables", "poisson_tensor")
+    without = {
+        "energy": equations.energy is None,
+        "poisson_tensor": not equations.poisson_tensor,
+        "constraint_residual": equations.distribution is None,
+    }
+    named = ("rhs", "jacobian", "energy", "observables", "poisson_tensor", "constraint_residual")
     assert list(programs) == [name for name in named if not without.get(name)]
     for program in programs.values():
         check_inverse(equations, program)

@@ -52,6 +52,8 @@ SCOPE = {
         ("outer(u, q)", (3, 4)),
         ("rows(u, w)", (2, 3)),
         ("rows(q)", (1, 4)),
+        ("vector(s, s*s, u[1])", (3,)),
+        ("cross(u, vector(s, 0, s))", (3,)),
         ("C[2]", (3,)),
         ("rows(A[1], cross(A[2], A[3]), u)*w", (3,)),
         ("sqrt(s) + sin(s)*cos(s)/tan(s) - exp(s)*log(s)", ()),
@@ -64,7 +66,7 @@ def test_shape_of_what_fits(text, shape):
 
 def test_every_function_is_tried_above():
     """No function of the table is missing from the test above."""
-    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(32))
+    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(34))
     assert all(f"{name}(" in texts for name in FUNCTIONS)
 
 
@@ -108,6 +110,7 @@ def test_every_function_is_tried_above():
         ("rows(u, q)", "rows(u, q)", ["a 3-vector and a 4-vector", "of one length"]),
         ("rows(s, s)", "rows(s, s)", ["a scalar and a scalar", "vectors"]),
         ("rows(A)", "rows(A)", ["a 3 by 3 matrix", "vectors"]),
+        ("vector(u, s)", "vector(u, s)", ["a 3-vector and a scalar", "scalars"]),
         ("s[1]", "s[1]", ["s is a scalar", "without a subscript"]),
         ("C[3, 1]", "C[3, 1]", ["1 to 2"]),
         ("1 + sin(Omgea)*u", "Omgea", ["'Omgea'"]),

@@ -31,14 +31,17 @@ from coadjoint.spec.routes import STARTS, energies_of, kinds_of
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
 
-#: How a missing energy is written.
+#: How a missing table is written.
 _HOW = {
     "hamiltonian": 'Write [hamiltonian] and below it h = "dot(Pi, inverse(diag(I))*Pi)/2".',
     "lagrangian": 'Write [lagrangian] and below it l = "dot(Omega, diag(I)*Omega)/2".',
+    "constraints": 'Write [constraints] and below it rolling = "Y == cross(Omega, s)".',
 }
+_ENERGIES = ("hamiltonian", "lagrangian")
 #: Tables that are there for routes alone.
 _ROUTED = (
-    *("hamiltonian", "lagrangian", "lax", "newton", "clebsch"),
+    *_ENERGIES,
+    *("lax", "newton", "clebsch"),
     *("constraints", "forces", "dissipation"),
 )
 #: What a kind of spec has, in words.
@@ -96,12 +99,17 @@ def check_names(
         for derived in dict.fromkeys((name, *components, *rates)):
             if derived in owners:
                 problem = f"{derived!r} is doubled: {owners[derived]} has that name too"
-                hint = "The components of I with shape [3] are I1, I2, I3."
-                raise _at_key(
-                    source, key, problem, derived, "names and components that differ", hint
-                )
+                expected, hint = "names and components that differ", _why_doubled(key, derived)
+                raise _at_key(source, key, problem, derived, expected, hint)
         for derived in (name, *components, *rates):
             owners[derived] = f"{key[0]}.{name}"
+
+
+def _why_doubled(key: KeyPath, derived: str) -> str:
+    """Where a name that nobody declared comes from."""
+    if key[0] == "constraints" and derived != key[1]:
+        return f"The multiplier of the constraint {key[1]} is {derived}: rename one of them."
+    return "The components of I with shape [3] are I1, I2, I3."
 
 
 def _declared(
@@ -119,11 +127,11 @@ def _declared(
         if isinstance(entry, SpatialMomentum):
             yield ("variables", entry.momentum.name), entry.name, entry.components, ()
             continue
-        if isinstance(entry, Constraint):
-            yield ("constraints", entry.name), entry.reaction, entry.reactions, ()
         followed = entry.components if isinstance(entry, Reconstructed) else ()
         rates = tuple(derived_names(followed))
         yield (_TABLES[type(entry)], entry.name), entry.name, entry.components, rates
+        if isinstance(entry, Constraint):
+            yield ("constraints", entry.name), entry.reaction, entry.reactions, ()
 
 
 def check_sizes(
@@ -249,6 +257,15 @@ def check_routes(source: Source, file: SpecFile) -> None:
             if len(names) > 1:
                 lacks = "neither " + " nor ".join(f"a {name}" for name in names)
             raise _missing(source, f"the route {route} has {lacks}", energies[0])
+        if file.constraints is not None and start.table != "constraints":
+            others = [name for name, other in STARTS.items() if other.table == "constraints"]
+            raise source.fault(
+                ("routes", place),
+                f"the route {route} knows no constraints",
+                found=route,
+                expected=f"one of {listed(others)} beside [constraints]",
+                hint=f'Write "{others[0]}" in its place, or remove [constraints].',
+            )
     _check_use(source, file)
 
 
@@ -269,7 +286,7 @@ def _check_use(source: Source, file: SpecFile) -> None:
             raise source.fault(
                 (table,),
                 f"no route uses the {table.title()}"
-                if table in _HOW
+                if table in _ENERGIES
                 else f"no route uses the table [{table}]",
                 found=table,
                 expected=f"one of the routes {listed(readers)} beside it"
