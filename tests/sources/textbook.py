@@ -8,9 +8,11 @@ commutators of the shipped systems are written out there and nowhere else. Where
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
+from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
     heavy_top_rates,
@@ -142,7 +144,9 @@ SPD = {"spd_motion": 2, "spd_motion_3": 3}
 #: Systems with roots, sines and cosines of the state, which are typed to 80 digits.
 CONFIGURATIONS = ("kepler", "monopole_kepler", "n_particles", "rocking_disk")
 #: Systems whose rates are quotients, which no central difference meets exactly.
-QUOTIENTS = ("ellipsoidal_motion", "coupled_bodies", "pt_rigid_body", *CONFIGURATIONS)
+QUOTIENTS = ("ellipsoidal_motion", "coupled_bodies", "pt_rigid_body", *BALLS, *CONFIGURATIONS)
+#: Constrained motions: their bracket moves momenta, and Jacobi's identity fails.
+CONSTRAINED = (*BALLS,)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
@@ -183,6 +187,7 @@ RATES = {
     **dict.fromkeys((*BODIES, *LAX_BODIES), so_n_rates),
     **dict.fromkeys(QUADRATIC_BODIES, quadratic_rates),
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
+    **{name: partial(ball_rates, name) for name in BALLS},
 }
 OBSERVABLES = {
     "rigid_body": rigid_body_observables,
@@ -218,6 +223,7 @@ OBSERVABLES = {
     **dict.fromkeys(LAX_BODIES, manakov_observables),
     **dict.fromkeys(QUADRATIC_BODIES, quadratic_observables),
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
+    **{name: partial(ball_observables, name) for name in BALLS},
 }
 #: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
 TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
@@ -287,6 +293,7 @@ STATES = {
     **{name: upper("M", n) for name, n in (BODIES | LAX_BODIES).items()},
     **{name: (*upper("M", n), *kept("S", n)) for name, n in QUADRATIC_BODIES.items()},
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
+    **dict.fromkeys(BALLS, (*numbered("Omega", 3), *numbered("Gamma", 3))),
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
 PARAMETERS = {
@@ -323,4 +330,7 @@ PARAMETERS = {
     **dict.fromkeys(SPD, ()),
     **{name: numbered("a", n) for name, n in (BODIES | LAX_BODIES | QUADRATIC_BODIES).items()},
     **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
+    "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
+    "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
+    "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),
 }
