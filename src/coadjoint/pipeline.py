@@ -25,13 +25,14 @@ from typing import Any
 from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
+from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
 from coadjoint.exact import Element
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, prove
-from coadjoint.render.kernels import KernelContext, Quantity, render_system
+from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Parameter, Spec, Variable
 from coadjoint.spec.model import Constraint, Shape, component_names
@@ -120,6 +121,9 @@ def kernel_context(equations: Equations, programs: dict[str, Program]) -> Kernel
         parameters=tuple(map(_quantity, spec.parameters)),
         observables=_observables(equations),
         programs=tuple(programs.values()),
+        domain=tuple(
+            Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
+        ),
     )
 
 
@@ -191,7 +195,13 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
         _emitted(each.reaction, _unit_of_reaction(spec, each), each.shape, conserved=False)
         for each in spec.constraints
     ]
-    momenta = [_emitted(each.name, each.unit, conserved=False) for each in spec.sections]
+    momenta = [
+        Quantity(each.name, each.velocity.shape, _unit_along(spec, each.velocity), each.components)
+        for each in spec.reduced_momenta
+    ]
+    momenta += [
+        _emitted(each.name, each.unit, conserved=each.name in stated) for each in spec.sections
+    ]
     return (
         *energy,
         *casimirs,
@@ -225,6 +235,13 @@ def _unit_of_reaction(spec: Spec, constraint: Constraint) -> str:
         "residual": unit_of(constraint.left.tree, units) or unit_of(constraint.right.tree, units),
     }
     return unit_text(product_of(known, [("energy", 1), ("time", -1), ("residual", -1)]))
+
+
+def _unit_along(spec: Spec, velocity: Variable) -> str:
+    """The unit of a momentum: that of the Lagrangian over that of its velocity."""
+    assert spec.lagrangian is not None, "the reader asks for a Lagrangian"
+    units = {"l": unit_of(spec.lagrangian.tree, _units(spec)), "v": parse_unit(velocity.unit)}
+    return unit_text(product_of(units, [("l", 1), ("v", -1)]))
 
 
 def _unit_of_value(equations: Equations, element: Element) -> str:
@@ -263,4 +280,6 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
     }
     if spec.definitions:  # the texts of casimirs and claims may hold them
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
+    if spec.domain:  # generated code names conditions; their text stands here
+        record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

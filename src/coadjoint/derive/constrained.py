@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.configuration import fault
 from coadjoint.derive.distribution import Distribution, Equation, Row, distribution
 from coadjoint.derive.equations import Exact
@@ -350,12 +351,16 @@ def emission(
     momenta = field.gradient(lagrangian, frame.velocities)
     energy = field.sum(p * x for p, x in zip(momenta, xi, strict=True)) - lagrangian
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
+    along = [
+        *reduced_momenta(motion.distribution, lagrangian),
+        *section_momenta(motion.distribution, lagrangian),
+    ]
     return Exact(
         (*definitions, *solved, *reactions),
         rates,
         energy,
-        observables(setting, energy, section_momenta(motion.distribution, lagrangian)),
-        None,
+        observables(setting, energy, along),
+        almost_poisson(motion.distribution, lagrangian),
         solves,
         residuals,
     )

@@ -27,7 +27,7 @@ def observables(
     Args:
         setting: The spec and its field.
         energy: Of the route, or None.
-        momenta: Along sections of a constraint distribution.
+        momenta: Along a constraint distribution, of velocities and then of sections.
     """
     spec = setting.spec
     casimirs = [

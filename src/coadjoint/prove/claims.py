@@ -37,6 +37,7 @@ from coadjoint.prove.identities import (
 )
 from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.reductions import about_reduction
+from coadjoint.prove.rolling import about_rolling
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
@@ -92,12 +93,14 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
 def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
     """All claims in the order of the certificate."""
     first = routes[0]
-    yield from _about_structure(first)
+    yield from _about_algebra(first)
     if first.distribution is not None:
         yield from about_constraints(routes)
+        yield from about_rolling(first)
         for claim in first.spec.conserved:
             yield _statement(claim), "conserved", partial(_constrained_integral, first, claim)
         return
+    yield from _about_bracket(first)
     pulled = LegendreMap(first) if first.spec.lagrangian is not None else None
     if pulled is not None:
         yield from _about_legendre(routes, pulled)
@@ -108,16 +111,20 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from about_pairs(routes)
 
 
-def _about_structure(first: Equations) -> Iterator[Examined]:
-    """The algebra and the bracket."""
-    setting, tensor = first.setting, first.exact.poisson_tensor
-    if setting.spec.algebra is not None:
-        algebra = momentum_algebra(setting)
+def _about_algebra(first: Equations) -> Iterator[Examined]:
+    """The algebra."""
+    if first.spec.algebra is not None:
+        algebra = momentum_algebra(first.setting)
         yield (
             f"{algebra.name} satisfies the Jacobi identity",
             "algebra",
             lambda: _constants(algebra),
         )
+
+
+def _about_bracket(first: Equations) -> Iterator[Examined]:
+    """The bracket."""
+    tensor = first.exact.poisson_tensor
     if tensor is None:
         return
     yield (

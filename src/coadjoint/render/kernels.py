@@ -33,7 +33,9 @@ SUMMARIES: Final = {
     "energy": "Energy",
     "observables": "Observables, one row for each component",
     "poisson_tensor": "Poisson tensor, brackets of the components of the state",
+    "almost_poisson_tensor": "Almost-Poisson tensor, velocities standing for their momenta",
     "constraint_residual": "Left minus right sides of the constraints",
+    "domain": "What is positive where the system is defined, one row for each entry of DOMAIN",
 }
 
 NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."
@@ -76,6 +78,28 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Bound:
+    """A row of the function ``domain``, as the generated package declares it.
+
+    Attributes:
+        name: Of a condition, of an acceleration or of a reaction.
+        kind: ``condition``, ``acceleration`` or ``reaction``.
+        strict: Whether it may not be zero.
+        inputs: Components of state and parameters that it depends on.
+    """
+
+    name: str
+    kind: str
+    strict: bool
+    inputs: tuple[str, ...]
+
+    def arguments(self) -> list[str]:
+        """The arguments of its declaration, as text."""
+        inputs = f"inputs={tuple_text(map(quoted, self.inputs))}"
+        return [quoted(self.name), quoted(self.kind), f"strict={self.strict}", inputs]
+
+
+@dataclass(frozen=True)
 class KernelContext:
     """All that the generated files of one system say.
 
@@ -90,6 +114,7 @@ class KernelContext:
         parameters: Quantities of the parameters, in order.
         observables: Quantities that the function ``observables`` returns, in order.
         programs: The functions, in order.
+        domain: What the rows of the function ``domain`` are; empty where there is none.
     """
 
     name: str
@@ -102,6 +127,7 @@ class KernelContext:
     parameters: tuple[Quantity, ...]
     observables: tuple[Quantity, ...]
     programs: tuple[Program, ...]
+    domain: tuple[Bound, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -195,24 +221,28 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "equations": _wrapped(context.equations),
             "state": _rows(context.state),
             "parameters": _rows(context.parameters),
-            "functions": [_function(program) for program in context.programs],
+            "functions": [
+                _function(program, _summary(context, program)) for program in context.programs
+            ],
             "elementary": tuple_text(map(quoted, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
-            "system": _system(context.name, identity),
+            "system": _system(context, identity),
             "declared": {
                 "STATE": [quantity.arguments() for quantity in context.state],
                 "PARAMETERS": [quantity.arguments() for quantity in context.parameters],
                 "OBSERVABLES": [quantity.arguments() for quantity in context.observables],
             },
+            "domain": [bound.arguments() for bound in context.domain],
         },
     )
     return {file: rendered[template] for file, template in TEMPLATES.items()}
 
 
-def _system(name: str, identity: str) -> list[str]:
+def _system(context: KernelContext, identity: str) -> list[str]:
     """The arguments of the System that a generated package makes."""
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
-    return [quoted(name), *tables, quoted(identity)]
+    domain = ["DOMAIN"] * bool(context.domain)
+    return [quoted(context.name), *tables, quoted(identity), *domain]
 
 
 def _licence(expression: str) -> str:
@@ -241,12 +271,12 @@ def _rows(quantities: Iterable[Quantity]) -> list[Row]:
     return [Row(index, name, unit) for index, (name, unit) in enumerate(named)]
 
 
-def _function(program: Program) -> Function:
+def _function(program: Program, summary: str) -> Function:
     """A Program as the templates read it."""
     used, rows = program.used(), list(enumerate(program.outputs))
     return Function(
         name=program.name,
-        summary=_summary(program),
+        summary=summary,
         costs=_costs(program),
         shape=tuple_text(map(str, program.shape)),
         state=_read(program.state, used),
@@ -272,10 +302,12 @@ def _read(names: Sequence[str], used: frozenset[str]) -> tuple[Row, ...]:
     return tuple(Row(index, name, "") for index, name in enumerate(names) if name in used)
 
 
-def _summary(program: Program) -> str:
+def _summary(context: KernelContext, program: Program) -> str:
     """One sentence on a function."""
     shape = ", ".join([*map(str, program.shape), "..."])
-    return f"{SUMMARIES[program.name]}, shape ({shape})."
+    constrained = any(other.name == "constraint_residual" for other in context.programs)
+    almost = "almost_" if constrained and program.name == "poisson_tensor" else ""
+    return f"{SUMMARIES[almost + program.name]}, shape ({shape})."
 
 
 def _costs(program: Program) -> list[str]:

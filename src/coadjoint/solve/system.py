@@ -20,7 +20,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 from coadjoint.errors import OutputError
-from coadjoint.solve.quantities import Quantities, Quantity
+from coadjoint.solve.quantities import Bound, Quantities, Quantity
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[Any]
 
-__all__ = ["Quantities", "Quantity", "System", "load_folder"]
+__all__ = ["Bound", "Quantities", "Quantity", "System", "load_folder"]
 
 Target = Literal["c", "numpy", "c-fast"]
 
@@ -50,6 +50,7 @@ class System:
         functions: Shape of the result of each function for one member.
         elementary: Functions beyond ``+ - * / sqrt`` that the kernels call.
         id: The id that all files of the folder carry.
+        DOMAIN: What the rows of `domain` are; empty where the system is defined everywhere.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class System:
         functions: Mapping[str, tuple[int, ...]],
         elementary: Sequence[str],
         identity: str,
+        domain: Sequence[Bound] = (),
     ) -> None:
         self.name = name
         self.folder = Path(file).parent
@@ -71,6 +73,7 @@ class System:
         self.functions = MappingProxyType(dict(functions))
         self.elementary = tuple(elementary)
         self.id = identity
+        self.DOMAIN = tuple(domain)
 
     # -- functions --------------------------------------------------------------------------------
 
@@ -136,7 +139,13 @@ class System:
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
-        """Brackets ``{x_i, x_j}`` of the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
+        """Brackets ``{x_i, x_j}`` of the state, shape ``(n, n, *batch)``; arguments as in `rhs`.
+
+        Of a constrained motion the velocities stand for their momenta, ``Omega_momentum``: with
+        those and the positions as coordinates, the motion is this matrix times the gradient of the
+        energy, which is the velocities and minus the slopes of the constrained Lagrangian. It is
+        antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.
+        """
         return self.evaluate("poisson_tensor", state, parameters, target, out)
 
     def constraint_residual(
@@ -153,6 +162,22 @@ class System:
         trajectory that begins on them.
         """
         return self.evaluate("constraint_residual", state, parameters, target, out)
+
+    def domain(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """What is positive where the system is defined, ``(d, *batch)``; arguments as in `rhs`.
+
+        Rows are those of ``DOMAIN``: of a declared condition the side that is to be larger minus
+        the other; of a constrained motion also the pivots of the solve for its accelerations. A row
+        that is not ``strict`` may be zero. Where one is violated, the other functions give what
+        arithmetic gives, infinities and NaN among it; `simulate` stops there.
+        """
+        return self.evaluate("domain", state, parameters, target, out)
 
     def evaluate(
         self,

@@ -19,6 +19,7 @@ from coadjoint.spec.model import (
     Observable,
     Parameter,
     Reconstructed,
+    ReducedMomentum,
     Section,
     SpatialMomentum,
     Symmetry,
@@ -53,7 +54,9 @@ _KINDS = {
     "configuration": "coordinates with velocities or momenta",
 }
 #: What is emitted beside the state, or may be named there.
-Emitted = Observable | Symmetry | SpatialMomentum | Section | Constraint | Reconstructed
+Emitted = (
+    Observable | Symmetry | SpatialMomentum | ReducedMomentum | Section | Constraint | Reconstructed
+)
 _TABLES = {
     Observable: "observables",
     Symmetry: "symmetries",
@@ -124,12 +127,17 @@ def _declared(
     for parameter in parameters:
         yield ("parameters", parameter.name), parameter.name, parameter.components, ()
     for entry in observables:
+        if isinstance(entry, ReducedMomentum):
+            yield ("variables", entry.velocity.name), entry.name, entry.components, ()
+            continue
         if isinstance(entry, SpatialMomentum):
             yield ("variables", entry.momentum.name), entry.name, entry.components, ()
             continue
         followed = entry.components if isinstance(entry, Reconstructed) else ()
         rates = tuple(derived_names(followed))
-        yield (_TABLES[type(entry)], entry.name), entry.name, entry.components, rates
+        of_rolling = isinstance(entry, Reconstructed) and entry.of_rolling
+        key: KeyPath = ("rolling",) if of_rolling else (_TABLES[type(entry)], entry.name)
+        yield key, entry.name, entry.components, rates
         if isinstance(entry, Constraint):
             yield ("constraints", entry.name), entry.reaction, entry.reactions, ()
 
@@ -266,7 +274,29 @@ def check_routes(source: Source, file: SpecFile) -> None:
                 expected=f"one of {listed(others)} beside [constraints]",
                 hint=f'Write "{others[0]}" in its place, or remove [constraints].',
             )
+    _check_first(source, file)
     _check_use(source, file)
+
+
+def _check_first(source: Source, file: SpecFile) -> None:
+    """The first route gives the rates of the declared state, and all that is emitted."""
+    first = file.routes[0]
+    if not STARTS[first].emitted:
+        kinds, beside = set(kinds_of(file)), STARTS[first].table
+        others = [
+            name
+            for name, start in STARTS.items()
+            if start.emitted and set(start.kinds) & kinds and start.table in ("", beside)
+        ]
+        if beside:
+            others = [name for name in others if STARTS[name].table == beside]
+        raise source.fault(
+            ("routes", 0),
+            f"the route {first} cannot be the first: it is there to be proved equal to another",
+            found=first,
+            expected=f"one of {listed(others)} before it",
+            hint=f'Write "{others[0]}" before it.',
+        )
 
 
 def _check_use(source: Source, file: SpecFile) -> None:

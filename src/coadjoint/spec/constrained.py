@@ -15,6 +15,7 @@ from coadjoint.spec.components import Shape, component_names
 
 if TYPE_CHECKING:
     from coadjoint.spec.model import Formula
+    from coadjoint.spec.quantities import Variable
 
 
 @dataclass(frozen=True)
@@ -106,12 +107,13 @@ class Reconstructed:
 
     Attributes:
         name: As declared.
-        rate: Its time derivative; None for an attitude.
+        rate: Its time derivative; None for an attitude and for a point of contact.
         attitude: ``"quaternion"`` if it is the attitude that the angular velocity turns; else "".
         shape: Shape of its value.
         default: Where it begins, one exact value per component.
         unit: Unit text.
         doc: Free text for documents.
+        of_rolling: Whether it is followed for a body that rolls, and not declared.
     """
 
     name: str
@@ -121,11 +123,33 @@ class Reconstructed:
     default: tuple[Fraction, ...] | None = None
     unit: str = "1"
     doc: str = ""
+    of_rolling: bool = False
 
     @property
     def components(self) -> tuple[str, ...]:
         """Names of the components, in order."""
         return component_names(self.name, self.shape, self.attitude)
+
+
+@dataclass(frozen=True)
+class ReducedMomentum:
+    """The momentum along the distribution that belongs to an independent velocity.
+
+    Attributes:
+        velocity: The velocity; its momentum is emitted as ``Omega_momentum``.
+    """
+
+    velocity: Variable
+
+    @property
+    def name(self) -> str:
+        """Name of the observable."""
+        return f"{self.velocity.name}_momentum"
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, as those of the velocity."""
+        return component_names(self.name, self.velocity.shape, self.velocity.form)
 
 
 @dataclass(frozen=True)

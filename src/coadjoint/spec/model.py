@@ -16,7 +16,14 @@ from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.components import FORMS, Shape, component_names, matrix_size, unpacked
-from coadjoint.spec.constrained import Condition, Constraint, Reconstructed, Rolling, Section
+from coadjoint.spec.constrained import (
+    Condition,
+    Constraint,
+    Reconstructed,
+    ReducedMomentum,
+    Rolling,
+    Section,
+)
 from coadjoint.spec.quantities import Parameter, Variable, state_of
 from coadjoint.spec.tree import Node, walk
 
@@ -34,6 +41,7 @@ __all__ = [
     "Parameter",
     "Poisson",
     "Reconstructed",
+    "ReducedMomentum",
     "Rolling",
     "Section",
     "Shape",
@@ -406,6 +414,12 @@ class Spec:
         used = {getattr(node, "name", "") for tree in energies for node in walk(tree)}
         momenta = self.having_role("momentum")
         return tuple(SpatialMomentum(each, not names & used) for each in momenta)
+
+    @property
+    def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:
+        """The momenta of the independent velocities; empty for motions that are free."""
+        moving = [each for each in self.state if each.role == "velocity"]
+        return tuple(map(ReducedMomentum, moving)) if self.constraints else ()
 
     @property
     def kind(self) -> str:

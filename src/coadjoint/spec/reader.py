@@ -35,6 +35,7 @@ from coadjoint.spec.consistency import (
 from coadjoint.spec.constraints import ConstraintReader, solved_velocities
 from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
+from coadjoint.spec.followed import FollowedReader
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.lax import read_lax
 from coadjoint.spec.model import (
@@ -143,7 +144,10 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     observables = formulas.observables(constraints)
     actions = SymmetryReader(source, state_of(variables), formulas.quantities, observables)
     symmetries = actions.symmetries(file.symmetries, name, Scalars(parameters))
-    sections, followed = constrained.sections(), constrained.reconstruction()
+    sections = constrained.sections()
+    follower = FollowedReader(source, file, algebra, variables, quantities)
+    rolling = follower.rolling()
+    followed = follower.followed(rolling)
     emitted: list[Observable | Symmetry | Section] = [*observables, *symmetries, *sections]
     check_names(source, variables, parameters, emitted, defined)  # now with their components
     spec = Spec(
@@ -177,11 +181,11 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         forces=constrained.forces(),
         dissipation=constrained.dissipation(),
         domain=constrained.domain(),
-        rolling=constrained.rolling(algebra),
+        rolling=rolling,
         reconstruction=followed,
         sections=sections,
     )
-    others = [*emitted, *spec.spatial, *constraints, *followed]
+    others = [*emitted, *spec.spatial, *spec.reduced_momenta, *constraints, *followed]
     check_names(source, variables, parameters, others, defined)
     return spec if file.reduction is None else restricted(source, file.reduction, spec)
 
