@@ -49,6 +49,26 @@ def has_fixed_row(algebra: LieAlgebra) -> bool:
     return all(row != last for X in algebra.matrices for row, _ in X)
 
 
+def turning_places(algebra: LieAlgebra) -> tuple[int, int, int] | None:
+    """Where the rotations of space stand in the basis of an algebra; None if it has none.
+
+    >>> from coadjoint.algebra import algebra_by_name
+    >>> turning_places(algebra_by_name("se(3)")), turning_places(algebra_by_name("se(2)"))
+    ((0, 1, 2), None)
+    """
+    places = tuple(algebra.blocks.get("rotation", range(algebra.dimension)))
+    if len(places) != 3:
+        return None
+    a, b, c = places
+    constants = {
+        (places.index(i), places.index(j)): dict(row)
+        for (i, j), row in algebra.constants.items()
+        if i in places and j in places
+    }
+    named = {pair: {places[k]: x for k, x in row.items()} for pair, row in _ROTATIONS.items()}
+    return (a, b, c) if constants == named else None
+
+
 def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:
     """A unit quaternion: ``dq/dt = q [0, xi]/2``, right-invariant ``dq/dt = [0, xi] q/2``.
 

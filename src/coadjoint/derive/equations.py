@@ -249,6 +249,13 @@ class Equations:
         return tuple(names)
 
     @cached_property
+    def followed(self) -> tuple[tuple[str, Element], ...]:
+        """What follows from the motion without acting on it: each variable with its rate."""
+        from coadjoint.derive.followed import rates_followed  # which needs distributions
+
+        return rates_followed(self.setting, self.distribution)
+
+    @cached_property
     def intermediates(self) -> frozenset[str]:
         """Names of L, D, y and z of the solves in the kernel."""
         return frozenset(name for each in self.exact.solves for name in solver_names(each.block))
@@ -257,6 +264,7 @@ class Equations:
     def moving(self) -> frozenset[str]:
         """Names whose values depend on the member: the state, and definitions that rest on it."""
         names = {*self.setting.state, *self.setting.velocities}
+        names |= {name for each in self.spec.reconstruction for name in each.components}
         for name, value in self.exact.definitions:
             if self.setting.field.reach(value) & names:
                 names.add(name)

@@ -219,6 +219,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         *spec.parameters,
     ]
     names = [name for quantity in quantities for name in quantity.components]
+    names += [name for each in spec.reconstruction for name in each.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
     # a route, and what a transformation makes of a formula, may call its functions with other
     # arguments than the spec does
@@ -228,6 +229,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = whole(quantity, values)
+    for each in spec.reconstruction:
+        values[each.name] = shaped([values[name] for name in each.components], each.shape)
     return Setting(spec, field, values)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from types import MappingProxyType
 from typing import Any
 
 from coadjoint.errors import ClaimError
@@ -29,7 +30,8 @@ class Claim:
     Attributes:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
         kind: ``algebra``, ``jacobi``, ``legendre``, ``equivalence``, ``reduction``, ``casimir``,
-            ``conserved``, ``lax``, ``galilean``, ``symmetry``, ``bracket`` or ``transformation``.
+            ``conserved``, ``constraint``, ``rolling``, ``lax``, ``galilean``, ``symmetry``,
+            ``bracket`` or ``transformation``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.
@@ -112,11 +114,21 @@ class Certificate:
         return "\n".join([f"Certificate of {self.system}", *rows])
 
 
+#: What is likely wrong where a claim is refuted, in general and by kind.
+_FIX = "Correct the claim, or the Lagrangian or Hamiltonian that contradicts it."
+_FIXES = MappingProxyType(
+    {
+        "rolling": "The body slips or leaves the plane: correct the arm in [rolling], the profile "
+        "of the body that it stands for, or the constraints."
+    }
+)
+
+
 def _refutation(claim: Claim) -> str:
     """A refuted claim for people."""
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
     found = f"At {point} the difference" if point else f"By {claim.method} what is left"
     return (
         f"refuted: {claim.statement}. {found} is {claim.defect}; expected 0. "
-        "Correct the claim, or the Lagrangian or Hamiltonian that contradicts it."
+        f"{_FIXES.get(claim.kind, _FIX)}"
     )

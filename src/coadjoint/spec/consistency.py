@@ -286,10 +286,8 @@ def _check_first(source: Source, file: SpecFile) -> None:
         others = [
             name
             for name, start in STARTS.items()
-            if start.emitted and set(start.kinds) & kinds and start.table in ("", beside)
+            if start.emitted and set(start.kinds) & kinds and start.table == beside
         ]
-        if beside:
-            others = [name for name in others if STARTS[name].table == beside]
         raise source.fault(
             ("routes", 0),
             f"the route {first} cannot be the first: it is there to be proved equal to another",

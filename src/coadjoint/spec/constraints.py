@@ -1,8 +1,8 @@
 """Constraints: the tables of a constrained motion, read in the scopes of their formulas.
 
-Comes in: the validated tables [constraints], [forces], [dissipation], [domain], [rolling],
-[reconstruction] and [momenta]. Goes out: records of `coadjoint.spec.constrained`. Which velocities
-a constraint gives is found before there are variables, since that decides what the state is.
+Comes in: the validated tables [constraints], [forces], [dissipation], [domain] and [momenta]. Goes
+out: records of `coadjoint.spec.constrained`. Which velocities a constraint gives is found before
+there are variables, since that decides what the state is.
 Read next: `coadjoint.derive.distribution`.
 """
 
@@ -11,19 +11,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.constrained import Condition, Constraint, Reconstructed, Rolling, Section
+from coadjoint.spec.constrained import Condition, Constraint, Section
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
-from coadjoint.spec.model import Formula, Shape, Variable
+from coadjoint.spec.model import Formula, Variable
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.relations import EQUATION, INEQUALITIES, read_relation
-from coadjoint.spec.schema import ReconstructedPart, SpecFile
+from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.shapes import words
 from coadjoint.spec.source import Source
-from coadjoint.spec.structure import read_default
 from coadjoint.spec.tree import Index, Name, Node, walk
 
 _COMPONENT = re.compile(r"(?P<name>.*?)_?\d+(_\d+)?")
@@ -196,70 +194,6 @@ class ConstraintReader:
             )
             for name, part in self.file.momenta.items()
         )
-
-    def rolling(self, algebra: LieAlgebra | None) -> Rolling | None:
-        """How a body rolls.
-
-        Raises:
-            SpecError: There is no body in space with an advected normal.
-        """
-        part = self.file.rolling
-        if part is None:
-            return None
-        blocks = {} if algebra is None else algebra.blocks
-        of_block = {
-            label: next((n for n, v in self.velocities.items() if v.block == tuple(block)), "")
-            for label, block in blocks.items()
-        }
-        names = [of_block.get(label, "") for label in ("rotation", "translation")]
-        if not all(names):
-            raise self.source.fault(
-                ("rolling",),
-                "there is no velocity of the block rotation and none of translation",
-                found=listed(self.velocities),
-                expected='the algebra "se(3)" with a velocity over each of these blocks',
-            )
-        vectors = [v.name for v in self.variables if v.role == "advected" and v.shape == (3,)]
-        if part.normal not in vectors:
-            raise self.source.fault(
-                ("rolling", "normal"),
-                f"there is no advected vector {part.normal!a}",
-                found=part.normal,
-                expected=f"one of {listed(vectors)}",
-                hint=did_you_mean(part.normal, vectors),
-            )
-        scope = make_scope("an arm", self._fixed, self.quantities)
-        arm = read_formula(self.source, ("rolling", "arm"), part.arm, scope, any_shape=True)
-        if arm.shape != (3,):
-            raise self.source.fault(
-                ("rolling", "arm"),
-                f"the arm is {words(arm.shape)}",
-                found=words(arm.shape),
-                expected="a 3-vector",
-            )
-        return Rolling(arm, part.normal, *names)
-
-    def reconstruction(self) -> tuple[Reconstructed, ...]:
-        """The variables that follow from the motion; rates may name all scalars among them.
-
-        Raises:
-            SpecError: A default has another shape, or an attitude has nothing that turns it.
-        """
-        parts = self.file.reconstruction
-        scalars = [name for name, part in parts.items() if part.attitude is None]
-        scope = make_scope("a rate", self.motion, self.quantities, scalars)
-        return tuple(self._reconstructed(name, part, scope) for name, part in parts.items())
-
-    def _reconstructed(self, name: str, part: ReconstructedPart, scope: Scope) -> Reconstructed:
-        key: KeyPath = ("reconstruction", name)
-        shape: Shape = (4,) if part.attitude else ()
-        rate = None
-        if part.rate is not None:
-            inner = (*key, "rate")
-            at = inner if inner in self.source.positions.values else key
-            rate = read_formula(self.source, at, part.rate, scope)
-        default = read_default(self.source, (*key, "default"), part.default, shape)
-        return Reconstructed(name, rate, part.attitude or "", shape, default, part.unit, part.doc)
 
     @property
     def _fixed(self) -> tuple[str, ...]:

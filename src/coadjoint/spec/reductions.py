@@ -86,6 +86,7 @@ def _check_whole(source: Source, whole: Spec) -> None:
         ("transformations",): whole.transformations,
         ("lax",): whole.lax,
         ("newton",): whole.newton,
+        ("reconstruction",): whole.reconstruction,
         ("variables", *velocities[:1]): velocities,
     }
     for key, found in alien.items():

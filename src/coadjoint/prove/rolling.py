@@ -1,0 +1,62 @@
+r"""Rolling: what is claimed of a body that rolls on a plane.
+
+With s from the point of contact to the centre of mass and :math:`\Gamma` normal to the plane, both
+seen from the body: (i) the point of the body at the contact is at rest; (ii) the place of contact
+moves along the plane, so that the body neither leaves it nor sinks in; (iii) the height
+:math:`\Gamma \cdot s` of the centre of mass changes as its velocity Y says.
+Comes in: Equations with a distribution. Goes out: claims for the certificate. A wrong profile,
+whose :math:`ds/dt` is not tangent to the plane, is refuted by (ii).
+Read next: `coadjoint.derive.followed`, which rests on (i).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from coadjoint.derive import Equations
+from coadjoint.derive.followed import arm
+from coadjoint.groups.vectors import cross, dot
+from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.zero import Decision, decide_zero
+
+#: (statement, kind, how it is decided)
+_Examined = tuple[str, str, Callable[[], Decision]]
+
+
+def about_rolling(first: Equations) -> Iterator[_Examined]:
+    """The claims about a body that rolls; none about any other."""
+    setting, rolling = first.setting, first.spec.rolling
+    if rolling is None:
+        return
+    motion, s, Gamma = ConstrainedRates(first), arm(setting), rolling.normal
+    text, by_name = rolling.arm.in_one_line, {v.name: v for v in setting.spec.variables}
+    Y, Omega, normal = (
+        setting.elements(by_name[name].components)
+        for name in (rolling.velocity, rolling.turning, Gamma)
+    )
+    slip = [y - x for y, x in zip(Y, cross(Omega, s), strict=True)]
+    yield (
+        f"the point of the body at the contact is at rest: {rolling.velocity} = "
+        f"cross({rolling.turning}, {text})",
+        "rolling",
+        lambda: decide_zero([first.closed(x) for x in slip], motion.field, motion.where),
+    )
+    unit = Ideal(
+        motion.field,
+        [dot(normal, normal) - 1, *motion.where.relations],
+        " and ".join(filter(None, [f"|{Gamma}| = 1", motion.where.text])),
+    )
+    yield (
+        f"the body stays on the plane: dot({Gamma}, d({text})/dt) = 0 where |{Gamma}| = 1",
+        "rolling",
+        lambda: decide_zero([dot(normal, [motion.rate(x) for x in s])], motion.field, unit),
+    )
+    height = dot(normal, s)
+    yield (
+        f"the height dot({Gamma}, {text}) changes by dot({Gamma}, {rolling.velocity})",
+        "rolling",
+        lambda: decide_zero(
+            [motion.rate(height) - first.closed(dot(normal, Y))], motion.field, unit
+        ),
+    )
