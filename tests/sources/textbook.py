@@ -12,6 +12,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
+from tests.sources import classical
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -142,11 +143,24 @@ def square(name: str, size: int) -> tuple[str, ...]:
 #: Positive symmetric matrices, by their size.
 SPD = {"spd_motion": 2, "spd_motion_3": 3}
 #: Systems with roots, sines and cosines of the state, which are typed to 80 digits.
-CONFIGURATIONS = ("kepler", "monopole_kepler", "n_particles", "rocking_disk")
+CONFIGURATIONS = (
+    "kepler",
+    "monopole_kepler",
+    "n_particles",
+    "rocking_disk",
+    *classical.CONFIGURATIONS,
+)
 #: Systems whose rates are quotients, which no central difference meets exactly.
-QUOTIENTS = ("ellipsoidal_motion", "coupled_bodies", "pt_rigid_body", *BALLS, *CONFIGURATIONS)
+QUOTIENTS = (
+    "ellipsoidal_motion",
+    "coupled_bodies",
+    "pt_rigid_body",
+    *BALLS,
+    *CONFIGURATIONS,
+    *classical.QUOTIENTS,
+)
 #: Constrained motions: their bracket moves momenta, and Jacobi's identity fails.
-CONSTRAINED = (*BALLS,)
+CONSTRAINED = (*BALLS, *classical.TENSORS)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
@@ -187,6 +201,7 @@ RATES = {
     **dict.fromkeys((*BODIES, *LAX_BODIES), so_n_rates),
     **dict.fromkeys(QUADRATIC_BODIES, quadratic_rates),
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
+    **classical.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
 }
 OBSERVABLES = {
@@ -223,6 +238,7 @@ OBSERVABLES = {
     **dict.fromkeys(LAX_BODIES, manakov_observables),
     **dict.fromkeys(QUADRATIC_BODIES, quadratic_observables),
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
+    **classical.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
 }
 #: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
@@ -257,6 +273,8 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     **dict.fromkeys(QUADRATIC_BODIES, lambda x, p: minus_bracket(quadratic_ad_star(len(p)), x)),
     "bloch_iserles_2": lambda x, p: minus_bracket(bloch_iserles_ad_star(2, p), x),
     "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
+    **classical.TENSORS,
+    **{name: partial(ball_tensor, name) for name in BALLS},
 }
 GALILEI = (*numbered("J", 3), *numbered("K", 3), *numbered("P", 3), "E")
 STATES = {
@@ -293,6 +311,7 @@ STATES = {
     **{name: upper("M", n) for name, n in (BODIES | LAX_BODIES).items()},
     **{name: (*upper("M", n), *kept("S", n)) for name, n in QUADRATIC_BODIES.items()},
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
+    **classical.STATES,
     **dict.fromkeys(BALLS, (*numbered("Omega", 3), *numbered("Gamma", 3))),
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
@@ -330,6 +349,7 @@ PARAMETERS = {
     **dict.fromkeys(SPD, ()),
     **{name: numbered("a", n) for name, n in (BODIES | LAX_BODIES | QUADRATIC_BODIES).items()},
     **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
+    **classical.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),
