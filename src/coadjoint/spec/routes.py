@@ -8,7 +8,7 @@ Read next: `coadjoint.spec.consistency`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from coadjoint.spec.schema import SpecFile
@@ -23,17 +23,21 @@ class Start:
         energies: The tables of which it takes one; empty if it takes none.
         table: A table of its own, without which it cannot start; "" if none.
         options: Tables of its own that may be left out.
+        emitted: Whether it may be the first of a spec. What moves in variables of its own, or
+            leaves multipliers out, is there to be proved equal.
     """
 
     kinds: tuple[str, ...]
     energies: tuple[str, ...] = ()
     table: str = ""
     options: tuple[str, ...] = ()
+    emitted: bool = True
 
 
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
 _ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN)
+_CHART = replace(_ON_ALGEBRA, emitted=False)
 _CONSTRAINED = Start(
     ("algebra", "configuration"), _LAGRANGIAN, "constraints", ("forces", "dissipation")
 )
@@ -43,12 +47,12 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "euler-poincare": _ON_ALGEBRA,
         "lie-poisson": Start(("algebra",), _EITHER),
         "hamilton-pontryagin": _ON_ALGEBRA,
-        "clebsch": Start(("algebra",), _LAGRANGIAN, options=("clebsch",)),
+        "clebsch": replace(_CHART, options=("clebsch",)),
         "poincare": _ON_ALGEBRA,
         "matrix-euler-poincare": _ON_ALGEBRA,
         "newton-euler": _ON_ALGEBRA,
-        "cayley-klein": _ON_ALGEBRA,
-        "kaluza-klein": _ON_ALGEBRA,
+        "cayley-klein": _CHART,
+        "kaluza-klein": _CHART,
         "complexification": Start(("algebra",), _HAMILTONIAN),
         "manakov": Start(("algebra",), _EITHER),
         "lax": Start(("algebra", "poisson"), _EITHER, "lax"),
@@ -57,9 +61,9 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "canonical": Start(("canonical", "configuration"), _EITHER),
         "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN),
         "newton": Start(("configuration", "poisson"), (), "newton"),
-        "alignment": Start(("configuration", "poisson"), (), "newton"),
+        "alignment": Start(("configuration", "poisson"), (), "newton", emitted=False),
         "nonholonomic": _CONSTRAINED,
-        "hamel": _CONSTRAINED,
+        "hamel": replace(_CONSTRAINED, emitted=False),
     }
 )
 
