@@ -128,6 +128,11 @@ BY_HAND = {
     "n_particles": 6 * (3 + 6 + 2 + 1 + 3 + 3) + 9,
     "rocking_disk": 2 + 4 + 4 + 8,  # cos and sin; r^2 + l^2 - 2 r l cos; torque and quotient
     "underwater_vehicle": 6 + 4 * 9 + 3 + 12,  # velocities, cross products, a sum, torque
+    # s and its rate; Y, ds/dt x .., dGamma/dt; signs of products with s; I + m (s^2 - s s^T); the
+    # force m(Omega x Y + Omega x ds/dt); I Omega x Omega, s x force, weight, sums; L D L^T, solves
+    "chaplygin_ball": 6 + 3 + 3 * 9 + 4 + 18 + 15 + 6 + 9 + 9 + 6 + 15 + 15,
+    "chaplygin_ball_centred": 3 + 3 + 3 * 9 + 4 + 18 + 15 + 6 + 9 + 3 + 15 + 15,  # no weight
+    "routh_sphere": 4 + 3 + 3 * 9 + 4 + 18 + 15 + 4 + 9 + 2 + 2 + 2 + 15 + 15,  # I1 = I2
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
 }
 

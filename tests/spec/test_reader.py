@@ -44,6 +44,7 @@ ADVECTING = (*TWO, "hamilton-pontryagin", "clebsch", "poincare")
 ROTATING = (*ADVECTING, "cayley-klein")
 TOPS = (*TWO, "hamilton-pontryagin", "newton-euler", "kaluza-klein")
 COMPLEX = ("lie-poisson", "complexification")
+CONSTRAINED, TURNING = ("nonholonomic", "hamel"), "Omega1 Omega2 Omega3 Gamma1 Gamma2 Gamma3"
 CANONICAL = ("canonical", "poisson")
 GALILEI = "J1 J2 J3 K1 K2 K3 P1 P2 P3 E"
 INERTIA = "I1 I2 I3 A1 A2 A3 B1 B2 B3 c"
@@ -101,6 +102,9 @@ SHIPPED = {
     "spd_motion": ("S11 S12 S22 P11 P12 P22 q1 q2 p1 p2", "", CANONICAL),
     "spd_motion_3": (f"{SYMMETRIC_S} {SYMMETRIC_P} q1 q2 q3 p1 p2 p3", "", CANONICAL),
     "ellipsoidal_motion": (f"{ROWS_Q} {ROWS_P}", "k b", CANONICAL),
+    "chaplygin_ball": (TURNING, "I1 I2 I3 m r g chi1 chi2 chi3", CONSTRAINED),
+    "chaplygin_ball_centred": (TURNING, "I1 I2 I3 m r", CONSTRAINED),
+    "routh_sphere": (TURNING, "I1 I3 m r g l", CONSTRAINED),
     "kepler": (ONE_POINT, "mu", ("poisson", "canonical", "euler-lagrange", "newton", "alignment")),
     "monopole_kepler": (ONE_POINT, "mu lam", ("poisson", "canonical", "newton", "alignment")),
     "n_particles": (
@@ -135,7 +139,8 @@ def test_shipped_specs_have_the_state_and_parameters_of_the_books(system):
     assert all(v.doc and v.unit for v in spec.variables)
     canonical = spec.poisson is None or spec.poisson.kind == "canonical"
     canonical = canonical and spec.algebra is None
-    assert spec.casimirs or canonical or spec.reduction or system == "affine_line"
+    named = spec.reduction or spec.constraints
+    assert spec.casimirs or canonical or named or system == "affine_line"
     assert spec.conserved[0].formula.text == "energy"
     assert "Holm" in spec.source
 
