@@ -17,6 +17,7 @@ from functools import cached_property
 from operator import add, mul
 from typing import TypeVar
 
+from coadjoint.derive.domain import Bound, bounds
 from coadjoint.derive.equations import Equations
 from coadjoint.exact import Element
 
@@ -42,7 +43,7 @@ class Reference:
 
         Args:
             function: ``rhs``, ``jacobian``, ``energy``, ``observables``,
-                ``poisson_tensor`` or ``constraint_residual``.
+                ``poisson_tensor``, ``constraint_residual`` or ``domain``.
             inputs: State and parameter components by name.
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function by name.
@@ -66,6 +67,10 @@ class Reference:
                 return [value(entry) for row in exact.poisson_tensor for entry in row]
             case "constraint_residual":
                 return [value(residual) for _, residual in exact.residuals]
+            case "reconstruction":
+                return [value(rate) for _, rate in self.equations.followed]
+            case "domain":
+                return [value(bound.element) for bound in self._bounds]
         assert function == "jacobian", function
         return self._jacobian(value, number)
 
@@ -77,6 +82,10 @@ class Reference:
         rates = [_chained(slopes, known, value) for slopes in self._rate_slopes]
         places = range(len(self.state))
         return [rate[j] if j in rate else number(ZERO) for rate in rates for j in places]
+
+    @cached_property
+    def _bounds(self) -> tuple[Bound, ...]:
+        return bounds(self.equations)
 
     @cached_property
     def _definition_slopes(self) -> list[tuple[str, _Slopes]]:

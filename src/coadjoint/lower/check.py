@@ -12,6 +12,7 @@ from typing import Any
 
 from coadjoint.algebra.linear import PRIME
 from coadjoint.derive import Equations
+from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
@@ -45,6 +46,10 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
             return [equations.closed(entry) for row in exact.poisson_tensor for entry in row]
         case "constraint_residual":
             return [equations.closed(residual) for _, residual in exact.residuals]
+        case "reconstruction":
+            return [equations.closed(rate) for _, rate in equations.followed]
+        case "domain":
+            return [equations.closed(bound.element) for bound in bounds(equations)]
     raise AssertionError(name)
 
 

@@ -1,9 +1,10 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
 Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``energy``, ``observables``, ``poisson_tensor`` and ``constraint_residual``. An element is a
-sum of products in the order of the field; what depends on parameters alone is gathered into the
-coefficients, equal coefficients are factored out, and pairs of factors that recur are shared.
+them, ``energy``, ``observables``, ``poisson_tensor``, ``constraint_residual`` and ``domain``. An
+element is a sum of products in the order of the field; what depends on parameters alone is gathered
+into the coefficients, equal coefficients are factored out, and pairs of factors that recur are
+shared.
 Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
@@ -16,6 +17,7 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.derive import Equations
+from coadjoint.derive.domain import bounds
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
 from coadjoint.lower.graph import Graph
@@ -279,6 +281,13 @@ def lower(equations: Equations) -> dict[str, Program]:
         programs["constraint_residual"] = _program(
             equations, "constraint_residual", exact.residuals
         )
+    if equations.followed:
+        followed = [(f"d{name}/dt", rate) for name, rate in equations.followed]
+        names = (*setting.state, *(name for name, _ in equations.followed))
+        programs["reconstruction"] = _program(equations, "reconstruction", followed, inputs=names)
+    rows = [(bound.label, bound.element) for bound in bounds(equations)]
+    if rows:
+        programs["domain"] = _program(equations, "domain", rows)
     return programs
 
 
@@ -287,8 +296,9 @@ def _program(
     name: str,
     outputs: Sequence[tuple[str, Element]],
     shape: tuple[int, ...] | None = None,
+    inputs: tuple[str, ...] | None = None,
 ) -> Program:
-    """One Program from labelled elements."""
+    """One Program from labelled elements, of the state or of other inputs."""
     setting, definitions = equations.setting, equations.exact.definitions
     outputs = [(label, _shorter(equations, element)) for label, element in outputs]
     lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
@@ -296,7 +306,8 @@ def _program(
     results = [(label, lowering.node(element)) for label, element in outputs]
     naming = Naming(lowering.graph, named, results, setting.parameters)
     size = (len(outputs),) if shape is None else shape
-    return naming.program(name, setting.state, setting.parameters, size)
+    read = setting.state if inputs is None else inputs
+    return naming.program(name, read, setting.parameters, size)
 
 
 def _shorter(equations: Equations, element: Element) -> Element:

@@ -26,6 +26,7 @@ class Quantity:
         default: One value per row, or None.
         positive: Whether every value must be positive.
         conserved: Whether the motion conserves it.
+        upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
     """
 
     name: str
@@ -35,6 +36,24 @@ class Quantity:
     default: tuple[float, ...] | None = None
     positive: bool = False
     conserved: bool = False
+    upright: str = ""
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What a row of the function ``domain`` is: positive where a system is defined.
+
+    Attributes:
+        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is.
+        kind: ``condition``, ``acceleration`` or ``reaction``.
+        strict: Whether it may not be zero.
+        inputs: Components of state and parameters that it depends on.
+    """
+
+    name: str
+    kind: str
+    strict: bool
+    inputs: tuple[str, ...]
 
 
 class Quantities(Mapping[str, Quantity]):

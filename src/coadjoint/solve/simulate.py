@@ -12,6 +12,7 @@ import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, pack, pack_parameters
+from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.solution import Solution
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ def simulate(
     times = _times(t, samples)
     name = _method(method)
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
+    domain = Domain(system, packed, target)
+    domain.check_start(initial)
     rates, latest = _rates(system, packed, target)
     rates(times[0], initial)
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
@@ -57,14 +60,18 @@ def simulate(
         solver = getattr(scipy.integrate, name)(
             rates, times[0], initial, times[-1], rtol=rtol, atol=atol, **options
         )
-        states, status, reason = _follow(solver, times, max_steps, latest)
-    return Solution(system, times[: states.shape[1]], states, packed, status, reason)
+        times, states, status, reason = _follow(solver, times, max_steps, latest, domain)
+    return Solution(system, times, states, packed, status, reason)
 
 
 def _follow(
-    solver: scipy.integrate.OdeSolver, times: Array, max_steps: int, latest: Array
-) -> tuple[Array, str, str]:
-    """States at the times that were reached, status and reason.
+    solver: scipy.integrate.OdeSolver,
+    times: Array,
+    max_steps: int,
+    latest: Array,
+    domain: Domain,
+) -> tuple[Array, Array, str, str]:
+    """The times that were reached, states there, status and reason.
 
     A loop of our own over SciPy's steps: its `solve_ivp` has no bound on their number, and keeps
     nothing of a trajectory that ends in an exception.
@@ -74,25 +81,40 @@ def _follow(
     reached, steps, reason = 1, 0, ""
     try:
         while solver.status == "running" and steps < max_steps:
+            before = (solver.t, solver.y.copy())
             reason = solver.step() or ""
             if reason or not np.isfinite(solver.y).all():
                 break
             after = int(np.searchsorted(times, solver.t, side="right"))
             if after > reached:
                 states[:, reached:after] = solver.dense_output()(times[reached:after])
+            points = zip(times[reached:after].tolist(), states.T[reached:after], strict=True)
+            end = domain.leaves(solver.dense_output, before, [*points, (solver.t, solver.y)])
+            if end is not None:
+                return *_ended(times, states, end), "DOMAIN", domain.reason(end)
             reached, steps = after, steps + 1
     except FloatingPointError:  # from the Jacobian
         latest[:] = np.nan
-    place = f"near t = {solver.t:.6g}"
+    place = f"near t = {solver.t:.6g}{domain.remark(solver.y)}"
+    came = (times[:reached], states[:, :reached])
     # An evaluation that is not finite spoils those after it in its step, the latest among them.
     if not (np.isfinite(solver.y).all() and np.isfinite(latest).all()):
-        return states[:, :reached], "NONFINITE", f"the rates are not finite {place}"
+        return *came, "NONFINITE", f"the rates are not finite {place}"
     if solver.status == "failed":
-        return states[:, :reached], "STEP_UNDERFLOW", f"{reason} This is {place}."
+        return *came, "STEP_UNDERFLOW", f"{reason} This is {place}."
     if solver.status == "running":
         reason = f"{max_steps} steps came only {place}; raise max_steps"
-        return states[:, :reached], "MAX_STEPS", reason
-    return states, "OK", ""
+        return *came, "MAX_STEPS", reason
+    return times, states, "OK", ""
+
+
+def _ended(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
+    """The samples before an exit, and the exit itself."""
+    reached = int(np.searchsorted(times, end.time, side="right"))
+    if times[reached - 1] == end.time:
+        return times[:reached], states[:, :reached]
+    found = np.column_stack([states[:, :reached], end.state])
+    return np.append(times[:reached], end.time), found
 
 
 def _rates(system: System, parameters: Array, target: Any) -> tuple[Rates, Array]:

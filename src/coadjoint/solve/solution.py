@@ -32,8 +32,9 @@ class Solution:
         time: Sample times, ``(T,)``, up to where the integration came.
         state: States, ``(n, T)``.
         parameters: Packed parameters, ``(k,)``.
-        status: ``OK``, ``NONFINITE`` (the rates stopped being finite), ``STEP_UNDERFLOW`` (no step
-            was small enough for the tolerances) or ``MAX_STEPS``.
+        status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
+            the last point inside), ``NONFINITE`` (the rates stopped being finite),
+            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
         message: Where it stopped and why, empty if all is well.
     """
 

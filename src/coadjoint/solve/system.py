@@ -254,10 +254,13 @@ class System:
 
         Returns:
             The labelled trajectory, with observables and the drift of what is conserved. One that
-            could not be followed to the end has a status other than ``OK`` and ends before.
+            could not be followed to the end has a status other than ``OK`` and ends before. Where
+            it leaves the domain it ends with the last point inside, found to 1e-12 of a step;
+            points between the samples and the ends of steps are not tried.
 
         Raises:
-            KernelArgumentError: The state is a batch, times do not increase, or a name is unknown.
+            KernelArgumentError: The state is a batch or outside the domain, times do not increase,
+                or a name is unknown.
         """
         from coadjoint.solve.simulate import simulate
 

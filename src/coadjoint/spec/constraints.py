@@ -17,6 +17,7 @@ from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Formula, Variable
+from coadjoint.spec.names import refusal
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.relations import EQUATION, INEQUALITIES, read_relation
 from coadjoint.spec.schema import SpecFile
@@ -46,7 +47,7 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
     found: dict[str, tuple[str, int]] = {}
     reached: dict[str, set[str]] = {}
     for constraint, text in file.constraints.items():
-        sides = [_parsed(side) for side in text.split("==")]
+        sides = [_parsed(side, file) for side in text.split("==")]
         if len(sides) != _SIDES:
             continue
         left, right = sides
@@ -67,9 +68,11 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
     return found
 
 
-def _parsed(text: str) -> Node | None:
+def _parsed(text: str, file: SpecFile) -> Node | None:
+    """A tree that may call the definitions with arguments; None where it cannot be read yet."""
+    called = [key.split("(")[0].strip() for key in file.definitions if "(" in key]
     try:
-        return read_expression(text)
+        return read_expression(text, called)
     except ExpressionError:
         return None
 
@@ -83,7 +86,7 @@ def _names(node: Node, file: SpecFile) -> set[str]:
             name = str(getattr(part, "name", "") or getattr(part, "function", ""))
             if name in defined and name not in seen:
                 seen.add(name)
-                inner = _parsed(defined[name])
+                inner = _parsed(defined[name], file)
                 pending += [] if inner is None else [inner]
             elif isinstance(part, Name | Index):
                 match = _COMPONENT.fullmatch(name)
@@ -155,12 +158,19 @@ class ConstraintReader:
         """The declared inequalities.
 
         Raises:
-            SpecError: One is no inequality between scalars.
+            SpecError: One is no inequality between scalars, or has a name that none may have.
         """
         scope = make_scope("a condition", self.motion, self.quantities)
         found = []
         for name, text in self.file.domain.items():
             key: KeyPath = ("domain", name)
+            refused = refusal(name)  # a label of rows alone: a variable may have the same name
+            if refused is not None:
+                problem, expected, hint = refused
+                at = self.source.positions.key(key)
+                raise self.source.fault(
+                    key, problem, found=name, expected=expected, hint=hint, at=at
+                )
             left, sign, right = read_relation(self.source, key, text, INEQUALITIES, scope)
             if left.shape:
                 raise self.source.fault(

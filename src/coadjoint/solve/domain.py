@@ -1,0 +1,186 @@
+"""The domain of a System along one trajectory: whether it begins there, and where it leaves.
+
+Comes in: a System whose kernel has a function ``domain``, one set of parameters, and states. Goes
+out: an error for a start outside; else the last point of a step that is still inside, and what is
+violated beyond it. Read next: `coadjoint.solve.simulate`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: How closely the end of a trajectory is found, as a part of the last step.
+RESOLUTION = 1e-12
+#: Values that a message shows.
+SHOWN = 12
+
+
+@dataclass(frozen=True)
+class Exit:
+    """Where a trajectory leaves the domain.
+
+    Attributes:
+        time: The last time at which it is inside.
+        state: The state there.
+        row: The row that is violated right after it.
+    """
+
+    time: float
+    state: Array
+    row: int
+
+
+class Domain:
+    """Where a System with one set of parameters is defined; everywhere without bounds.
+
+    Args:
+        system: The System.
+        parameters: Packed parameters, ``(k,)``.
+        target: Kernel that computes the rows.
+    """
+
+    def __init__(self, system: System, parameters: Array, target: Any) -> None:
+        self.system, self.parameters = system, parameters
+        self.bounds = system.DOMAIN
+        # The least double that a row may be: whatever is above 0, or 0 itself.
+        self._least = np.array([np.nextafter(0.0, 1.0) * bound.strict for bound in self.bounds])
+        self._state, self._rows = np.empty(system.STATE.size), np.empty(len(self.bounds))
+        if self.bounds:
+            self._evaluate = system.bind("domain", self._state, parameters, self._rows, target)
+
+    def violated(self, state: Array) -> int | None:
+        """The first row that is violated or not finite at a state; None inside the domain."""
+        if not self.bounds:
+            return None
+        self._state[:] = state
+        self._evaluate()
+        held = (self._rows >= self._least) & (self._rows < np.inf)  # neither holds for a NaN
+        return None if held.all() else int(np.argmin(held))
+
+    def check_start(self, state: Array) -> None:
+        """Refuse a state outside the domain.
+
+        Raises:
+            KernelArgumentError: A condition does not hold, or the motion is singular there.
+        """
+        row = self.violated(state)
+        if row is None:
+            return
+        bound, value = self.bounds[row], float(self._rows[row])
+        expected = "a finite value above 0" if bound.strict else "a finite value, 0 or more"
+        raise KernelArgumentError(
+            f"{self.system.name}: {self._problem(row)} at the given state: {self._meaning(row)} is "
+            f"{value:.6g}; expected {expected}. {self._values(row, state)}: change one of them.",
+            found=value,
+            expected=expected,
+            bound=bound.name,
+        )
+
+    def leaves(
+        self,
+        path: Callable[[], Callable[[float], Array]],
+        before: tuple[float, Array],
+        points: Iterable[tuple[float, Array]],
+    ) -> Exit | None:
+        """Where a step leaves the domain.
+
+        Args:
+            path: Makes the interpolant of the step, if it is needed.
+            before: Time and state at which the step begins, inside.
+            points: Times and states of the step, in order, its end the last.
+
+        Returns:
+            The exit before the first point outside; None if all are inside.
+        """
+        if not self.bounds:
+            return None
+        start, inside = before[0], before
+        for point in points:
+            row = self.violated(point[1])
+            if row is not None:
+                gap = RESOLUTION * (point[0] - start)
+                return self._bisected(path(), inside, point[0], row, gap)
+            inside = point
+        return None
+
+    def _bisected(
+        self,
+        path: Callable[[float], Array],
+        inside: tuple[float, Array],
+        outside: float,
+        row: int,
+        gap: float,
+    ) -> Exit:
+        """The last point inside, up to a gap."""
+        time, state = inside
+        while outside - time > gap:
+            middle = (time + outside) / 2
+            if not time < middle < outside:  # no double lies between
+                break
+            found = path(middle)
+            beyond = self.violated(found)
+            if beyond is None:
+                time, state = middle, found
+            else:
+                outside, row = middle, beyond
+        return Exit(time, state, row)
+
+    # -- messages -----------------------------------------------------------------------
+
+    def reason(self, exit_: Exit) -> str:
+        """Why a trajectory ends at an exit."""
+        self.violated(exit_.state)
+        value = float(self._rows[exit_.row])
+        return (
+            f"{self._problem(exit_.row)} after t = {exit_.time:.12g}, where "
+            f"{self._meaning(exit_.row)} is still {value:.6g} and "
+            f"{self._values(exit_.row, exit_.state)}"
+        )
+
+    def remark(self, state: Array) -> str:
+        """How close to a bound a state is, for trajectories that end inside; "" without bounds."""
+        if self.violated(state) is not None or not self.bounds:
+            return ""
+        row = int(np.argmin(self._rows))
+        value = float(self._rows[row])
+        return f"; there {self._meaning(row)} is {value:.6g} and {self._values(row, state)}"
+
+    def _problem(self, row: int) -> str:
+        """What is wrong where a row is violated."""
+        bound = self.bounds[row]
+        if bound.kind == "condition":
+            text = self.system.certificate.get("domain", {}).get(bound.name)
+            return f"the condition {bound.name}{f', {text},' if text else ''} does not hold"
+        if bound.kind == "acceleration":
+            return "the reduced mass matrix is singular, or not positive,"
+        return "the constraints depend on each other"
+
+    def _meaning(self, row: int) -> str:
+        """What the value of a row is."""
+        bound = self.bounds[row]
+        if bound.kind == "condition":
+            return f"the larger side of {bound.name} minus the other"
+        return f"the pivot of {bound.name}"
+
+    def _values(self, row: int, state: Array) -> str:
+        """The inputs of a row with their values."""
+        names = (*self.system.STATE.components, *self.system.PARAMETERS.components)
+        known = dict(zip(names, (*state.tolist(), *self.parameters.tolist()), strict=True))
+        inputs = self.bounds[row].inputs
+        told = [f"{name} = {known[name]:.6g}" for name in inputs[:SHOWN]]
+        return ", ".join([*told, *(["..."] if len(inputs) > SHOWN else [])])
