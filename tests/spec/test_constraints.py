@@ -1,0 +1,195 @@
+"""[constraints] and its companions: what gives a velocity, and every fault with place and fix."""
+
+import pytest
+
+from coadjoint.errors import SpecError
+from coadjoint.spec.faults import listed
+from tests.constrained import BALL, PARTICLE, SLEIGH
+from tests.specs import RIGID_BODY, spec
+
+BLADE = 'blade = "w == y*u"'
+
+
+def given(*lines, text=PARTICLE, more=()):
+    """Constraint and side by the velocity that it gives."""
+    declared = spec(text, (BLADE, "\n".join(lines)), *more)
+    return {each.solves: (each.name, each.sign) for each in declared.constraints if each.solves}
+
+
+def test_a_side_that_is_one_velocity_gives_it():
+    """On either side; a multiple, a component and a side that names it on the right give none."""
+    assert given('c = "w == y*u"') == {"w": ("c", 1)}
+    assert given('c = "y*u == w"') == {"w": ("c", -1)}
+    assert given('c = "w - y*u == 0"') == {}
+    assert given('c = "2*w == y*u"') == {}
+    assert given('c = "w == y*u - w"') == {}
+    assert (
+        given('c = "Omega3 == 0"', text=BALL.replace('rolling = "Y == cross(Omega, s)"', BLADE))
+        == {}
+    )
+
+
+def test_of_two_velocities_alone_the_left_one_is_given():
+    """The equation "u == v" gives u; v is free then."""
+    assert given('c = "u == v"') == {"u": ("c", 1)}
+    assert [q.name for q in spec(PARTICLE, (BLADE, 'c = "u == v"')).state] == [*"xyz", "v", "w"]
+
+
+def test_velocities_may_be_given_through_each_other_but_not_by_themselves():
+    """A chain gives both; where it closes, the last constraint is kept."""
+    assert given('c = "u == k*w"', 'd = "w == k*v"') == {"u": ("c", 1), "w": ("d", 1)}
+    assert given('c = "u == k*w"', 'd = "w == k*v"', 'e = "v == y*u"') == {
+        "u": ("c", 1),
+        "w": ("d", 1),
+    }
+    assert given('c = "u == k*w"', 'd = "w == y*u"') == {"u": ("c", 1)}
+    assert given('c = "u == k*w"', 'd = "u == y*v"') == {"u": ("c", 1)}
+
+
+def test_definitions_are_looked_through():
+    """A velocity that a definition hides depends on itself all the same; arguments do, too."""
+    hidden = ("[lagrangian]", '[definitions]\nq = "y*w"\n"f(s)" = "s + q"\n[lagrangian]')
+    assert given('c = "w == q"', more=[hidden]) == {}
+    assert given('c = "u == q"', 'd = "w == f(v)"', more=[hidden]) == {"u": ("c", 1)}
+    assert given('c = "u == f(v)"', more=[hidden]) == {"u": ("c", 1)}
+
+
+def test_the_state_is_what_no_constraint_gives():
+    """In declared order; what is given is emitted beside the dynamics."""
+    ball = spec(BALL)
+    assert [v.name for v in ball.state] == ["Omega", "Gamma"]
+    assert [v.name for v in ball.defined] == ["Y"]
+    assert [c.reactions for c in ball.constraints] == [
+        ("rolling_reaction1", "rolling_reaction2", "rolling_reaction3")
+    ]
+    assert [v.name for v in spec(SLEIGH).state] == ["omega", "v"]
+    kept = spec(SLEIGH, ('"u == 0"', '"u + 0*v == 0"'))
+    assert [v.name for v in kept.state] == ["omega", "v", "u"]
+
+
+def test_forces_sections_and_dissipation_are_read():
+    """Forces know velocities; a section knows positions and is along velocities that are free."""
+    declared = spec(
+        PARTICLE,
+        ("[claims]", '[forces]\nu = "-k*u"\nw = "k"\n[claims]'),
+        ("[claims]", '[dissipation]\nR = "k*dot(vector(u, w), vector(u, w))"\n[claims]'),
+        ("[claims]", '[momenta.J]\nsection = { u = "y", v = "k" }\nunit = "kg"\n[claims]'),
+    )
+    assert {name: f.text for name, f in declared.forces.items()} == {"u": "-k*u", "w": "k"}
+    assert declared.dissipation is not None
+    (section,) = declared.sections
+    assert (section.name, list(section.section), section.unit) == ("J", ["u", "v"], "kg")
+
+
+ROUTES = 'routes = ["nonholonomic", "hamel"]'
+CLAIMS = "[claims]"
+FAULTS = [
+    ((BLADE, ""), "constraints", "a table of 0", "at least 1 item"),
+    ((BLADE, "blade = 3"), "constraints.blade", "3", "expected text in quotes"),
+    (("[constraints]\n" + BLADE, ""), "routes", "constraints", "no table [constraints]"),
+    (
+        (ROUTES, 'routes = ["euler-lagrange"]'),
+        "routes[1]",
+        "euler-lagrange",
+        "knows no constraints",
+    ),
+    (
+        ('"hamel"]', '"euler-lagrange"]'),
+        "routes[2]",
+        "euler-lagrange",
+        'Write "nonholonomic" in its place, or remove [constraints].',
+    ),
+    ((ROUTES, 'routes = ["hamel"]'), "routes[1]", "hamel", 'Write "nonholonomic" before it.'),
+    (("[lagrangian]\nl", "[hamiltonian]\nh"), "routes", "lagrangian", "has no Lagrangian"),
+    (
+        ("[parameters]", 'p = { role = "momentum", of = "x" }\n[parameters]'),
+        "variables.p.role",
+        "momentum",
+        "'p' is a momentum beside [constraints]",
+    ),
+    ((CLAIMS, '[forces]\nq = "3"\n[claims]'), "forces.q", "q", "expected one of u, v, w"),
+    ((CLAIMS, '[forces]\nx = "3"\n[claims]'), "forces.x", "x", "no such velocity as 'x'"),
+    (
+        (CLAIMS, '[forces]\nu = "vector(u, v)"\n[claims]'),
+        "forces.u",
+        "a 2-vector",
+        "expected a scalar, as 'u' is",
+    ),
+    (
+        (CLAIMS, '[forces]\nu = "blade_reaction"\n[claims]'),
+        "forces.u",
+        "blade_reaction",
+        "'blade_reaction' is not declared",
+    ),
+    (
+        (CLAIMS, '[dissipation]\nR = "vector(u, v)"\n[claims]'),
+        "dissipation.R",
+        "a 2-vector",
+        "expected a scalar",
+    ),
+    ((CLAIMS, '[dissipation]\nS = "u^2"\n[claims]'), "dissipation.S", None, "unknown key 'S'"),
+    (
+        (CLAIMS, '[momenta.J]\nsection = { w = "1" }\n[claims]'),
+        "momenta.J.section.w",
+        "w",
+        "expected one of u, v",
+    ),
+    (
+        (CLAIMS, '[momenta.J]\nsection = { u = "v" }\n[claims]'),
+        "momenta.J.section.u",
+        "v",
+        "'v' is a velocity",
+    ),
+    (
+        (CLAIMS, '[momenta.J]\nsection = { u = "vector(x, y)" }\n[claims]'),
+        "momenta.J.section.u",
+        "a 2-vector",
+        "as 'u' is",
+    ),
+    ((CLAIMS, '[momenta.u]\nsection = { u = "1" }\n[claims]'), "momenta.u", "u", "is doubled"),
+    (
+        ("k = {", "blade_reaction = {"),
+        "constraints.blade",
+        "blade_reaction",
+        "The multiplier of the constraint blade is blade_reaction: rename one of them.",
+    ),
+    (
+        (CLAIMS, '[observables]\nblade_reaction = "u"\n[claims]'),
+        "constraints.blade",
+        "blade_reaction",
+        "observables.blade_reaction has that name too",
+    ),
+    ((BLADE, BLADE + '\nu = "v == 0"'), "constraints.u", "u", "variables.u has that name too"),
+    ((BLADE, '1blade = "v == 0"'), "constraints.1blade", "1blade", "'1blade' is not a name"),
+]
+
+
+@pytest.mark.parametrize(("change", "key", "found", "said"), FAULTS)
+def test_faults_are_shown_at_their_place(change, key, found, said):
+    """The key, what was found, and what was expected or would do."""
+    with pytest.raises(SpecError) as caught:
+        spec(PARTICLE, change)
+    message = str(caught.value)
+    assert said in message
+    assert f": {key}: " in message
+    assert found is None or found == str(caught.value.parts["found"])
+
+
+@pytest.mark.parametrize("table", ["forces", "dissipation"])
+def test_what_acts_beside_a_lagrangian_goes_with_constraints(table):
+    """Routes of free motions would pass a force over, so it is refused beside them."""
+    text = {"forces": 'Omega = "-Omega"', "dissipation": 'R = "dot(Omega, Omega)"'}[table]
+    with pytest.raises(SpecError, match=f"no route uses the table .{table}.") as caught:
+        spec(RIGID_BODY, ("[claims]", f"[{table}]\n{text}\n[claims]"))
+    assert caught.value.parts["found"] == table
+    assert "nonholonomic" in str(caught.value)
+
+
+@pytest.mark.parametrize("route", ["clebsch", "cayley-klein", "kaluza-klein"])
+def test_a_route_in_variables_of_its_own_is_not_emitted(route):
+    """Its rates are not those of the declared state, so another one comes first."""
+    with pytest.raises(SpecError, match="cannot be the first") as caught:
+        spec(RIGID_BODY, ('["euler-poincare", "lie-poisson"]', f'["{route}", "lie-poisson"]'))
+    assert caught.value.parts["found"] == route
+    assert 'Write "euler-poincare" before it.' in str(caught.value)
+    assert listed(["euler-poincare", "lie-poisson"]) in str(caught.value)
