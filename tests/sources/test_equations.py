@@ -32,7 +32,7 @@ def emitted(name):
 
 def values(expressions, point):
     """SymPy expressions at a rational point, as fractions."""
-    at = {sympy.Symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in point.items()}
+    at = {sympy.Symbol(n): sympy.sympify(v) for n, v in point.items()}
     found = [sympy.sympify(e).xreplace(at) for e in expressions]
     assert all(value.is_number for value in found), found
     return [Fraction(int(v.p), int(v.q)) if v.is_Rational else v for v in found]
@@ -70,7 +70,9 @@ def check_rates(equations, name):
 def solved(equations, point):
     """A point with the values of what the kernel solves for, one after the other."""
     for name in equations.kept:
-        point = point | {name: values([equations.velocities[name]], point)[0]}
+        (value,) = values([equations.velocities[name]], point)
+        # nested roots and sines would grow exponentially
+        point = point | {name: value if isinstance(value, Fraction) else value.evalf(80)}
     return point
 
 

@@ -45,6 +45,7 @@ from tests.sources.coupled import (
     vehicle_rates,
     vehicle_tensor,
 )
+from tests.sources.disks import ROLLING, body_observables, body_rates, body_tensor
 from tests.sources.isospectral import (
     BLOCH_ISERLES,
     LAX_BODIES,
@@ -149,6 +150,7 @@ CONFIGURATIONS = (
     "n_particles",
     "rocking_disk",
     *classical.CONFIGURATIONS,
+    *ROLLING,
 )
 #: Systems whose rates are quotients, which no central difference meets exactly.
 QUOTIENTS = (
@@ -160,7 +162,7 @@ QUOTIENTS = (
     *classical.QUOTIENTS,
 )
 #: Constrained motions: their bracket moves momenta, and Jacobi's identity fails.
-CONSTRAINED = (*BALLS, *classical.TENSORS)
+CONSTRAINED = (*BALLS, *ROLLING, *classical.TENSORS)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
@@ -203,6 +205,7 @@ RATES = {
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
     **classical.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
+    **{name: partial(body_rates, name) for name in ROLLING},
 }
 OBSERVABLES = {
     "rigid_body": rigid_body_observables,
@@ -240,6 +243,7 @@ OBSERVABLES = {
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
     **classical.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
+    **{name: partial(body_observables, name) for name in ROLLING},
 }
 #: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
 TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
@@ -275,6 +279,7 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
     **classical.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
+    **{name: partial(body_tensor, name) for name in ROLLING},
 }
 GALILEI = (*numbered("J", 3), *numbered("K", 3), *numbered("P", 3), "E")
 STATES = {
@@ -312,7 +317,7 @@ STATES = {
     **{name: (*upper("M", n), *kept("S", n)) for name, n in QUADRATIC_BODIES.items()},
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
     **classical.STATES,
-    **dict.fromkeys(BALLS, (*numbered("Omega", 3), *numbered("Gamma", 3))),
+    **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
 PARAMETERS = {
@@ -353,4 +358,7 @@ PARAMETERS = {
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),
+    **dict.fromkeys(("rolling_disk", "euler_disk"), ("I1", "I3", "m", "r", "g")),
+    "rolling_ellipsoid": (*kept("I", 3), "m", "g", *numbered("axes", 3)),
+    "body_of_revolution": ("I1", "I3", "m", "g", "A", "C", "l"),
 }

@@ -52,6 +52,7 @@ SYMMETRIC_S, SYMMETRIC_P = "S11 S12 S13 S22 S23 S33", "P11 P12 P13 P22 P23 P33"
 ROWS_Q = "Q11 Q12 Q13 Q21 Q22 Q23 Q31 Q32 Q33"
 ROWS_P = ROWS_Q.replace("Q", "P")
 ONE_POINT = "r1 r2 r3 v1 v2 v3"
+CONSTRAINED = ("nonholonomic", "hamel")
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
@@ -105,6 +106,13 @@ SHIPPED = {
     "chaplygin_ball": (TURNING, "I1 I2 I3 m r g chi1 chi2 chi3", CONSTRAINED),
     "chaplygin_ball_centred": (TURNING, "I1 I2 I3 m r", CONSTRAINED),
     "routh_sphere": (TURNING, "I1 I3 m r g l", CONSTRAINED),
+    **dict.fromkeys(("rolling_disk", "euler_disk"), (TURNING, "I1 I3 m r g", CONSTRAINED)),
+    "rolling_ellipsoid": (
+        TURNING,
+        "I11 I12 I13 I22 I23 I33 m g axes1 axes2 axes3",
+        CONSTRAINED,
+    ),
+    "body_of_revolution": (TURNING, "I1 I3 m g A C l", CONSTRAINED),
     "kepler": (ONE_POINT, "mu", ("poisson", "canonical", "euler-lagrange", "newton", "alignment")),
     "monopole_kepler": (ONE_POINT, "mu lam", ("poisson", "canonical", "newton", "alignment")),
     "n_particles": (
@@ -122,6 +130,12 @@ SHIPPED = {
         "a1 a2 a3 a4",
         MANAKOV,
     ),
+    "suslov": ("Omega1 Omega2 Omega3", "I11 I12 I13 I22 I23 I33 a1 a2 a3", CONSTRAINED),
+    "veselova": ("Omega1 Omega2 Omega3 Gamma1 Gamma2 Gamma3", "I1 I2 I3", CONSTRAINED),
+    "chaplygin_sleigh": ("v omega", "m I a", CONSTRAINED),
+    "rolling_disk_vertical": ("theta phi x y vtheta vphi", "m r I J", CONSTRAINED),
+    "snakeboard": ("v1 v2 omega psi phi vpsi vphi", "m J J0 J1 l", CONSTRAINED),
+    "knife_edge_cvt": ("xi x z vxi vx vz", "k eps kx kz g", CONSTRAINED),
     "bloch_iserles_2": ("X11 X12 X22", "N12", ("lax", *TWO)),
     "bloch_iserles_3": ("X11 X12 X13 X22 X23 X33", "N12 N13 N23", ("lax", *TWO)),
 }
