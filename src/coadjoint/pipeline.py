@@ -35,7 +35,7 @@ from coadjoint.prove import Certificate, prove
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Parameter, Spec, Variable
-from coadjoint.spec.model import Constraint, Shape, component_names
+from coadjoint.spec.model import Constraint, Reconstructed, Shape, component_names
 from coadjoint.spec.units import Unit, parse_unit, product_of, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
@@ -121,6 +121,7 @@ def kernel_context(equations: Equations, programs: dict[str, Program]) -> Kernel
         parameters=tuple(map(_quantity, spec.parameters)),
         observables=_observables(equations),
         programs=tuple(programs.values()),
+        reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
         domain=tuple(
             Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
         ),
@@ -153,6 +154,13 @@ def _quantity(declared: Variable | Parameter) -> Quantity:
         None if default is None else tuple(map(float, default)),
         getattr(declared, "positive", False),
     )
+
+
+def _followed(spec: Spec, each: Reconstructed) -> Quantity:
+    """What is reconstructed as the generated package declares it."""
+    upright = spec.rolling.normal if spec.rolling and each.attitude and each.of_rolling else ""
+    default = None if each.default is None else tuple(map(float, each.default))
+    return Quantity(each.name, each.shape, each.unit, each.components, default, upright=upright)
 
 
 def _observables(equations: Equations) -> tuple[Quantity, ...]:
@@ -273,7 +281,8 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         "description": spec.description,
         "docs": {quantity.name: quantity.doc for quantity in quantities if quantity.doc}
         | {entry.name: entry.doc for entry in spec.observables if entry.doc}
-        | {entry.name: entry.doc for entry in spec.symmetries if entry.doc},
+        | {entry.name: entry.doc for entry in spec.symmetries if entry.doc}
+        | {entry.name: entry.doc for entry in spec.reconstruction if entry.doc},
         "casimirs": [formula.in_one_line for formula in spec.casimirs],
         "routes": list(spec.routes),
         "claims": certificate.as_record()["claims"],

@@ -76,6 +76,11 @@ def _assignments(
     "--max-steps", type=click.IntRange(1), default=1_000_000, show_default=True, help="Most steps."
 )
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
+@click.option(
+    "--trace",
+    type=click.Path(path_type=Path),
+    help="Picture of the path of (x, y) on the plane to write, e.g. trace.png.",
+)
 @click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
 @json_option
 def command(
@@ -88,11 +93,16 @@ def command(
     samples: int,
     max_steps: int,
     plot: Path | None,
+    trace: Path | None,
     table: Path | None,
     as_json: bool,
 ) -> int:
     """Integrate a trajectory; show the drift of invariants."""
     loaded = load_system(system)
+    if trace is not None:
+        from coadjoint.solve.trace import check_traced  # which needs NumPy
+
+        check_traced(loaded)
     solution = loaded.simulate(
         initial_state(loaded.STATE, state),
         (0.0, time),
@@ -101,12 +111,15 @@ def command(
         rtol=rtol,
         samples=samples,
         max_steps=max_steps,
+        reconstruct=bool(loaded.RECONSTRUCTED),
     )
     (print_json(_record(loaded, solution)) if as_json else _print(loaded, solution))
     if table is not None:
         write_text(table, trajectory_csv(loaded, solution))
     if plot is not None:
         solution.plot(plot)
+    if trace is not None:
+        solution.trace(trace)
     return 0 if solution.status == "OK" else 1
 
 
@@ -157,9 +170,18 @@ def default_state(quantities: Quantities) -> list[float]:
     return state
 
 
+def _shown(system: System) -> tuple[str, ...]:
+    """State, what is reconstructed, and observables, by component."""
+    tables = (system.STATE, system.RECONSTRUCTED, system.OBSERVABLES)
+    return tuple(name for quantities in tables for name in quantities.components)
+
+
 def trajectory_csv(system: System, solution: Solution) -> str:
-    """Time, state and observables, one row for each sample, in digits that read back exactly."""
-    names = (*system.STATE.components, *system.OBSERVABLES.components)
+    """Time, state, what is reconstructed and observables, one row for each sample.
+
+    In digits that read back exactly.
+    """
+    names = _shown(system)
     columns = [solution.time.tolist(), *(solution[name].tolist() for name in names)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -179,6 +201,14 @@ def _print(system: System, solution: Solution) -> None:
         ],
         title=f"{system.title} ({system.name})",
     )
+    if system.RECONSTRUCTED:
+        print_table(
+            ("reconstructed", ">t = 0", f">{end}", "unit"),
+            [
+                (name, f"{first:.12g}", f"{last:.12g}", solution.unit(name))
+                for name, first, last in _ends(solution, system.RECONSTRUCTED.components)
+            ],
+        )
     print_table(
         ("observable", ">t = 0", f">{end}", "unit", ">drift"),
         [
@@ -192,6 +222,8 @@ def _print(system: System, solution: Solution) -> None:
             for name, first, last in _ends(solution, system.OBSERVABLES.components)
         ],
     )
+    for name, drift in solution.attitude_drift.items():
+        click.echo(f"|{name}|^2 - 1 up to {drift:.1e}")
     click.echo(": ".join(filter(None, ("status", solution.status, solution.message))))
 
 
@@ -202,12 +234,8 @@ def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, fl
 
 def _record(system: System, solution: Solution) -> dict[str, Any]:
     """The run as JSON values."""
-    ends = _ends(solution, (*system.STATE.components, *system.OBSERVABLES.components))
-    units = {
-        name: quantities.of_component(name).unit
-        for quantities in (system.STATE, system.OBSERVABLES)
-        for name in quantities.components
-    }
+    names = _shown(system)
+    ends, units = _ends(solution, names), {name: solution.unit(name) for name in names}
     return solution.summary() | {
         "initial": {name: first for name, first, _ in ends},
         "final": {name: last for name, _, last in ends},

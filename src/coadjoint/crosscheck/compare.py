@@ -129,18 +129,24 @@ class Subject:
         """Where the system is evaluated."""
         quantities = self.system.PARAMETERS.values()
         positive = tuple(each.positive for each in quantities for _ in each.components)
-        states = len(next(iter(self.programs.values())).state)
+        states = len(self._widest.state)
         return Points(states, positive, safe_exponent(self.programs, self.elementary))
+
+    @property
+    def _widest(self) -> Program:
+        """A function with the most inputs; those of the others are the first of them."""
+        return max(self.programs.values(), key=lambda program: len(program.state))
 
     def evaluate(self, function: str, batch: Batch, target: str) -> Array:
         """The outputs of one function, ``(rows, N)``."""
-        values = getattr(self.system, function)(batch.state, batch.parameters, target=target)
+        own = batch.state[: len(self.programs[function].state)]
+        values = getattr(self.system, function)(own, batch.parameters, target=target)
         rows = len(self.programs[function].outputs)
         return np.asarray(values, dtype=np.float64).reshape(rows, batch.state.shape[1])
 
     def inputs(self, batch: Batch, member: int) -> dict[str, float]:
         """State and parameters of one member by name."""
-        program = next(iter(self.programs.values()))
+        program = self._widest
         shared = batch.parameters.ndim == 1
         own = batch.parameters if shared else batch.parameters[:, member]
         values = [*batch.state[:, member].tolist(), *own.tolist()]

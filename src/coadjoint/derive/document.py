@@ -135,4 +135,5 @@ def equation_lines(equations: Equations) -> tuple[str, ...]:
         f"d{name}/dt = {element_text(field, rate)}"
         for name, rate in zip(equations.setting.state, exact.rates, strict=True)
     ]
-    return (*definitions, *rates)
+    followed = [f"d{name}/dt = {element_text(field, rate)}" for name, rate in equations.followed]
+    return (*definitions, *rates, *followed)

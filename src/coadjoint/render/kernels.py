@@ -35,6 +35,7 @@ SUMMARIES: Final = {
     "poisson_tensor": "Poisson tensor, brackets of the components of the state",
     "almost_poisson_tensor": "Almost-Poisson tensor, velocities standing for their momenta",
     "constraint_residual": "Left minus right sides of the constraints",
+    "reconstruction": "Rates of what is reconstructed; state holds the state, then its rows",
     "domain": "What is positive where the system is defined, one row for each entry of DOMAIN",
 }
 
@@ -56,6 +57,7 @@ class Quantity:
         default: One value per component, or None.
         positive: Whether every component must be positive.
         conserved: Whether the motion conserves it.
+        upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
     """
 
     name: str
@@ -65,6 +67,7 @@ class Quantity:
     default: tuple[float, ...] | None = None
     positive: bool = False
     conserved: bool = False
+    upright: str = ""
 
     def arguments(self) -> list[str]:
         """The arguments of its declaration, as text; what has its usual value is left out."""
@@ -74,6 +77,7 @@ class Quantity:
         if self.default is not None:
             given += [f"default={tuple_text(map(repr, self.default))}"]
         given += ["positive=True"] * self.positive + ["conserved=True"] * self.conserved
+        given += [f"upright={quoted(self.upright)}"] * bool(self.upright)
         return given
 
 
@@ -115,6 +119,8 @@ class KernelContext:
         observables: Quantities that the function ``observables`` returns, in order.
         programs: The functions, in order.
         domain: What the rows of the function ``domain`` are; empty where there is none.
+        reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
+            where there is none.
     """
 
     name: str
@@ -128,6 +134,7 @@ class KernelContext:
     observables: tuple[Quantity, ...]
     programs: tuple[Program, ...]
     domain: tuple[Bound, ...] = ()
+    reconstructed: tuple[Quantity, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -148,6 +155,7 @@ class Function:
         summary: What it is, with its shape.
         costs: Its operation counts, as lines.
         shape: Shape for one member, as Python text.
+        rows: How many rows its first argument has, the state and what may follow.
         state: Components of the state that it reads.
         parameters: Components of the parameters that it reads.
         python_inputs: The lines that take these from the arrays in Python.
@@ -162,6 +170,7 @@ class Function:
     summary: str
     costs: list[str]
     shape: str
+    rows: int
     state: tuple[Row, ...]
     parameters: tuple[Row, ...]
     python_inputs: tuple[str, ...]
@@ -220,6 +229,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "routes": _wrapped(context.routes),
             "equations": _wrapped(context.equations),
             "state": _rows(context.state),
+            "reconstructed": _rows(context.reconstructed, len(_rows(context.state))),
             "parameters": _rows(context.parameters),
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
@@ -228,9 +238,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "shapes": _shapes(context.programs),
             "system": _system(context, identity),
             "declared": {
-                "STATE": [quantity.arguments() for quantity in context.state],
-                "PARAMETERS": [quantity.arguments() for quantity in context.parameters],
-                "OBSERVABLES": [quantity.arguments() for quantity in context.observables],
+                table: [quantity.arguments() for quantity in quantities]
+                for table, quantities in _tables(context).items()
             },
             "domain": [bound.arguments() for bound in context.domain],
         },
@@ -242,7 +251,18 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     """The arguments of the System that a generated package makes."""
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
     domain = ["DOMAIN"] * bool(context.domain)
-    return [quoted(context.name), *tables, quoted(identity), *domain]
+    followed = ["reconstructed=RECONSTRUCTED"] * bool(context.reconstructed)
+    return [quoted(context.name), *tables, quoted(identity), *domain, *followed]
+
+
+def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
+    """The tables of quantities that a generated package declares."""
+    tables = {
+        "STATE": context.state,
+        "PARAMETERS": context.parameters,
+        "OBSERVABLES": context.observables,
+    }
+    return tables | ({"RECONSTRUCTED": context.reconstructed} if context.reconstructed else {})
 
 
 def _licence(expression: str) -> str:
@@ -265,10 +285,10 @@ def _wrapped(lines: Iterable[str]) -> list[str]:
     ]
 
 
-def _rows(quantities: Iterable[Quantity]) -> list[Row]:
-    """The components of an input array, row by row."""
+def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
+    """The components of an input array, row by row from ``first`` on."""
     named = [(name, quantity.unit) for quantity in quantities for name in quantity.components]
-    return [Row(index, name, unit) for index, (name, unit) in enumerate(named)]
+    return [Row(index, name, unit) for index, (name, unit) in enumerate(named, first)]
 
 
 def _function(program: Program, summary: str) -> Function:
@@ -279,6 +299,7 @@ def _function(program: Program, summary: str) -> Function:
         summary=summary,
         costs=_costs(program),
         shape=tuple_text(map(str, program.shape)),
+        rows=len(program.state),
         state=_read(program.state, used),
         parameters=_read(program.parameters, used),
         python_inputs=(

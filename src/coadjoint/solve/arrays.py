@@ -62,13 +62,14 @@ class Call:
                 f"{', '.join(system.functions)}.",
                 found=function,
             )
-        packed = as_float64(state, "state") if bound else pack(state, system.STATE, "state")
+        inputs = system.inputs(function)
+        packed = as_float64(state, "state") if bound else pack(state, inputs, "state")
         if bound and packed is not state:
             raise KernelArgumentError(
                 "bind reads the state in place; expected a C-contiguous float64 array.",
                 found=str(type(state).__name__),
             )
-        _check_rows(packed, system.STATE, "state", system.name)
+        _check_rows(packed, inputs, "state", system.name)
         batch = packed.shape[1:]
         values = pack_parameters(system, parameters)
         if values.shape[1:] not in ((), batch):
@@ -80,7 +81,7 @@ class Call:
             )
         shape = system.functions[function] + batch
         self.members = math.prod(batch)
-        self.state = packed.reshape(system.STATE.size, self.members)
+        self.state = packed.reshape(inputs.size, self.members)
         shared = values.ndim == 1
         self.parameters = values if shared else values.reshape(values.shape[0], self.members)
         if bound and out is None:

@@ -67,7 +67,7 @@ class Domain:
         """The first row that is violated or not finite at a state; None inside the domain."""
         if not self.bounds:
             return None
-        self._state[:] = state
+        self._state[:] = state[: self._state.size]  # what is reconstructed may follow
         self._evaluate()
         held = (self._rows >= self._least) & (self._rows < np.inf)  # neither holds for a NaN
         return None if held.all() else int(np.argmin(held))
@@ -180,7 +180,8 @@ class Domain:
     def _values(self, row: int, state: Array) -> str:
         """The inputs of a row with their values."""
         names = (*self.system.STATE.components, *self.system.PARAMETERS.components)
-        known = dict(zip(names, (*state.tolist(), *self.parameters.tolist()), strict=True))
+        values = (*state[: self._state.size].tolist(), *self.parameters.tolist())
+        known = dict(zip(names, values, strict=True))
         inputs = self.bounds[row].inputs
         told = [f"{name} = {known[name]:.6g}" for name in inputs[:SHOWN]]
         return ", ".join([*told, *(["..."] if len(inputs) > SHOWN else [])])

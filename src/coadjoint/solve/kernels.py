@@ -174,10 +174,12 @@ class Kernels:
             CompilerError: They differ.
         """
         source = np.random.default_rng(0)
-        state = source.uniform(0.5, 2.0, (self.system.STATE.size, PROBES))
+        inputs = self.system.inputs
+        wide = source.uniform(0.5, 2.0, (inputs("reconstruction").size, PROBES))
         own = source.uniform(0.5, 2.0, (self.system.PARAMETERS.size, PROBES))
         exact = target == "c" and not self.system.elementary
         for function, shape in self.system.functions.items():
+            state = wide[: inputs(function).size]
             for parameters, stride in ((own, PROBES), (own[:, 0].copy(), 0)):
                 expected = self._numpy_function(function)(state, parameters)
                 found = np.full((*shape, PROBES), np.pi)

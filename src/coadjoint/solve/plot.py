@@ -45,7 +45,7 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
         KernelArgumentError: matplotlib is not installed, or does not know the ending.
         OutputError: The file cannot be written.
     """
-    figure = _figure(headless=path is not None)
+    figure = new_figure(headless=path is not None)
     sphere = _sphere_quantity(solution)
     heights = [3.0, 1.0] if sphere else [2.2, 1.0]
     grid = figure.add_gridspec(2, 1, height_ratios=heights)
@@ -57,11 +57,11 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
     figure.suptitle(solution.system.title, fontsize=13)
     if path is None:
         return figure
-    _save(figure, Path(fspath(path)))
+    save(figure, Path(fspath(path)))
     return None
 
 
-def _figure(*, headless: bool) -> Any:
+def new_figure(*, headless: bool) -> Any:
     """An empty figure; without a path, one that pyplot can show."""
     try:
         if headless:
@@ -78,7 +78,7 @@ def _figure(*, headless: bool) -> Any:
         ) from error
 
 
-def _save(figure: Any, path: Path) -> None:
+def save(figure: Any, path: Path) -> None:
     """Write the picture beside its place and move it there."""
     temporary = path.with_name(f".{path.stem}.tmp{path.suffix}")
     try:
@@ -152,7 +152,7 @@ def _faces_viewer(vector: Array) -> NDArray[np.bool_]:
 
 def _label_sphere(axes: Any, solution: Solution, name: str, radius: float) -> None:
     """Axes, ticks, legend and title of the sphere."""
-    unit, symbol = _unit(solution.system.STATE[name].unit), _symbol(name)
+    unit, symbol = unit_label(solution.system.STATE[name].unit), _symbol(name)
     for n, axis in enumerate((axes.xaxis, axes.yaxis, axes.zaxis), 1):
         axis.set_label_text(f"{symbol}$_{n}$ {unit}", fontsize=9)
         axis.labelpad = 0
@@ -181,7 +181,7 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         shared = shared or axes
         for stroke, component in zip(_strokes(), quantity.components, strict=False):
             axes.plot(solution.time, solution[component], linewidth=1.0, label=component, **stroke)
-        axes.set_ylabel(f"{_symbol(name)} {_unit(quantity.unit)}", fontsize=9)
+        axes.set_ylabel(f"{_symbol(name)} {unit_label(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
         columns = -(-len(quantity.components) // LEGEND_ROWS)
         beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
@@ -227,7 +227,7 @@ def _strokes() -> Iterator[dict[str, str]]:
             yield from ({"color": colour, "linestyle": style} for colour in COLOURS)
 
 
-def _unit(unit: str) -> str:
+def unit_label(unit: str) -> str:
     """A unit for an axis, its exponents raised."""
     raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
     return "" if unit in ("", "1") else f"[{raised}]"

@@ -13,6 +13,7 @@ import scipy.integrate
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, pack, pack_parameters
 from coadjoint.solve.domain import Domain, Exit
+from coadjoint.solve.reconstruct import beginning
 from coadjoint.solve.solution import Solution
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ def simulate(
     samples: int,
     max_steps: int,
     target: Any,
+    reconstruct: Any,
 ) -> Solution:
     """Integrate one trajectory; arguments as in `System.simulate`."""
     initial = _initial(system, state)
@@ -50,18 +52,30 @@ def simulate(
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
     domain = Domain(system, packed, target)
     domain.check_start(initial)
-    rates, latest = _rates(system, packed, target)
+    followed = beginning(system, initial, reconstruct)
+    initial = np.concatenate([initial, followed])
+    rates, latest = _rates(system, packed, target, followed.size)
     rates(times[0], initial)
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
         reason = f"the rates are not finite at t = {times[0]:g}"
-        return Solution(system, times[:1], initial[:, None], packed, "NONFINITE", reason)
-    options = {"jac": _slopes(system, packed, target)} if name in IMPLICIT else {}
+        return _solution(system, times[:1], initial[:, None], packed, "NONFINITE", reason)
+    with_slopes = name in IMPLICIT and not followed.size
+    options = {"jac": _slopes(system, packed, target)} if with_slopes else {}
     with np.errstate(all="ignore"):
         solver = getattr(scipy.integrate, name)(
             rates, times[0], initial, times[-1], rtol=rtol, atol=atol, **options
         )
         times, states, status, reason = _follow(solver, times, max_steps, latest, domain)
-    return Solution(system, times, states, packed, status, reason)
+    return _solution(system, times, states, packed, status, reason)
+
+
+def _solution(
+    system: System, times: Array, states: Array, parameters: Array, status: str, reason: str
+) -> Solution:
+    """What was found, the state apart from what was reconstructed below it."""
+    n = system.STATE.size
+    followed = states[n:] if len(states) > n else None
+    return Solution(system, times, states[:n], parameters, status, reason, followed)
 
 
 def _follow(
@@ -117,14 +131,25 @@ def _ended(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
     return np.append(times[:reached], end.time), found
 
 
-def _rates(system: System, parameters: Array, target: Any) -> tuple[Rates, Array]:
-    """Rates for SciPy, all checks made once, and the array of the latest ones."""
-    state, latest = np.empty(system.STATE.size), np.empty(system.STATE.size)
-    evaluate = system.bind("rhs", state, parameters, latest, target)
+def _rates(system: System, parameters: Array, target: Any, followed: int) -> tuple[Rates, Array]:
+    """Rates for SciPy, all checks made once, and the array of the latest ones.
+
+    Args:
+        system: The System.
+        parameters: ``(k,)``.
+        target: Kernel that computes the rates.
+        followed: How many components are reconstructed, below the state.
+    """
+    n = system.STATE.size
+    whole, latest = np.empty(n + followed), np.empty(n + followed)
+    calls = [system.bind("rhs", whole[:n], parameters, latest[:n], target)]
+    if followed:
+        calls.append(system.bind("reconstruction", whole, parameters, latest[n:], target))
 
     def rates(_: float, y: Array) -> Array:
-        state[:] = y
-        evaluate()
+        whole[:] = y
+        for evaluate in calls:
+            evaluate()
         return latest.copy()
 
     return rates, latest

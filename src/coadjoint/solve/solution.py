@@ -36,6 +36,7 @@ class Solution:
             the last point inside), ``NONFINITE`` (the rates stopped being finite),
             ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
         message: Where it stopped and why, empty if all is well.
+        reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class Solution:
         parameters: Array,
         status: str,
         message: str,
+        reconstructed: Array | None = None,
     ) -> None:
         self.system = system
         self.time = time
@@ -53,6 +55,7 @@ class Solution:
         self.parameters = parameters
         self.status = status
         self.message = message
+        self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -65,19 +68,50 @@ class Solution:
             if name in quantities or name in quantities.components:
                 found: Array = values[quantities.rows(name)]
                 return found
-        names = [*self.system.STATE, *self.system.OBSERVABLES]
+        names = [each for quantities, _ in self._tables for each in quantities]
+        left = self.system.RECONSTRUCTED if self.reconstructed is None else ()
+        hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""
         raise KernelArgumentError(
-            f"{name!r} is not in this solution; expected one of {', '.join(names)} or 'time'.",
+            f"{name!r} is not in this solution; expected one of {', '.join(names)} or 'time'."
+            f"{hint}",
             found=name,
             expected=names,
         )
 
+    def __contains__(self, name: str) -> bool:
+        """Whether ``solution[name]`` is there."""
+        return name in ("t", "time") or any(
+            name in quantities or name in quantities.components for quantities, _ in self._tables
+        )
+
+    def unit(self, name: str) -> str:
+        """The unit of a quantity or component; ``"1"`` if dimensionless, ``""`` if not stated."""
+        return next(
+            str(quantities.of_component(name).unit)
+            for quantities, _ in self._tables
+            if name in quantities or name in quantities.components
+        )
+
     @property
     def _tables(self) -> list[tuple[Any, Array]]:
+        followed = self.reconstructed
         return [
             (self.system.STATE, self.state),
+            *([] if followed is None else [(self.system.RECONSTRUCTED, followed)]),
             (self.system.OBSERVABLES, self.observables),
         ]
+
+    @cached_property
+    def attitude_drift(self) -> dict[str, float]:
+        """Largest ``| |q|^2 - 1 |`` of each attitude that was reconstructed.
+
+        Nothing but the tolerances of the integration keeps a quaternion at unit length; this says
+        how well they did.
+        """
+        if self.reconstructed is None:
+            return {}
+        turning = (q for q in self.system.RECONSTRUCTED.values() if q.shape == (4,))
+        return {q.name: float(np.abs((self[q.name] ** 2).sum(axis=0) - 1).max()) for q in turning}
 
     @cached_property
     def observables(self) -> Array:
@@ -129,7 +163,7 @@ class Solution:
             "parameters": dict(parameters),
             "final": self.final,
             "drift": self.drift,
-        }
+        } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
 
     def to_xarray(self) -> Any:
         """The solution as an `xarray.Dataset` with units.
@@ -164,12 +198,23 @@ class Solution:
 
         return plot(self, path)
 
+    def trace(self, path: str | PathLike[str] | None = None) -> Any:
+        """Draw the path of (x, y) on the plane; see `coadjoint.solve.trace`.
+
+        Args:
+            path: Picture file to write; None to return the figure for showing.
+        """
+        from coadjoint.solve.trace import trace
+
+        return trace(self, path)
+
     def __repr__(self) -> str:
         lines = [
             f"<Solution of {self.system.name}: {self.status}, {len(self)} samples, "
             f"t = {self.time[0]:g} .. {self.time_reached:g}>"
         ]
         lines += [f"  drift of {name}: {value:.1e}" for name, value in self.drift.items()]
+        lines += [f"  |{name}|^2 - 1: {value:.1e}" for name, value in self.attitude_drift.items()]
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:

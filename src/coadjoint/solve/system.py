@@ -51,6 +51,7 @@ class System:
         elementary: Functions beyond ``+ - * / sqrt`` that the kernels call.
         id: The id that all files of the folder carry.
         DOMAIN: What the rows of `domain` are; empty where the system is defined everywhere.
+        RECONSTRUCTED: What follows from the motion without acting on it, in order.
     """
 
     def __init__(
@@ -64,6 +65,7 @@ class System:
         elementary: Sequence[str],
         identity: str,
         domain: Sequence[Bound] = (),
+        reconstructed: Quantities | None = None,
     ) -> None:
         self.name = name
         self.folder = Path(file).parent
@@ -74,6 +76,7 @@ class System:
         self.elementary = tuple(elementary)
         self.id = identity
         self.DOMAIN = tuple(domain)
+        self.RECONSTRUCTED = Quantities() if reconstructed is None else reconstructed
 
     # -- functions --------------------------------------------------------------------------------
 
@@ -179,6 +182,26 @@ class System:
         """
         return self.evaluate("domain", state, parameters, target, out)
 
+    def reconstruction(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """Rates of what is reconstructed, one row for each component of ``RECONSTRUCTED``.
+
+        Arguments as in `rhs`, but that the state is followed by the rows of ``RECONSTRUCTED``:
+        ``(n + k, *batch)``, or a mapping that names them all.
+        """
+        return self.evaluate("reconstruction", state, parameters, target, out)
+
+    def inputs(self, function: str) -> Quantities:
+        """What the rows of the first argument of a function are."""
+        if function != "reconstruction":
+            return self.STATE
+        return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+
     def evaluate(
         self,
         function: str,
@@ -238,6 +261,7 @@ class System:
         samples: int = 1001,
         max_steps: int = 1_000_000,
         target: Target = "c",
+        reconstruct: bool | Mapping[str, ArrayLike] = False,
     ) -> Solution:
         """Integrate one trajectory.
 
@@ -251,6 +275,11 @@ class System:
             samples: Number of evenly spaced samples when ``t`` is a pair.
             max_steps: After so many steps the trajectory ends with the status ``MAX_STEPS``.
             target: Kernel that computes the rates.
+            reconstruct: Whether to integrate ``RECONSTRUCTED`` beside the state, to the same
+                tolerances: attitude and place of a body, for instance. A mapping says where some
+                of it begins, as ``{"x": 1.0}``. Otherwise the rest begins at its default, else at
+                zero; an attitude at the identity, that of a rolling body turned upright the
+                shortest way. Methods with a Jacobian find it by differences then.
 
         Returns:
             The labelled trajectory, with observables and the drift of what is conserved. One that
@@ -275,6 +304,7 @@ class System:
             samples=samples,
             max_steps=max_steps,
             target=target,
+            reconstruct=reconstruct,
         )
 
     # -- what is known about it -------------------------------------------------------------------

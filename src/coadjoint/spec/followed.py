@@ -177,8 +177,18 @@ class FollowedReader:
 
     def _of_rolling(self, unit: str) -> tuple[Reconstructed, ...]:
         """Attitude and point of contact of a rolling body."""
-        attitude = Reconstructed(ATTITUDE, None, "quaternion", (4,), of_rolling=True)
-        contact = (Reconstructed(name, None, unit=unit, of_rolling=True) for name in CONTACT)
+        attitude = Reconstructed(
+            ATTITUDE,
+            None,
+            "quaternion",
+            (4,),
+            doc="attitude of the body, a unit quaternion",
+            of_rolling=True,
+        )
+        doc = "of the point of contact on the plane"
+        contact = (
+            Reconstructed(name, None, unit=unit, doc=doc, of_rolling=True) for name in CONTACT
+        )
         return (attitude, *contact)
 
     def _reconstructed(self, name: str, part: ReconstructedPart, scope: Scope) -> Reconstructed:
