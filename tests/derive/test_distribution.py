@@ -49,14 +49,14 @@ def test_the_ball_rolls_by_the_cross_product():
     zero, one = f.zero, f.one
     assert of.frame.velocities == ("Omega1", "Omega2", "Omega3", "Y1", "Y2", "Y3")
     assert of.independent == ("Omega1", "Omega2", "Omega3")
-    assert of.B == (
+    assert (
         (one, zero, zero),
         (zero, one, zero),
         (zero, zero, one),
         (zero, s[2], -s[1]),
         (-s[2], zero, s[0]),
         (s[1], -s[0], zero),
-    )
+    ) == of.B
     assert of.A[0][3] == 1  # the left side is the velocity
     assert of.A[0][1] == -s[2]
 
@@ -88,7 +88,7 @@ def test_what_gives_no_velocity_is_kept_as_it_is():
     f = of.setting.field
     assert of.solved == {}
     assert of.kept[0][1] == f["x"] * f["u"] + f["y"] * f["v"]
-    assert of.A == ((f["x"], f["y"]),)
+    assert ((f["x"], f["y"]),) == of.A
 
 
 def test_the_other_side_turns_the_sign_of_the_residual():

@@ -43,6 +43,10 @@ class ConstrainedRates:
         self.equations, self.distribution = equations, equations.distribution
         self.field = equations.setting.field
 
+    def closed(self, element: Element) -> Element:
+        """An element in the state, the parameters and the accelerations alone."""
+        return self.equations.closed(element)
+
     @cached_property
     def where(self) -> Ideal:
         """The constraints that are kept, as relations of the state."""
@@ -54,17 +58,17 @@ class ConstrainedRates:
     def rates(self) -> dict[str, Element]:
         """``dx/dt`` of the state, the accelerations by their names."""
         names = self.equations.setting.state
-        return dict(zip(names, map(self.equations.closed, self.equations.exact.rates), strict=True))
+        return dict(zip(names, map(self.closed, self.equations.exact.rates), strict=True))
 
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and velocities."""
-        names, closed = self.equations.setting.state, self.equations.closed(function)
+        names, closed = self.equations.setting.state, self.closed(function)
         slopes = zip(self.field.gradient(closed, names), names, strict=True)
         return self.value(self.field.sum(s * self.rates[name] for s, name in slopes if s != 0))
 
     def value(self, element: Element) -> Element:
         """An element affine in accelerations and multipliers, in the state alone."""
-        rest = self.equations.closed(element)
+        rest = self.field.substitute(self.closed(element), self._resting)
         parts = []
         for matrix, known, names in self._blocks:
             slopes = self.field.gradient(rest, names)
@@ -79,11 +83,22 @@ class ConstrainedRates:
         return self.field.sum([self.field.substitute(rest, unknown), *parts])
 
     @cached_property
+    def _resting(self) -> dict[str, Element]:
+        """What rests on the accelerations, written out in them: other rates and the reactions."""
+        solved = {name for solve in self.equations.exact.solves for name in solve.names}
+        names = set(self.equations.kept) - solved - self.equations.intermediates
+        known: dict[str, Element] = {}
+        for name, value in self.equations.exact.definitions:
+            if name in names:
+                known[name] = self.closed(self.field.substitute(value, known))
+        return known
+
+    @cached_property
     def _blocks(
         self,
     ) -> list[tuple[tuple[tuple[Element, ...], ...], list[Element], Sequence[str]]]:
         """Matrix, right side and unknowns of every solve, in the state alone."""
-        closed = self.equations.closed
+        closed = self.closed
         return [
             (
                 tuple(tuple(map(closed, row)) for row in solve.matrix),
@@ -102,7 +117,7 @@ class ConstrainedRates:
         power = [f * x for f, x in zip(external_forces(found.frame), xi, strict=True)]
         rest = dict.fromkeys(found.frame.velocities, field.zero)
         work = [-field.substitute(e.residual, rest) * field[e.reaction] for e in found.equations]
-        closed, names = self.equations.closed(energy), setting.state
+        closed, names = self.closed(energy), setting.state
         slopes = zip(field.gradient(closed, names), names, strict=True)
         changed = field.sum(s * self.rates[name] for s, name in slopes if s != 0)
         return self.value(changed - field.sum([*power, *work]))

@@ -1,0 +1,106 @@
+"""Claims about constrained motions: what is proved of good ones, and what a spoiled one shows."""
+
+import dataclasses
+
+import pytest
+
+from coadjoint.prove import Verdict
+from coadjoint.prove.constrained import ConstrainedRates, about_constraints
+from coadjoint.prove.zero import decide_zero
+from tests.constrained import PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
+
+AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
+DRIVEN = ("[claims]", '[forces]\nw = "3"\n[dissipation]\nR = "k*u^2/2"\n[claims]')
+
+
+def verdicts(routes):
+    """Verdict by statement of the claims that need no search."""
+    found = {}
+    for statement, kind, examine in about_constraints(routes):
+        if kind in ("constraint", "equivalence", "conserved"):
+            decision = examine()
+            if not hasattr(decision, "verdict"):
+                decision = decide_zero(decision, routes[0].setting.field)
+            found[statement] = decision.verdict
+    return found
+
+
+@pytest.mark.parametrize(
+    ("changes", "statement"),
+    [
+        ((), "the energy is conserved"),
+        ((AFFINE,), "the energy changes by the work of the moving constraints"),
+        ((DRIVEN,), "the energy changes by the power of the forces"),
+        (
+            (AFFINE, DRIVEN),
+            "the energy changes by the power of the forces and the work of the moving constraints",
+        ),
+    ],
+)
+def test_the_law_of_the_energy(changes, statement):
+    """It is proved with the forces that are declared, and with the work of moving constraints."""
+    found = verdicts(list(derived(PARTICLE, *changes).values()))
+    assert found[statement] is Verdict.PROVED
+    if changes:
+        of = motion(PARTICLE, *changes)
+        assert not of.field.is_zero(of.rate(of.equations.exact.energy))
+
+
+def test_a_claim_of_energy_is_refuted_where_constraints_move():
+    """Its rate along the motion is no zero, and a point shows it."""
+    of = motion(PARTICLE, AFFINE)
+    decision = decide_zero([of.rate(of.equations.exact.energy)], of.field, of.where)
+    assert decision.verdict is Verdict.REFUTED
+    assert decision.point
+
+
+def spoiled(equations, name, change):
+    """Equations with one definition changed."""
+    definitions = tuple((n, change(v) if n == name else v) for n, v in equations.exact.definitions)
+    exact = dataclasses.replace(equations.exact, definitions=definitions)
+    return dataclasses.replace(equations, exact=exact)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [(PARTICLE, "_d1"), (SLEIGH, "domega_dt"), (PENDULUM, "_l3_1"), (SUSLOV, "_z2")],
+)
+def test_a_wrong_line_of_the_solve_is_seen(text, name):
+    """Double one intermediate, and the claim that the kernel solves is refuted."""
+    first, second = derived(text).values()
+    wrong = spoiled(first, name, lambda value: 2 * value + 1)
+    statement = "the kernel solves for the accelerations: L D L^T = B^T M B"
+    assert verdicts([first, second])[statement] is Verdict.PROVED
+    assert verdicts([wrong, second])[statement] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("text", [PARTICLE, SLEIGH, SUSLOV])
+def test_a_wrong_side_of_a_solve_is_seen(text):
+    """One force of the other sign on one road, and the roads differ."""
+    first, second = derived(text).values()
+    solves = [
+        dataclasses.replace(solve, known=[-k for k in solve.known]) for solve in second.exact.solves
+    ]
+    exact = dataclasses.replace(second.exact, solves=tuple(solves))
+    wrong = dataclasses.replace(second, exact=exact)
+    statement = "nonholonomic and hamel give the same motion"
+    assert verdicts([first, second])[statement] is Verdict.PROVED
+    assert verdicts([first, wrong])[statement] is Verdict.REFUTED
+
+
+def test_kept_constraints_stay():
+    """d(x u + y v)/dt = 0 along the motion, and x^2 + y^2 with it where the constraint holds."""
+    of = motion(PENDULUM)
+    assert verdicts(list(derived(PENDULUM).values()))["the motion keeps rod"] is Verdict.PROVED
+    length = of.field["x"] ** 2 + of.field["y"] ** 2
+    assert not of.field.is_zero(of.rate(length))
+    assert decide_zero([of.rate(length)], of.field, of.where).verdict is Verdict.PROVED
+
+
+def test_rates_are_those_of_the_whole_motion():
+    """d(m u^2)/dt = 2 m u du/dt: with du/dt of the other sign another value."""
+    of = ConstrainedRates(derived(PARTICLE)["nonholonomic"])
+    m, y, u, v = (of.field[name] for name in "myuv")
+    found = of.rate(m * u**2)
+    assert of.field.is_zero(found + 2 * m * y * u**2 * v / (1 + y**2))
+    assert not of.field.is_zero(found - 2 * m * y * u**2 * v / (1 + y**2))
