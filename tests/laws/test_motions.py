@@ -44,7 +44,7 @@ def point_of(equations):
     """A random point of state and parameters, with what the kernel solves for there."""
     names = [str(symbol) for symbol in (*equations.state, *equations.parameters)]
     (point,) = rational_points(names, 1, seed=7)
-    return solved(equations, point)
+    return solved(equations, textbook.within(equations.spec.name, point))
 
 
 def at_a_point(equations, expressions):

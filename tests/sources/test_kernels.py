@@ -41,6 +41,8 @@ def inputs(name, shared):
         for n in sizes
     )
     parameters = np.abs(parameters) + np.arange(1, sizes[1] + 1)[:, None] / 16
+    named = dict(zip(textbook.PARAMETERS[name], parameters, strict=True))
+    parameters = np.array(list(textbook.within(name, named).values())).reshape(parameters.shape)
     return state, parameters[:, 0].copy() if shared else parameters
 
 

@@ -119,6 +119,16 @@ from tests.sources.tops import (
 )
 
 
+def within(name: str, point: dict[str, Any]) -> dict[str, Any]:
+    """A point moved to where the system is defined.
+
+    The height of a spheroid is real for every Gamma3 if it is longer than wide.
+    """
+    if name == "body_of_revolution":
+        return point | {"C": abs(point["A"]) + abs(point["C"])}
+    return point
+
+
 def numbered(name: str, count: int) -> tuple[str, ...]:
     """``Pi1, Pi2, ...``."""
     return tuple(f"{name}{n + 1}" for n in range(count))

@@ -52,7 +52,6 @@ SYMMETRIC_S, SYMMETRIC_P = "S11 S12 S13 S22 S23 S33", "P11 P12 P13 P22 P23 P33"
 ROWS_Q = "Q11 Q12 Q13 Q21 Q22 Q23 Q31 Q32 Q33"
 ROWS_P = ROWS_Q.replace("Q", "P")
 ONE_POINT = "r1 r2 r3 v1 v2 v3"
-CONSTRAINED = ("nonholonomic", "hamel")
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
