@@ -19,7 +19,7 @@ Read next: `coadjoint.derive.hamel`, `coadjoint.prove.almost_poisson`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.exact import Element
@@ -66,7 +66,7 @@ def almost_poisson(found: Distribution, lagrangian: Element) -> Tensor | None:
 def brackets(
     found: Distribution,
     lagrangian: Element,
-    fields: dict[str, Sequence[Element]],
+    fields: Mapping[str, Sequence[Element]],
     names: Sequence[str],
 ) -> Tensor:
     """The matrix of the brackets of some positions and momenta.

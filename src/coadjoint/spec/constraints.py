@@ -121,8 +121,11 @@ class ConstraintReader:
         """The constraints in declared order.
 
         Raises:
-            SpecError: One is no equation between velocities.
+            SpecError: One is no equation between velocities, or beside them stands what a
+                constrained motion does not have.
         """
+        if self.file.constraints is not None:
+            _check_unasked(self.source, self.file)
         solved = {
             name: (velocity, sign)
             for velocity, (name, sign) in (solved_velocities(self.file) or {}).items()
@@ -239,3 +242,28 @@ class ConstraintReader:
             hint=did_you_mean(name, velocities),
             at=self.source.positions.key(key),
         )
+
+
+def _check_unasked(source: Source, file: SpecFile) -> None:
+    """Nothing is asked of a constrained motion that rests on a Poisson bracket.
+
+    Raises:
+        SpecError: Something is, with what to declare instead.
+    """
+    asked: dict[KeyPath, tuple[str, bool]] = {
+        ("claims", "casimirs"): ("claims of Casimirs", bool(file.claims.casimirs)),
+        ("claims", "brackets"): ("claims of brackets", bool(file.claims.brackets)),
+        ("symmetries",): ("[symmetries]", bool(file.symmetries)),
+        ("transformations",): ("[transformations]", bool(file.transformations)),
+    }
+    for key, (what, there) in asked.items():
+        if there:
+            raise source.fault(
+                key,
+                f"there are {what} beside [constraints]",
+                found=key[-1],
+                expected="none, since the bracket of a constrained motion is almost-Poisson and "
+                "symmetries need not keep their momenta",
+                hint="Declare momenta along the constraints in [momenta], and name what is "
+                "conserved in claims.conserved.",
+            )

@@ -1,0 +1,250 @@
+r"""The almost-Poisson bracket of a constrained motion: that it is one, and how far from Poisson.
+
+In momenta :math:`M_k = \langle p, D_k \rangle` along the distribution the motion is
+:math:`J \nabla H` (`coadjoint.derive.almost_poisson`). Whether J satisfies the Jacobi identity is
+a finding: it does if the constraints are integrable, and for rolling bodies it does not. The
+defects are :math:`\{\{a, b\}, c\}` and its cyclic images for a, b, c among momenta and positions;
+derivatives by momenta are those by velocities, through the mass matrix,
+
+.. math::
+    \frac{\partial (M, z)}{\partial (\eta, z)}
+        = \begin{pmatrix} \mathcal{M} & \partial_z M \\ 0 & 1 \end{pmatrix}.
+
+Comes in: Equations with a distribution. Goes out: claims and findings for the certificate.
+Read next: `coadjoint.prove.momenta`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from fractions import Fraction
+from functools import cached_property
+from itertools import combinations, islice
+from typing import Any
+
+import mpmath
+
+from coadjoint.derive import Equations
+from coadjoint.derive.almost_poisson import Tensor, brackets, momenta_along
+from coadjoint.derive.distribution import Row
+from coadjoint.derive.emission import lagrangian_of
+from coadjoint.derive.interpret import inverse
+from coadjoint.derive.nonholonomic import external_forces
+from coadjoint.exact import Element
+from coadjoint.poisson.jacobi import Triple, schouten_bracket
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.findings import nonzero_at
+from coadjoint.prove.ideals import real_function
+from coadjoint.prove.identities import antisymmetry_defects
+from coadjoint.prove.integrability import Basis
+from coadjoint.prove.zero import (
+    DIGITS,
+    NEGLIGIBLE,
+    NORMAL_FORM,
+    Decision,
+    decide_zero,
+    random_points,
+)
+
+Pair = tuple[int, int]
+#: Points at which the Jacobi identity is tried before it is examined as a whole.
+TRIED = 3
+
+
+class ReducedBracket:
+    """The bracket of the momenta along a basis of the distribution, and of the positions.
+
+    Args:
+        equations: By a route with linear constraints.
+    """
+
+    def __init__(self, equations: Equations) -> None:
+        assert equations.distribution is not None, equations.route
+        self.equations, self.found = equations, equations.distribution
+        self.basis = Basis(self.found)
+        self.field = equations.setting.field
+        self.names = tuple(n for n in equations.setting.state if n not in self.basis.eliminated)
+
+    @cached_property
+    def lagrangian(self) -> Element:
+        """The Lagrangian in all velocities."""
+        return lagrangian_of(self.equations.setting)
+
+    @cached_property
+    def momenta(self) -> dict[str, Element]:
+        """``M_k`` in velocities of the basis and positions, by the velocities that they are of."""
+        fields = self.basis.fields
+        along = momenta_along(self.found, self.lagrangian, list(fields.values()))
+        return dict(zip(fields, map(self.basis.closed, along), strict=True))
+
+    @cached_property
+    def tensor(self) -> Tensor:
+        """The brackets: as emitted, or along the basis if constraints are kept."""
+        emitted = self.equations.exact.poisson_tensor
+        if emitted is None:
+            emitted = brackets(self.found, self.lagrangian, self.basis.fields, self.names)
+        return tuple(tuple(map(self.basis.closed, row)) for row in emitted)
+
+    @cached_property
+    def slopes(self) -> Row:
+        """``(dH/dM, dH/dz)`` as the theorem has them: ``(eta, -dl_c/dz)``, in state order."""
+        constrained = self.basis.closed(self.lagrangian)
+        return tuple(
+            self.field[n] if n in self.momenta else -self.field.derivative(constrained, n)
+            for n in self.names
+        )
+
+    def gradient_defects(self) -> list[Element]:
+        """``dH`` by velocities and positions, minus what the chain rule makes of `slopes`."""
+        energy = self.equations.exact.energy
+        assert energy is not None, "a Lagrangian has an energy"
+        closed = self.basis.closed(energy)
+        return [
+            self.field.derivative(closed, by)
+            - self.field.sum(
+                slope * self.field.derivative(self.momenta.get(n, self.field[n]), by)
+                for n, slope in zip(self.names, self.slopes, strict=True)
+            )
+            for by in self.names
+        ]
+
+    def motion_defects(self, motion: ConstrainedRates) -> list[Element]:
+        """Rates of momenta and positions minus ``J grad H`` and the forces along the fields."""
+        forces = [self.basis.closed(f) for f in external_forces(self.found.frame)]
+        driven = {
+            name: self.field.sum(a * f for a, f in zip(along, forces, strict=True) if a and f)
+            for name, along in self.basis.fields.items()
+        }
+        return [
+            motion.rate(self.momenta.get(name, self.field[name]))
+            - self.field.sum(a * b for a, b in zip(row, self.slopes, strict=True) if a and b)
+            - driven.get(name, self.field.zero)
+            for name, row in zip(self.names, self.tensor, strict=True)
+        ]
+
+    # -- the Jacobi identity ------------------------------------------------------------
+
+    @cached_property
+    def turn(self) -> Tensor:
+        """``d(M, z)/d(eta, z)``."""
+        values = (self.momenta.get(n, self.field[n]) for n in self.names)
+        return tuple(self.field.gradient(value, self.names) for value in values)
+
+    @cached_property
+    def entry_slopes(self) -> dict[Pair, Row]:
+        """Derivatives of the brackets by velocities and positions."""
+        pairs = combinations(range(len(self.names)), 2)
+        return {(b, c): self.field.gradient(self.tensor[b][c], self.names) for b, c in pairs}
+
+    def jacobi_defects(self) -> list[Element]:
+        """The components of the Schouten bracket in (M, z), exactly."""
+        back = inverse(self.turn)
+
+        def slopes(element: Element) -> list[tuple[int, Element]]:
+            parts = self.field.gradient(element, self.names)
+            turned = [_dot(parts, column) for column in zip(*back, strict=True)]
+            return [(m, slope) for m, slope in enumerate(turned) if slope]
+
+        return list(schouten_bracket(self.tensor, slopes).values())
+
+    def defect_somewhere(self) -> tuple[Triple, Decision] | None:
+        """A triple whose Jacobi defect is not zero at some point; None if none is found."""
+        entries = [e for row in (*self.tensor, *self.turn) for e in row]
+        present = frozenset[str]().union(*map(self.field.reach, entries))
+        names = [name for name in self.field.names if name in present]
+        plain = all(map(self.field.function_free, entries))
+        for point in islice(random_points(names, self.field.positive), TRIED):
+            with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):
+                for triple, value in self._defects_at(point, plain).items():
+                    if value:
+                        text = str(value) if plain else mpmath.nstr(value, 15)
+                        where = {name: str(x) for name, x in point.items()}
+                        return triple, Decision(Verdict.PROVED, nonzero_at(text, where))
+        return None
+
+    def _defects_at(self, point: Mapping[str, Fraction], plain: bool) -> dict[Triple, Any]:
+        """``J_am d_m J_bc + cyclic`` at a point: fractions, or 50 digits where functions occur."""
+        number = Fraction if plain else _decimal
+        values = {name: number(x) for name, x in point.items()}
+
+        def at(rows: Iterable[Row]) -> tuple[tuple[Any, ...], ...]:
+            return tuple(
+                tuple(self.field.evaluate(e, values, number, real_function) for e in row)
+                for row in rows
+            )
+
+        tensor, back = at(self.tensor), inverse(at(self.turn))
+        slopes = dict(zip(self.entry_slopes, at(self.entry_slopes.values()), strict=True))
+        turned = {
+            pair: [_dot(row, column) for column in zip(*back, strict=True)]
+            for pair, row in slopes.items()
+        }
+        found = {}
+        for a, b, c in combinations(range(len(self.names)), 3):
+            addends = [
+                sign * x * y
+                for first, pair, sign in ((a, (b, c), 1), (b, (a, c), -1), (c, (a, b), 1))
+                for x, y in zip(tensor[first], turned[pair], strict=True)
+            ]
+            total = sum(addends, number(Fraction(0)))
+            largest = max(map(abs, addends))
+            found[a, b, c] = total if plain or abs(total) > NEGLIGIBLE * largest else 0
+        return found
+
+    def label(self, place: int) -> str:
+        """``M_Omega1`` of a momentum, ``Gamma1`` of a position."""
+        name = self.names[place]
+        return f"M_{name}" if name in self.momenta else name
+
+
+def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
+    """The bracket in momenta: it gives the motion, is antisymmetric, and keeps Jacobi or not."""
+    first, found = motion.equations, motion.distribution
+    if not found.is_linear:  # then H is not the energy, and the motion not J grad H
+        return
+    bracket = ReducedBracket(first)
+    momenta = ", ".join(map(bracket.label, range(len(bracket.names))))
+    forced = " and the forces" if first.spec.forces or first.spec.dissipation else ""
+    yield (
+        "dH/dM = eta and dH/dz = -dl_c/dz, with M = dl_c/deta along the distribution",
+        "bracket",
+        bracket.gradient_defects,
+    )
+    yield (
+        f"the motion of ({momenta}) is the bracket with H{forced}",
+        "bracket",
+        lambda: decide_zero(bracket.motion_defects(motion), motion.field, motion.where),
+    )
+    yield "the bracket is antisymmetric", "bracket", lambda: antisymmetry_defects(bracket.tensor)
+    defect = bracket.defect_somewhere()
+    if defect is None:
+        few = ", as any of 2 variables" if len(bracket.names) == 2 else ""
+        yield f"the bracket satisfies the Jacobi identity{few}", "jacobi", lambda: _jacobi(bracket)
+        return
+    triple, decision = defect
+    a, b, c = map(bracket.label, triple)
+    yield (
+        f"the bracket is almost-Poisson: {{{a}, {{{b}, {c}}}}} + cyclic is not zero",
+        "jacobi",
+        lambda: decision,
+    )
+
+
+def _jacobi(bracket: ReducedBracket) -> Decision:
+    """The identity as a whole; of two coordinates, or of constants, it says nothing."""
+    defects = bracket.jacobi_defects()
+    if defects:
+        return decide_zero(defects, bracket.field)
+    return Decision(Verdict.PROVED, NORMAL_FORM)
+
+
+def _dot(a: Iterable[Any], b: Iterable[Any]) -> Any:
+    """The sum of products."""
+    first, *others = (x * y for x, y in zip(a, b, strict=True))
+    return sum(others, first)
+
+
+def _decimal(value: Fraction) -> Any:
+    return mpmath.mpf(value.numerator) / value.denominator

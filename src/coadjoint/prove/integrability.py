@@ -1,0 +1,208 @@
+r"""Integrability: whether constraints on velocities come from constraints on positions.
+
+Theorem (Frobenius; Holm 2011, section 12.1): the distribution of the fields D_k is integrable if
+and only if it has the brackets of its fields; with the constraints as forms A, if and only if
+:math:`A([D_i, D_j]) = 0`. How the fields grow by brackets, first once, then again, until they grow
+no more, is the growth vector: if they reach every direction the constraints are completely
+nonholonomic (Chow 1939, Rashevskii 1938), else some combination of them is holonomic. Of affine
+constraints the linear part is spoken of.
+Comes in: Equations with a distribution. Goes out: findings for the certificate.
+Read next: `coadjoint.prove.almost_poisson`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+from coadjoint.derive import Equations
+from coadjoint.derive.distribution import Distribution, Row
+from coadjoint.derive.interpret import determinant
+from coadjoint.exact import Element, Field
+from coadjoint.poisson.ranks import independent_rows
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.findings import Finding, finding, first_nonzero, shown
+from coadjoint.prove.zero import Decision, decide_zero
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Fields that span a distribution at almost every point.
+
+    Where no constraint is kept these are the columns of B. A constraint that is kept is solved for
+    the first velocity that it has, which is free of choice but has a pole: proofs divide by it,
+    kernels do not.
+
+    Attributes:
+        found: The distribution.
+    """
+
+    found: Distribution
+
+    @cached_property
+    def eliminated(self) -> Mapping[str, Element]:
+        """The velocities for which kept constraints are solved, in terms of the others."""
+        field, known = self.found.setting.field, dict[str, Element]()
+        for _, residual in self.found.kept:
+            value = field.substitute(self._linear(residual), known)
+            name = next(
+                n for n in self.found.independent if not field.is_zero(field.derivative(value, n))
+            )
+            rest = field.substitute(value, {name: field.zero})
+            root = -rest / field.derivative(value, name)
+            known = {n: field.substitute(v, {name: root}) for n, v in known.items()}
+            known[name] = root
+        return known
+
+    def _linear(self, residual: Element) -> Element:
+        field = self.found.setting.field
+        rest = dict.fromkeys(self.found.independent, field.zero)
+        return residual - field.substitute(residual, rest)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The velocities that stand for the fields."""
+        return tuple(n for n in self.found.independent if n not in self.eliminated)
+
+    @cached_property
+    def fields(self) -> dict[str, Row]:
+        """The fields by their velocities, components along the frame."""
+        field = self.found.setting.field
+        xi = [self._linear(self.closed(value)) for value in self.found.xi]
+        return {name: tuple(field.derivative(x, name) for x in xi) for name in self.names}
+
+    def closed(self, element: Element) -> Element:
+        """An element in the velocities of the fields and the positions alone."""
+        field = self.found.setting.field
+        return field.substitute(field.substitute(element, self.found.solved), self.eliminated)
+
+    def annihilated(self, vector: Sequence[Element]) -> Row:
+        """``A v``: zero for vectors of the distribution."""
+        field = self.found.setting.field
+        return tuple(
+            field.sum(a * x for a, x in zip(row, vector, strict=True) if a and x)
+            for row in self.found.A
+        )
+
+
+def about_integrability(first: Equations) -> Iterator[Finding]:
+    """Whether the constraints are integrable, and if not, what their brackets reach."""
+    found = first.distribution
+    assert found is not None, first.route
+    basis, field = Basis(found), found.setting.field
+    values = brackets_of(basis)
+    name, decision = first_nonzero(values, field)
+    many = len(found.equations) > 1
+    subject = "the constraints are" if many else "the constraint is"
+    if not found.is_linear:
+        subject = f"of the linear parts, {subject}"
+    yield finding(
+        "integrability",
+        decision,
+        f"{subject} integrable: [D_i, D_j] stays in the distribution",
+        f"{subject} not integrable: {name}{shown(field, values[name]) if name else ''}",
+    )
+    if name:
+        growth = Growth(basis)
+        yield growth.statement, "integrability", lambda: growth.decision
+
+
+def brackets_of(basis: Basis) -> dict[str, Element]:
+    """``rolling1([D_Omega1, D_Omega2])`` for all constraints and pairs of fields."""
+    found, values = basis.found, dict[str, Element]()
+    for (a, one), (b, two) in combinations(basis.fields.items(), 2):
+        parts = basis.annihilated(found.frame.bracket(one, two))
+        for equation, part in zip(found.equations, parts, strict=True):
+            values[f"{equation.name}([D_{a}, D_{b}])"] = part
+    return values
+
+
+class Growth:
+    """How a distribution grows by brackets with its fields.
+
+    Args:
+        basis: Its fields.
+    """
+
+    def __init__(self, basis: Basis) -> None:
+        self.basis = basis
+        self.ranks = [0]
+        self._minors: list[Element] = []
+        self._zeros: list[Element] = []
+        fields = list(basis.fields.values())
+        frame, codimension = basis.found.frame, len(basis.found.equations)
+        rows: list[Row] = []
+        newest = [frame.bracket(a, b) for a, b in combinations(fields, 2)]
+        while True:
+            whole = [*rows, *map(basis.annihilated, newest)]
+            chosen = self._chosen(whole)
+            self.ranks.append(len(chosen))
+            if self.ranks[-1] in (self.ranks[-2], codimension):
+                break
+            kept = [newest[n - len(rows)] for n in chosen if n >= len(rows)]
+            rows = [whole[n] for n in chosen]
+            newest = [frame.bracket(a, b) for a in fields for b in kept]
+
+    @property
+    def _field(self) -> Field:
+        return self.basis.found.setting.field
+
+    def _chosen(self, rows: Sequence[Row]) -> list[int]:
+        """Places of rows that span all of them; what proves so is kept."""
+        sparse = [{j: e for j, e in enumerate(row) if e != 0} for row in rows]
+        chosen = independent_rows(self._field, sparse)
+        turned = [
+            {i: rows[n][j] for i, n in enumerate(chosen) if rows[n][j] != 0}
+            for j in range(len(self.basis.found.equations))
+        ]
+        columns = independent_rows(self._field, turned)
+        if not chosen:
+            self._zeros += [e for row in rows for e in row]
+            return []
+        self._minors.append(_minor(rows, chosen, columns))
+        self._zeros += [
+            _minor(rows, [*chosen, n], [*columns, j])
+            for n in range(len(rows))
+            if n not in chosen
+            for j in range(len(turned))
+            if j not in columns
+        ]
+        return chosen
+
+    @property
+    def vector(self) -> tuple[int, ...]:
+        """Dimensions of the distribution, with brackets, with brackets of those, until they end."""
+        size = len(self.basis.fields)
+        return tuple(size + rank for n, rank in enumerate(self.ranks) if rank not in self.ranks[:n])
+
+    @property
+    def holonomic(self) -> int:
+        """How many combinations of the constraints are integrable."""
+        return len(self.basis.found.equations) - self.ranks[-1]
+
+    @property
+    def statement(self) -> str:
+        """The growth vector, and what it says."""
+        text = "the constraints are completely nonholonomic"
+        if len(self.basis.found.equations) == 1:
+            text = "the constraint is completely nonholonomic"
+        if self.holonomic:
+            text = f"{self.holonomic} of the {len(self.basis.found.equations)} is holonomic"
+        return f"growth vector {self.vector}: {text}"
+
+    @cached_property
+    def decision(self) -> Decision:
+        """Ranks from below by minors that are not zero, from above by bordered ones that are."""
+        for minor in self._minors:
+            if decide_zero([minor], self._field).verdict is not Verdict.REFUTED:
+                return Decision(Verdict.SUPPORTED, "ranks at random points")
+        found = decide_zero(self._zeros, self._field)
+        if found.verdict is Verdict.PROVED:
+            return Decision(Verdict.PROVED, "exact minors of the matrix of brackets")
+        return found
+
+
+def _minor(rows: Sequence[Row], places: Sequence[int], columns: Sequence[int]) -> Element:
+    return determinant(tuple(tuple(rows[i][j] for j in columns) for i in places))

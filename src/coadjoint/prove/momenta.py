@@ -1,0 +1,80 @@
+r"""Momentum equations: how momenta along sections of the distribution change.
+
+Theorem (Bloch, Krishnaprasad, Marsden and Murray 1996, momentum equation; Holm 2011, section
+12.3.2): for a field :math:`\Sigma = B\sigma` of the distribution, momenta
+:math:`p = \partial l/\partial\xi` and forces f,
+
+.. math::
+    \frac{d}{dt} \langle p, \Sigma \rangle
+        = \Sigma\, l + \langle p, [\xi, \Sigma] \rangle + \langle f, \Sigma \rangle,
+
+where the reactions do no work. Noether's theorem keeps the momentum of a symmetry only if its
+field is in the distribution; Jellett's integral is such a momentum.
+Comes in: Equations with a distribution and declared sections. Goes out: claims for the certificate.
+Read next: `coadjoint.derive.constrained` on sections.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.constrained import section_momenta, section_vector
+from coadjoint.derive.emission import lagrangian_of
+from coadjoint.derive.nonholonomic import external_forces
+from coadjoint.exact import Element, element_text
+from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.findings import SHOWN
+from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.spec.model import Section
+
+
+def about_momenta(motion: ConstrainedRates) -> Iterator[Examined]:
+    """The momentum equation of every declared section."""
+    for section in motion.equations.spec.sections:
+        law = momentum_law(motion.equations, section)
+        yield _statement(motion, section, law), "momentum", partial(_changes, motion, section, law)
+
+
+def momentum_law(equations: Equations, section: Section) -> Element:
+    """``Sigma l + <p, [xi, Sigma]> + <f, Sigma>``, in all velocities.
+
+    A section that a kept constraint does not allow gains the work of its reaction.
+    """
+    found, setting = equations.distribution, equations.setting
+    assert found is not None, equations.route
+    field, frame = setting.field, found.frame
+    lagrangian, along = lagrangian_of(setting), section_vector(found, section)
+    turned = frame.bracket(setting.elements(frame.velocities), along)
+    momenta = field.gradient(lagrangian, frame.velocities)
+    reactions = setting.elements([each.reaction for each in found.equations])
+    worked = [field.sum(a * x for a, x in zip(row, along, strict=True)) for row in found.A]
+    return field.sum(
+        [
+            frame.along(along, lagrangian),
+            *(p * x for p, x in zip(momenta, turned, strict=True)),
+            *(f * x for f, x in zip(external_forces(frame), along, strict=True)),
+            *(r * w for r, w in zip(reactions, worked, strict=True) if w != 0),
+        ]
+    )
+
+
+def _statement(motion: ConstrainedRates, section: Section, law: Element) -> str:
+    """The momentum equation, its right side written out where that is short."""
+    spec = motion.equations.spec
+    closed = motion.field.normal(motion.equations.closed(law)).combined()
+    if motion.where.contains(closed):
+        return f"{section.name} is conserved, by its momentum equation"
+    text = element_text(motion.field, closed)
+    if len(text) > SHOWN:
+        text = "Sigma l + <dl/dxi, [xi, Sigma]>"
+        text += " + <f, Sigma>" * bool(spec.forces or spec.dissipation)
+    return f"d{section.name}/dt = {text}"
+
+
+def _changes(motion: ConstrainedRates, section: Section, law: Element) -> Decision:
+    """The rate of the momentum minus its law."""
+    momenta = dict(section_momenta(motion.distribution, lagrangian_of(motion.equations.setting)))
+    rest = motion.rate(momenta[section.name]) - motion.value(law)
+    return decide_zero([rest], motion.field, motion.where)
