@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from tests.mutation import routes_over_algebras as algebras
 from tests.mutation import routes_over_coordinates as coordinates
+from tests.mutation import routes_over_distributions as distributions
 from tests.mutation.changed_specs import SPECS
 from tests.mutation.shared_steps import SHARED
 
@@ -19,6 +20,10 @@ ROUTE_MUTANTS = (
     *coordinates.LAGRANGE,
     *coordinates.HAMILTON,
     *coordinates.NEWTON,
+    *distributions.PROJECTED,
+    *distributions.CONSTRAINED_LAGRANGIAN,
+    *distributions.DISTRIBUTED,
+    *distributions.SLIPS,
     *SHARED,
     *SPECS,
 )

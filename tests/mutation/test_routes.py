@@ -111,6 +111,10 @@ def test_every_route_has_mutants():
         "minus a momentum map",
         "the magnetic bracket of the other sign",
         "a claimed Casimir of the wrong sign",
+        "a constraint put in before varying",
+        "a constraint without ds/dt",
+        "a torque of the other sign",
+        "s x Omega in the place of Omega x s",
     ],
 )
 def test_well_known_mistakes_are_among_them(fallacy):
