@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from coadjoint.cli.arguments import load_system
+from tests.solve.domains import STONE
+from tests.rolling import FOLLOWED_SLEIGH
 from tests.specs import RIGID_BODY
 
 
@@ -121,6 +123,24 @@ def test_motion_that_leaves_the_finite_numbers_has_status_1(run, rigid_body):
     assert record["drift"]["energy"] is None
 
 
+def test_leaving_the_domain_has_status_1_and_beginning_outside_2(folder, run):
+    """A stone reaches the ground: table and reason; below it nothing is simulated."""
+    (folder / "stone.toml").write_text(STONE)
+    words = ("stone.toml", "--time", "3", "--csv", "stone.csv")
+    result = run("simulate", *words)
+    assert result.exit_code == 1
+    assert "status: DOMAIN: the condition above, h > 0, does not hold" in result.stdout
+    *_, last = (folder / "stone.csv").read_text().splitlines()
+    assert abs(float(last.partition(",")[0]) - 2) < 1e-9
+    refused = run("simulate", "stone.toml", "--state", "h=-3")
+    assert refused.exit_code == 2
+    assert "above, h > 0, does not hold at the given state" in refused.stderr
+    assert "h = -3" in refused.stderr
+    heavy = run("simulate", "stone.toml", "--set", "g=2")
+    assert heavy.exit_code == 2
+    assert "m = 1, g = 2: change one of them" in heavy.stderr
+
+
 def test_a_system_begins_where_its_spec_says(folder, run):
     """A default of a quantity is taken; what is given on the command line is stronger."""
     text = RIGID_BODY.replace(
@@ -132,3 +152,26 @@ def test_a_system_begins_where_its_spec_says(folder, run):
     assert [initial[f"Pi{n}"] for n in (1, 2, 3)] == [3, 0, 0.5]
     given = json.loads(run("simulate", "body.toml", "--state", "Pi2=1", "--json").stdout)["initial"]
     assert [given[f"Pi{n}"] for n in (1, 2, 3)] == [3, 1, 0.5]
+
+
+def test_what_is_reconstructed_is_shown_written_and_drawn(folder, run):
+    """A sleigh's place: in the tables, in the CSV with the first row at its start, in a picture."""
+    pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+    (folder / "sleigh.toml").write_text(FOLLOWED_SLEIGH)
+    words = ["--time", "2", "--samples", "3", "--csv", "way.csv", "--trace", "way.png"]
+    result = run("simulate", "sleigh.toml", *words)
+    assert result.exit_code == 0, result.stderr
+    assert "reconstructed" in result.stdout
+    head, first, *_ = csv.reader((folder / "way.csv").read_text().splitlines())
+    row = dict(zip(head, map(float, first), strict=True))
+    assert {name: row[name] for name in ("theta", "x", "y")} == {"theta": 0, "x": 0, "y": 3}
+    assert (folder / "way.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_without_a_path_on_a_plane_there_is_no_trace(folder, run):
+    """A rigid body has no x and y: status 2, nothing is computed or written."""
+    result = run("simulate", "rigid_body", "--trace", "way.png")
+    assert result.exit_code == 2
+    assert "rigid_body leaves no trace: no x and no y among Pi" in result.stderr
+    assert not result.stdout
+    assert not list(folder.iterdir())

@@ -168,7 +168,7 @@ class Domain:
             return f"the condition {bound.name}{f', {text},' if text else ''} does not hold"
         if bound.kind == "acceleration":
             return "the reduced mass matrix is singular, or not positive,"
-        return "the constraints depend on each other"
+        return f"{bound.name} is undetermined, since constraints vanish or depend on each other,"
 
     def _meaning(self, row: int) -> str:
         """What the value of a row is."""
