@@ -1,8 +1,10 @@
 """Claims about constrained motions: what is proved of good ones, and what a spoiled one shows."""
 
 import dataclasses
+import math
 
 import pytest
+import sympy
 
 from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
@@ -104,3 +106,14 @@ def test_rates_are_those_of_the_whole_motion():
     found = of.rate(m * u**2)
     assert of.field.is_zero(found + 2 * m * y * u**2 * v / (1 + y**2))
     assert not of.field.is_zero(found - 2 * m * y * u**2 * v / (1 + y**2))
+
+
+def test_a_false_claim_beside_a_constraint_with_functions_is_refuted():
+    """Where cos(x) u = sin(x) v holds, dx/dt is not 0; the point says what v is there."""
+    of = motion(PENDULUM, ('"x*u + y*v == 0"', '"cos(x)*u - sin(x)*v == 0"'))
+    decision = decide_zero([of.rate(of.field["x"])], of.field, of.where)
+    assert decision.verdict is Verdict.REFUTED
+    x, u, v = (float(sympy.sympify(decision.point[name])) for name in "xuv")
+    assert math.cos(x) * u == pytest.approx(math.sin(x) * v)
+    energy = of.rate(of.equations.exact.energy)
+    assert decide_zero([energy], of.field, of.where).verdict is Verdict.PROVED

@@ -8,7 +8,8 @@ same certificate.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
@@ -88,11 +89,24 @@ def _decide_where(elements: Sequence[Element], ring: Field, where: Ideal) -> Dec
     found = decide_zero(list(map(where.on_zero_set, elements)), ring)
     point = found.point
     if point:
-        free = dict.fromkeys(ring.names, Fraction(1)) | {n: Fraction(v) for n, v in point.items()}
-        whole = where.completed(free)
-        shown = point.keys() | where.solved.keys()
-        point = {name: str(whole[name]) for name in ring.names if name in shown}
+        shown = {**point, **_solved_values(point, ring, where)}
+        point = {name: shown[name] for name in ring.names if name in shown}
     return Decision(found.verdict, f"{found.method}, where {where.text}", point, found.defect)
+
+
+def _solved_values(point: Mapping[str, str], ring: Field, where: Ideal) -> dict[str, str]:
+    """What relations give at a point as text, to 15 digits where functions occur."""
+    free = dict.fromkeys(ring.names, Fraction(1)) | {n: Fraction(v) for n, v in point.items()}
+    numbers = {name: _number(value) for name, value in free.items()}
+    values = {}
+    for name, root in where.solved.items():
+        with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):  # a pole: no value
+            if ring.function_free(root):
+                values[name] = str(ring.evaluate(root, free, Fraction, _no_call))
+            else:
+                value = ring.evaluate(root, numbers, _number, real_function)
+                values[name] = mpmath.nstr(value, 15)
+    return values
 
 
 def _decide_near(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
