@@ -154,7 +154,8 @@ def nullspace(
     equations = _integral(rows)
     for exponent in _MERSENNE:
         prime = 2**exponent - 1
-        basis = [_rational(row, prime) for row in _nullspace_modulo(equations, unknowns, prime)]
+        residues = nullspace_modulo(equations, unknowns, prime)
+        basis = [rational_vector(row, prime) for row in residues]
         found = [vector for vector in basis if vector is not None]
         if len(found) == len(basis) and _solves(equations, found):
             return found
@@ -253,7 +254,16 @@ def _reduced(pivots: dict[int, Row], prime: int) -> dict[int, Row]:
     return done
 
 
-def _nullspace_modulo(equations: list[Row], unknowns: int, prime: int) -> list[Row]:
+def echelon_modulo(rows: Iterable[Row], prime: int = PRIME) -> dict[int, Row]:
+    """The reduced rows modulo a prime by their pivots, each the first column of its row.
+
+    >>> echelon_modulo([{0: 1, 1: 2}, {0: 2, 1: 4, 2: 3}], 7)
+    {2: {2: 1}, 0: {0: 1, 1: 2}}
+    """
+    return _reduced(_eliminate(rows, prime, min), prime)
+
+
+def nullspace_modulo(equations: list[Row], unknowns: int, prime: int = PRIME) -> list[Row]:
     """The reduced row echelon basis of the null space modulo a prime, sorted by pivots."""
     # A pivot in a column that few rows have keeps the others sparse.
     frequency = Counter(column for row in equations for column in row)
@@ -266,11 +276,11 @@ def _nullspace_modulo(equations: list[Row], unknowns: int, prime: int) -> list[R
         for column, value in row.items():
             if column != pivot:
                 vectors[column][pivot] = -value % prime
-    basis = _reduced(_eliminate(vectors.values(), prime, min), prime)
+    basis = echelon_modulo(vectors.values(), prime)
     return [basis[pivot] for pivot in sorted(basis)]
 
 
-def _rational(row: Row, prime: int) -> dict[int, Fraction] | None:
+def rational_vector(row: Row, prime: int = PRIME) -> dict[int, Fraction] | None:
     """The rational vector that a row modulo a prime is the image of, if it is small enough."""
     found = {}
     bound = isqrt(prime // 2)

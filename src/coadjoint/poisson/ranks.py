@@ -192,11 +192,12 @@ def _residues(
 ) -> list[dict[int, int]]:
     """The matrix at a point."""
     return [
-        {j: field.evaluate(e, point, residue, _call).value for j, e in row.items()} for row in rows
+        {j: field.evaluate(e, point, residue, residue_call).value for j, e in row.items()}
+        for row in rows
     ]
 
 
-def _call(function: str, argument: Residue) -> Residue:
+def residue_call(function: str, argument: Residue) -> Residue:
     """A square root modulo `PRIME`, or another function where its argument is 0.
 
     Raises:

@@ -21,6 +21,8 @@ from coadjoint.derive.structure import momentum_algebra
 from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
+from coadjoint.prove.almost_poisson import about_reduced_bracket
+from coadjoint.prove.candidates import about_candidates, known_integrals
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
@@ -35,8 +37,12 @@ from coadjoint.prove.identities import (
     drift,
     hamiltonian_defects,
 )
+from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.lax import about_pairs
+from coadjoint.prove.measures import about_measure
+from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.reductions import about_reduction
+from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
@@ -99,6 +105,13 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from about_rolling(first)
         for claim in first.spec.conserved:
             yield _statement(claim), "conserved", partial(_constrained_integral, first, claim)
+        motion = ConstrainedRates(first)
+        yield from about_integrability(first)
+        yield from about_reduced_bracket(motion)
+        yield from about_momenta(motion)
+        yield from about_reversal(motion)
+        yield from about_candidates(motion, known_integrals(motion, _emitted(first)))
+        yield from about_measure(motion)
         return
     yield from _about_bracket(first)
     pulled = LegendreMap(first) if first.spec.lagrangian is not None else None

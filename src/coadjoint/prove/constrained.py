@@ -74,6 +74,9 @@ class ConstrainedRates:
             slopes = self.field.gradient(rest, names)
             if all(slope == 0 for slope in slopes):
                 continue
+            if slopes in matrix:  # a momentum: no determinant is needed
+                parts.append(known[matrix.index(slopes)])
+                continue
             bordered = (
                 *((*row, k) for row, k in zip(matrix, known, strict=True)),
                 (*slopes, self.field.zero),
