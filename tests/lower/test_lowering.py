@@ -136,12 +136,13 @@ BY_HAND = {
     "chaplygin_ball": 6 + 3 + 3 * 9 + 4 + 18 + 15 + 6 + 9 + 9 + 6 + 15 + 15,
     "chaplygin_ball_centred": 3 + 3 + 3 * 9 + 4 + 18 + 15 + 6 + 9 + 3 + 15 + 15,  # no weight
     "routh_sphere": 4 + 3 + 3 * 9 + 4 + 18 + 15 + 4 + 9 + 2 + 2 + 2 + 15 + 15,  # I1 = I2
-    # as chaplygin_ball: sine, s; of ds/dt = theta' (s rate) r; I1 = I2 and s3 = 0 are not made use of
-    **dict.fromkeys(("rolling_disk", "euler_disk"), 6 + 6 + 3 * 9 + 4 + 18 + 15 + 4 + 9 + 9 + 30),
-    # a^2 Gamma, h, s; (a^2 Gamma' - s h'/h)/h by h' = s . Gamma'; full inertia in I Omega
-    "rolling_ellipsoid": 3 + 7 + 3 + 5 + 9 + 3 * 9 + 4 + 18 + 15 + 15 + 9 + 12 + 15 + 15,
-    # h, u, v, s; u', v' and ds/dt; the rest as for routh_sphere
-    "body_of_revolution": 5 + 1 + 3 + 5 + 8 + 8 + 3 * 9 + 4 + 18 + 15 + 4 + 9 + 6 + 15 + 15,
+    # as routh_sphere: sine, s; its rate by the quotient rule, entry by entry; s3 = 0
+    **dict.fromkeys(("rolling_disk", "euler_disk"), 4 + 4 + 18 + 9 + 2 * 6 + 12 + 16 + 4 + 8 + 30),
+    # h, s; dGamma/dt; ds/dt by the quotient rule, entry by entry; Y, ds/dt turned, the force of
+    # both; I + m (s^2 - s s^T), L D L^T, solves; I Omega x Omega, I full; weight; torque; sums
+    "rolling_ellipsoid": 9 + 7 + 9 + 3 * 13 + 10 + 10 + 15 + 21 + 15 + 15 + 36 + 9 + 9 + 6,
+    # h, u, v, s; of ds/dt three entries; the rest as above, with I1 = I2
+    "body_of_revolution": 6 + 1 + 3 + 3 + 3 * 13 + 9 + 10 + 10 + 15 + 21 + 15 + 15 + 4 + 4 + 9 + 6,
     # squares; I Omega x Omega written out; L D L^T of 4 x 4
     "suslov": 3 + 3 * 11 + 28,
     # I Omega x Omega; Gamma x Omega; Gamma/I, its pivot, both sides of the multiplier; quotient, sums
