@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from coadjoint.cli.arguments import load_system
-from tests.solve.domains import STONE
 from tests.rolling import FOLLOWED_SLEIGH
+from tests.solve.domains import STONE
 from tests.specs import RIGID_BODY
 
 

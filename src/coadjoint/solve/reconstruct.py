@@ -7,6 +7,7 @@ Read next: `coadjoint.solve.simulate`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -109,10 +110,10 @@ def upright(vector: Array) -> Array:
     x, y, z = vector / length
     # 1 + z = (x^2 + y^2)/(1 - z), without the cancellation near the south pole
     real = 1 + z if z > 0 else (x * x + y * y) / (1 - z)
-    if real == 0 and x == 0 and y == 0:
+    if x == y == real == 0:
         return np.array([0.0, 1.0, 0.0, 0.0])
     whole = np.array([real, y, -x, 0.0])
-    return np.asarray(whole / np.linalg.norm(whole))
+    return np.asarray(whole / math.hypot(*whole))  # which squares no tiny number
 
 
 def _check_unit(quantity: Quantity, value: Array) -> None:
