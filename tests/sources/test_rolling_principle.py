@@ -72,6 +72,12 @@ def any_body():
     return {route: derive(sample, route) for route in sample.routes}
 
 
+@cache
+def moving(route):
+    """Where the general body is, and how its state moves there by a route."""
+    return motion_at(any_body()[route])
+
+
 # -- 12.2 the principle of Hamilton and Pontryagin -------------------------------------------------
 
 
@@ -82,11 +88,11 @@ def variation(given, sign=1):
     """
     l_Omega, l_Y, l_Gamma, s, Sigma = (given[n] for n in ("lO*", "lY*", "lG*", "s*", "S*"))
     Omega, moved = given["O*"], given["ds*"]
-    Yaw = cross(Omega, s)
+    velocity = cross(Omega, s)
     # with O^-1 dO = Sigma and O^-1 dx = Sigma x s
     reached, speed = cross(Sigma, s), plus(cross(given["dS*"], s), cross(Sigma, moved))
     by_turn = plus(given["dS*"], cross(Omega, Sigma))
-    by_shift = plus(plus(speed, cross(Omega, reached)), times(sign, cross(Yaw, Sigma)))
+    by_shift = plus(plus(speed, cross(Omega, reached)), times(sign, cross(velocity, Sigma)))
     varied = dot(l_Omega, by_turn) + dot(l_Y, by_shift) + dot(l_Gamma, cross(given["G*"], Sigma))
     P = plus(l_Omega, cross(s, l_Y))
     dP = plus(given["dlO*"], plus(cross(moved, l_Y), cross(s, given["dlY*"])))
@@ -132,7 +138,7 @@ def test_12_2_the_law_for_any_lagrangian_and_any_arm(route):
     P, s, l_Y, l_Gamma = in_slopes()
     moved = along(s)
     parts = [cross(P, OMEGA), cross(moved, l_Y), cross(l_Gamma, GAMMA)]
-    point, rates = motion_at(any_body()[route])
+    point, rates = moving(route)
     found = rate_at(point, rates, P)
     check_values(found, total(parts), point)
     for spoiled in (
@@ -189,7 +195,7 @@ def energy_of_any_body():
 def test_12_3_2_energy_stays_for_any_lagrangian_and_any_arm(route):
     """Its rate is 0 by both routes, and is not when an acceleration is spoiled."""
     equations = any_body()[route]
-    point, rates = motion_at(equations)
+    point, rates = moving(route)
     energy = energy_of_any_body()
     assert values([equations.energy], point) == values([energy], point)
     assert rate_at(point, rates, [energy]) == [0]
@@ -224,7 +230,7 @@ def test_12_3_3_the_wrong_motion_keeps_energy_and_vertical_momentum_too():
 
 def test_12_3_3_the_road_by_the_constrained_lagrangian_is_hamel_s():
     """With the force it gives the motion of the principle, for each ball and any body."""
-    for routes in (*map(derived, BALLS), any_body()):
-        one, two = (motion_at(equations)[1] for equations in routes.values())
+    motions = [[motion_at(equations) for equations in derived(name).values()] for name in BALLS]
+    for (_, one), (_, two) in (*motions, map(moving, any_body())):
         assert one == two
         assert any(one.values())
