@@ -193,3 +193,38 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
     assert caught.value.parts["found"] == route
     assert 'Write "euler-poincare" before it.' in str(caught.value)
     assert listed(["euler-poincare", "lie-poisson"]) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("table", "found"),
+    [
+        ('[claims]\ncasimirs = ["k*m"]', "claims of Casimirs"),
+        ('[claims]\nbrackets = { "{omega, v}" = "k" }', "claims of brackets"),
+        ('[transformations.P]\nmap = { v = "-v" }', "[transformations]"),
+        (
+            '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }',
+            "[symmetries]",
+        ),
+    ],
+)
+def test_what_rests_on_a_bracket_is_refused(table, found):
+    """Casimirs, brackets, symmetries and transformations have no place; [momenta] is named."""
+    with pytest.raises(SpecError, match="beside \\[constraints\\]") as caught:
+        spec(SLEIGH + table)
+    assert f"there are {found} beside [constraints]" in str(caught.value)
+    assert "Declare momenta along the constraints in [momenta]" in str(caught.value)
+
+
+@pytest.mark.parametrize("table", ["[claims]\ngalilean = true", '[lax]\nL = "v"\nM = "v"'])
+def test_what_rests_on_other_routes_is_refused(table):
+    """Neither Galilean relativity nor a Lax pair is spoken of beside constraints."""
+    with pytest.raises(SpecError, match=r"there is no \[newton\]|no route uses the table \[lax\]"):
+        spec(SLEIGH + table)
+
+
+def test_names_of_momenta_are_taken():
+    """The momentum of v is emitted as v_momentum, which nothing else may be called."""
+    assert [each.name for each in spec(SLEIGH).reduced_momenta] == ["omega_momentum", "v_momentum"]
+    with pytest.raises(SpecError, match="'v_momentum' is doubled") as caught:
+        spec(SLEIGH, ("k = {", "v_momentum = {"))
+    assert "parameters.v_momentum has that name too" in str(caught.value)
