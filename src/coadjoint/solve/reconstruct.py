@@ -112,7 +112,7 @@ def upright(vector: Array) -> Array:
     real = 1 + z if z > 0 else (x * x + y * y) / (1 - z)
     if x == y == real == 0:
         return np.array([0.0, 1.0, 0.0, 0.0])
-    whole = np.array([real, y, -x, 0.0])
+    whole = np.array([real, y, 0.0 - x, 0.0])
     return np.asarray(whole / math.hypot(*whole))  # which squares no tiny number
 
 
