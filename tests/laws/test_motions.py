@@ -11,7 +11,7 @@ import pytest
 import sympy
 
 from tests.conftest import SYSTEMS, rational_points
-from tests.sources import textbook
+from tests.sources import classical, textbook
 from tests.sources.test_equations import (
     BY_ROUTE,
     carried,
@@ -44,7 +44,8 @@ def point_of(equations):
     """A random point of state and parameters, with what the kernel solves for there."""
     names = [str(symbol) for symbol in (*equations.state, *equations.parameters)]
     (point,) = rational_points(names, 1, seed=7)
-    return solved(equations, textbook.within(equations.spec.name, point))
+    point = textbook.within(equations.spec.name, point)
+    return solved(equations, classical.allowed(equations.spec.name, point))
 
 
 def at_a_point(equations, expressions):

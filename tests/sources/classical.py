@@ -246,6 +246,20 @@ def blade_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
     }
 
 
+def allowed(name: str, point: dict[str, Any]) -> dict[str, Any]:
+    """A point moved to where its velocities obey the constraints that are kept."""
+    if name in ("suslov", "veselova"):
+        n1, n2, n3 = (point[f"{'a' if name == 'suslov' else 'Gamma'}{i}"] for i in (1, 2, 3))
+        return point | {"Omega3": -(n1 * point["Omega1"] + n2 * point["Omega2"]) / n3}
+    if name == "snakeboard":
+        s, c = circular("sin", point["phi"]), circular("cos", point["phi"])
+        return point | {"v1": -point["l"] * point["omega"] * c / s, "v2": 0 * s}
+    if name == "knife_edge_cvt":
+        s, c = circular("sin", point["xi"]), circular("cos", point["xi"])
+        return point | {"vz": point["vx"] * s / c}
+    return point
+
+
 RATES = {
     "suslov": suslov_rates,
     "veselova": veselova_rates,
