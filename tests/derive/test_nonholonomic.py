@@ -6,6 +6,7 @@ against it, and a sign or a term left out of it is seen.
 
 import pytest
 
+from coadjoint.derive.document import document
 from coadjoint.errors import DerivationError, LimitError
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
 
@@ -270,3 +271,22 @@ plane = "dot(a, v) == 0"
     assert caught.value.found == 13
     assert "Write constraints as Y == ..." in str(caught.value)
     motion(text.replace("12", "2"))
+
+
+def test_a_derivation_reads_like_a_book():
+    """Rates have dots, intermediates no underscores, and a step without lines is left out."""
+    steps = derived(BALL)["nonholonomic"].steps
+    titles = [step.title for step in steps]
+    assert titles[1:3] == ["Constraints, imposed after the variation", "Distribution"]
+    assert "Kinematics" in titles
+    assert "Kinematics" not in [s.title for s in derived(SLEIGH)["nonholonomic"].steps]
+    whole = document(derived(BALL)["nonholonomic"])
+    latex = " ".join(line.latex for section in whole.sections for line in section.lines)
+    html = " ".join(line.mathml for section in whole.sections for line in section.lines)
+    assert r"\dot{\Gamma_{1}} &=" in latex
+    assert r"b_{1} \dot{\Omega_{2}}" in latex
+    assert r"(B^T M B \dot\eta)_{1} &=" in latex
+    assert "_b1" not in latex + html
+    assert "dt}" not in latex
+    assert "dOmega" not in html
+    assert "<mfrac>" in html

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import sympy
 from sympy.printing.mathml import mathml
 
-from coadjoint.derive.equations import Equations, Left, Step
+from coadjoint.derive.equations import Equations, Left, Step, is_of_kernel, symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.spec.model import Definition
 
@@ -114,7 +114,8 @@ def _terms(field: Field, element: Element) -> list[sympy.Expr]:
 
 def _latex(terms: list[sympy.Expr]) -> str:
     """A sum, continued on further lines if it is long."""
-    texts = [sympy.latex(term) for term in terms]
+    names = {s: symbol(s.name).latex for s in _of_kernel(terms)}
+    texts = [sympy.latex(term, symbol_names=names) for term in terms]
     signed = [text if text.startswith("-") else f"+ {text}" for text in texts]
     rows = [" ".join(signed[n : n + ADDENDS]) for n in range(0, len(signed), ADDENDS)]
     return " \\\\\n&\\quad ".join(rows).removeprefix("+ ")
@@ -123,8 +124,16 @@ def _latex(terms: list[sympy.Expr]) -> str:
 def _mathml(terms: list[sympy.Expr]) -> str:
     """A sum as MathML, which browsers show without any script."""
     text: str = mathml(sympy.Add(*terms), printer="presentation")
+    for s in _of_kernel(terms):
+        text = text.replace(mathml(s, printer="presentation"), symbol(s.name).mathml)
     # The one named entity that SymPy prints is none of XML's own, so readers of XML refuse it.
     return text.replace("&InvisibleTimes;", "&#x2062;")
+
+
+def _of_kernel(terms: list[sympy.Expr]) -> list[sympy.Symbol]:
+    """The symbols whose names are those of kernels, in order."""
+    found = {s for term in terms for s in term.free_symbols if is_of_kernel(s.name)}
+    return sorted(found, key=str)
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

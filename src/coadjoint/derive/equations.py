@@ -8,7 +8,8 @@ Read next: `coadjoint.prove.claims` and `coadjoint.lower.lowering`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
@@ -34,10 +35,22 @@ class Left:
     mathml: str
 
 
+#: How kernels call a time derivative.
+_RATE = re.compile(r"d(?P<of>.+)_dt")
+
+
+def is_of_kernel(name: str) -> bool:
+    """Whether a name is one that kernels give: of an intermediate, or of a rate."""
+    return name.startswith("_") or _RATE.fullmatch(name) is not None
+
+
 @cache  # every route writes the same names
 def symbol(name: str) -> Left:
-    """The symbol itself: ``Pi1``."""
-    plain = sympy.Symbol(name)
+    """The symbol itself: ``Pi1``; names of kernels as a book would write them."""
+    moving = _RATE.fullmatch(name)
+    if moving:
+        return replace(rate(moving["of"]), text=name)
+    plain = sympy.Symbol(name.removeprefix("_"))
     return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
 
 
@@ -65,6 +78,14 @@ def partial(function: str, name: str) -> Left:
         f"<mrow><mo>&#x2202;</mo>{by.mathml}</mrow></mfrac>"
     )
     return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {by.latex}", fraction)
+
+
+def component(text: str, latex: str, n: int) -> Left:
+    """A component of a vector that is written out: ``(M eta')_1``."""
+    inner = f"<mo>(</mo><mtext>{text}</mtext><mo>)</mo>"
+    return Left(
+        f"({text})_{n}", f"({latex})_{{{n}}}", f"<msub><mrow>{inner}</mrow><mn>{n}</mn></msub>"
+    )
 
 
 def bracket(a: str, b: str) -> Left:

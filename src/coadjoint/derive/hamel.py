@@ -19,7 +19,7 @@ from __future__ import annotations
 from coadjoint.derive.constrained import ConstrainedMotion, Matrix, emission
 from coadjoint.derive.distribution import Row, distribution
 from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.equations import Equations, Step, partial, symbol
+from coadjoint.derive.equations import Equations, Step, component, partial, symbol
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.exact import Element
@@ -99,6 +99,8 @@ def _steps(
             "d/dt dl_c/deta_k = D_k l_c + <p, [xi, D_k]> + B_k f",
             r"\frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} = D_k l_c + \langle p, [\xi, D_k] "
             r"\rangle + B_k f",
-            tuple((symbol(f"(M eta')_{n + 1}"), value) for n, value in enumerate(known)),
+            tuple(
+                (component("M eta'", r"M \dot\eta", n), value) for n, value in enumerate(known, 1)
+            ),
         ),
     )

@@ -30,7 +30,7 @@ from __future__ import annotations
 from coadjoint.derive.constrained import ConstrainedMotion, Matrix, emission
 from coadjoint.derive.distribution import Row, distribution
 from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations, Step, component, partial, symbol
 from coadjoint.derive.frames import Frame
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.derive.solver import Definition
@@ -56,7 +56,7 @@ def derive(given: Spec | Setting) -> Equations:
     definitions = [*motion.kinematics(), *named]
     reactions = motion.reactions(mass, forces)
     exact = emission(motion, lagrangian, definitions, reduced, known, reactions)
-    steps = _steps(motion, lagrangian, reduced, known, reactions)
+    steps = _steps(motion, lagrangian, named, reduced, known, reactions)
     return Equations(setting, "nonholonomic", exact, steps, distribution=motion.distribution)
 
 
@@ -154,6 +154,7 @@ def _known(motion: ConstrainedMotion, forces: Row) -> Row:
 def _steps(
     motion: ConstrainedMotion,
     lagrangian: Element,
+    named: list[Definition],
     reduced: Matrix,
     known: Row,
     reactions: list[Definition],
@@ -161,8 +162,7 @@ def _steps(
     """The derivation as a person would write it down."""
     setting, found = motion.frame.setting, motion.distribution
     momenta = setting.field.gradient(lagrangian, motion.frame.velocities)
-    accelerations = [f"d{name}_dt" for name in found.independent]
-    return (
+    steps = (
         Step("Reduced Lagrangian", "l(xi, z)", r"l(\xi, z)", ((symbol("l"), lagrangian),)),
         Step(
             "Constraints, imposed after the variation",
@@ -186,7 +186,11 @@ def _steps(
             "Kinematics",
             "z' = X_xi z, c = B' eta + beta'",
             r"\dot z = X_\xi z, \qquad c = \dot B \eta + \dot \beta",
-            tuple((symbol(name), value) for name, value in motion.kinematics()),
+            tuple(
+                (symbol(name), value)
+                for name, value in motion.kinematics()
+                if name not in found.solved
+            ),
         ),
         Step(
             "Reduced mass matrix",
@@ -200,11 +204,21 @@ def _steps(
             ),
         ),
         Step(
+            "Forces along the velocities that constraints give",
+            "k = ad*_xi p + dl/da <> a + f - M c - dp/dz z'",
+            r"k = \mathrm{ad}^*_\xi p + (\partial l/\partial a) \diamond a + f - M c"
+            r" - \partial_z p \, \dot z",
+            tuple((symbol(name), value) for name, value in named),
+        ),
+        Step(
             "Equations of motion, solved for the accelerations in the kernel",
             "B^T M B eta' = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z')",
             r"B^T M B \dot\eta = B^T (\mathrm{ad}^*_\xi p + (\partial l/\partial a) \diamond a + f"
             r" - M c - \partial_z p \, \dot z)",
-            tuple((symbol(f"(B^T M B eta')_{n + 1}"), value) for n, value in enumerate(known)),
+            tuple(
+                (component("B^T M B eta'", r"B^T M B \dot\eta", n), value)
+                for n, value in enumerate(known, 1)
+            ),
         ),
         Step(
             "Accelerations of the other velocities, and reactions",
@@ -212,13 +226,5 @@ def _steps(
             r"\dot p - F = A^T \lambda",
             tuple((symbol(name), value) for name, value in reactions),
         ),
-        Step(
-            "Motion",
-            "eta', z'",
-            r"\dot\eta, \dot z",
-            tuple(
-                (rate(name), setting.field[rate_of])
-                for name, rate_of in zip(found.independent, accelerations, strict=True)
-            ),
-        ),
     )
+    return tuple(step for step in steps if step.lines)
