@@ -20,6 +20,7 @@ from tests.conftest import SYSTEMS
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SPECS = (ROOT / "docs" / "specs.md").read_text(encoding="utf-8")
+CONSTRAINED = (ROOT / "docs" / "nonholonomic.md").read_text(encoding="utf-8")
 
 
 def blocks(language, page=README):
@@ -87,7 +88,7 @@ def test_what_a_command_prints_is_what_it_printed():
 
 def test_other_specs_of_the_readme_are_proved(folder):
     """The shorter declarations are whole, and everything claimed of them holds."""
-    _, *others = [*blocks("toml"), *blocks("toml", SPECS)]
+    _, *others = [*blocks("toml"), *blocks("toml", SPECS), *blocks("toml", CONSTRAINED)]
     assert len(others) >= 3
     for number, spec in enumerate(others):
         path = folder / f"other{number}.toml"
