@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import combinations_with_replacement, islice
-from math import prod
+from math import gcd, lcm, prod
 from operator import mul
 
 from coadjoint.algebra.linear import (
@@ -37,7 +37,7 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
 from coadjoint.prove.constrained import ConstrainedRates, Examined
 from coadjoint.prove.reversibility import reversal_defects
-from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes
+from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
 from coadjoint.prove.zero import Decision, decide_zero
 from coadjoint.spec import Spec
 
@@ -221,14 +221,17 @@ class CandidateSearch:
                     yield element
 
     def _function(self, monomials: Sequence[Exponents], numbers: Mapping[int, Fraction]) -> Element:
-        """A combination of monomials, its first coefficient 1."""
-        first = next(iter(numbers.values()))
+        """A combination of monomials, scaled to whole coefficients without common factor."""
+        common = lcm(*(x.denominator for x in numbers.values()))
+        shared = gcd(*(int(x * common) for x in numbers.values()))
         powers = (
-            (x / first, zip(self.generators, monomials[n], strict=True)) for n, x in numbers.items()
+            (x * common / shared, zip(self.generators, monomials[n], strict=True))
+            for n, x in numbers.items()
         )
-        return self.field.sum(
+        whole = self.field.sum(
             prod((g**e for g, e in pairs if e), start=self.field.number(x)) for x, pairs in powers
         )
+        return -whole if leading(whole) < 0 else whole
 
 
 def about_candidates(motion: ConstrainedRates, known: Sequence[Known]) -> Iterator[Examined]:
@@ -283,20 +286,22 @@ def known_integrals(motion: ConstrainedRates, names: Mapping[str, Quantity]) -> 
         names: What claims may name beside the state.
     """
     equations, samples = motion.equations, Samples(motion)
-    setting, where, found = equations.setting, samples.where, list[Known]()
-    energy = equations.exact.energy
-    if energy is not None and not samples.obstacle:
-        slopes = samples.slopes(motion.closed(energy))
-        if not next(samples.points()).moved(slopes):
-            found.append(Known("energy", (motion.closed(energy),)))
-    known = {*setting.state, *setting.parameters}
+    if samples.obstacle:
+        return []
+    setting, point, found = equations.setting, next(samples.points()), list[Known]()
+    energy = [] if equations.exact.energy is None else [motion.closed(equations.exact.energy)]
+    stated = [("energy", energy)]
     for claim in equations.spec.conserved:
         level = [motion.closed(g) for f in claim.where for g in setting.components(f, names)]
-        parts = tuple(map(motion.closed, setting.components(claim.formula, names)))
-        stated = all(where.contains(g) for g in level)
-        if stated and all(motion.field.reach(part) <= known for part in parts):
-            found.append(Known(claim.formula.in_one_line, parts))
-    return list({each.text: each for each in found}.values())
+        if all(samples.where.contains(g) for g in level):
+            parts = list(map(motion.closed, setting.components(claim.formula, names)))
+            stated.append((claim.formula.in_one_line, parts))
+    known = {*setting.state, *setting.parameters}
+    for text, parts in dict(stated).items():
+        plain = parts and all(motion.field.reach(part) <= known for part in parts)
+        if plain and not any(point.moved(samples.slopes(part)) for part in parts):
+            found.append(Known(text, tuple(parts)))
+    return found
 
 
 def default_numbers(spec: Spec) -> dict[str, Fraction]:

@@ -30,8 +30,9 @@ class Claim:
     Attributes:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
         kind: ``algebra``, ``jacobi``, ``legendre``, ``equivalence``, ``reduction``, ``casimir``,
-            ``conserved``, ``constraint``, ``integrability``, ``momentum``, ``integrals``, ``measure``, ``rolling``,
-            ``lax``, ``galilean``, ``symmetry``, ``bracket`` or ``transformation``.
+            ``conserved``, ``constraint``, ``integrability``, ``momentum``, ``integrals``,
+            ``measure``, ``rolling``, ``lax``, ``galilean``, ``symmetry``, ``bracket`` or
+            ``transformation``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.

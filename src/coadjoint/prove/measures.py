@@ -31,7 +31,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
-from typing import Any
 
 from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
@@ -44,7 +43,7 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates, Examined
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.samples import AtNumbers, Point, Samples
+from coadjoint.prove.samples import AtNumbers, Point, Samples, leading
 from coadjoint.prove.zero import Decision, decide_zero
 
 #: Largest denominator of an exponent that is taken for one.
@@ -106,10 +105,10 @@ class Measure:
                 slopes = [
                     field.derivative(self.motion.closed(known), velocity) for known in solve.known
                 ]
-                turned = [
-                    [*row[:place], k, *row[place + 1 :]]
+                turned = tuple(
+                    (*row[:place], k, *row[place + 1 :])
                     for row, k in zip(matrix, slopes, strict=True)
-                ]
+                )
                 parts.append(determinant(turned) / whole)  # Cramer's rule
         return field.sum([*of_positions, *parts])
 
@@ -170,7 +169,7 @@ class Measure:
         pairs = zip(condition.parts, slopes, strict=False)  # but for ln rho
         return self.field.sum(v * s for v, s in pairs if v and s)
 
-    def contradiction(self, point: Point) -> tuple[list[str], int] | None:
+    def contradiction(self, point: Point) -> tuple[list[Condition], int] | None:
         """Conditions that contradict each other at a point, and the rank of their fields.
 
         None if none do, nor any of their brackets.
@@ -185,7 +184,7 @@ class Measure:
                 rows, kept, grown = [*rows, row], [*kept, condition], True
                 rank = _rank([known[:-1] for known in rows])
                 if rank < len(rows):
-                    return [each.name for each in kept], rank
+                    return kept[-1:] if not any(row[:-1]) else kept, rank
             waiting = [self.bracket(a, b) for a, b in combinations(kept, 2)] if grown else []
         return None
 
@@ -289,15 +288,16 @@ def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
 
 
 def _none(
-    measure: Measure, samples: Samples, form: str, names: Sequence[str], rank: int
+    measure: Measure, samples: Samples, form: str, found: Sequence[Condition], rank: int
 ) -> Examined:
     """That conditions contradict each other: certain where their fields can have no larger rank."""
-    certain = rank == len(measure.positions) - len(samples.unit)
+    resting = not any(found[-1].parts[:-1])
+    certain = resting or rank == len(measure.positions) - len(samples.unit)
     method = f"{rank + 1} conditions of rank {rank} at a random point modulo {PRIME}"
     decision = Decision(Verdict.PROVED if certain else Verdict.SUPPORTED, method)
     statement = (
         f"no invariant measure rho {form} for almost all parameters: what it asks for along "
-        f"{', '.join(names)} contradicts itself"
+        f"{', '.join(each.name for each in found)} contradicts itself"
     )
     return statement, "measure", lambda: decision
 
@@ -318,16 +318,11 @@ def _closed_form(
         found += [divisor for divisor, _ in written.divisors]
     known = list[Element]()
     for element in found:
-        factor = -element if _leading(element) < 0 else element
+        factor = -element if leading(element) < 0 else element
         moving = motion.field.reach(motion.field.normal(factor)) & set(measure.positions)
         if moving and factor not in known:
             known.append(factor)
     return measure.exponents(known, points)
-
-
-def _leading(element: Element) -> Any:
-    """The leading coefficient, which is positive as we write densities."""
-    return element.combined().parts[0].numer.LC
 
 
 def _form(motion: ConstrainedRates) -> str:

@@ -91,14 +91,22 @@ class Samples:
 
     @cached_property
     def obstacle(self) -> str:
-        """Why there are no points: a function of more than a single symbol; else empty."""
+        """Why there are no points; else empty.
+
+        Functions of one argument, or of a symbol each, take values that no algebra relates; sines
+        of x, y and x + y do not.
+        """
         needed = [*self.motion.equations.exact.rates, *(value for _, value in self._needed)]
-        for name in sorted(frozenset[str]().union(*map(self.field.functions_in, needed))):
-            known = self.field.adjoined[name]
-            plain = any(known.argument == self.field[symbol] for symbol in self.field.names)
-            if known.function != "sqrt" and not plain:
-                return f"{known.function} of more than one symbol occurs"
-        return ""
+        names = sorted(frozenset[str]().union(*map(self.field.functions_in, needed)))
+        called = [self.field.adjoined[name] for name in names]
+        arguments = list[Element]()
+        for known in called:
+            if known.function != "sqrt" and known.argument not in arguments:
+                arguments.append(known.argument)
+        symbols = [self.field[name] for name in self.field.names]
+        if len(arguments) < 2 or all(argument in symbols for argument in arguments):
+            return ""
+        return f"functions of {len(arguments)} arguments occur, which may be related"
 
     @cached_property
     def unit(self) -> tuple[Variable, ...]:
@@ -221,3 +229,8 @@ class AtNumbers(ConstrainedRates):
     def closed(self, element: Element) -> Element:
         """An element without parameters."""
         return self.field.substitute(super().closed(element), self._numbers)
+
+
+def leading(element: Element) -> Fraction:
+    """The leading coefficient of the numerator, by whose sign functions are written down."""
+    return Fraction(str(element.combined().parts[0].numer.LC))
