@@ -8,6 +8,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
+from coadjoint.errors import KernelArgumentError
 from coadjoint.prove import Verdict, prove
 from tests.sources.test_multipliers import closed, written_out
 from tests.specs import spec
@@ -81,6 +82,17 @@ def test_a_run_of_the_sleigh_follows_the_closed_form():
     limit = np.sqrt(2 * found["energy"][0] / given["m"])
     assert abs(found["v"][-1] - limit) < 1e-3 < abs(found["v"][40] - limit)
     assert found.drift["energy"] < 1e-9
+
+
+def test_the_track_of_the_sleigh_turns_by_the_closed_form():
+    """Theta = (W/q) (gd(q t) - gd(q t0)), and the blade moves along its direction."""
+    t = np.linspace(-10, 10, 41)
+    given = {"m": 1.0, "a": 0.5, "I": 3.75}  # V = 2, W = 1, q = 1/4
+    start = [2 * np.tanh(t[0] / 4), 1 / np.cosh(t[0] / 4)]
+    _, found = simulated("chaplygin_sleigh", start, t, given, reconstruct=True)
+    angle = 4 * (np.arctan(np.sinh(t / 4)) - np.arctan(np.sinh(t[0] / 4)))
+    np.testing.assert_allclose(found["theta"], angle, atol=1e-8)
+    assert np.abs(found["theta"] + angle).max() > 1
 
 
 # -- Suslov (1946), section 53; a = e3, I12 = 0 ----------------------------------------------------
@@ -245,6 +257,18 @@ def test_a_run_of_the_snakeboard_keeps_its_constraints():
     assert found.drift["energy"] < 1e-9
     assert np.ptp(found["p"]) > 1e-3  # it is no integral
     assert np.abs(module.constraint_residual(state + 0.1)).max() > 1e-3
+
+
+def test_the_snakeboard_stops_where_a_constraint_is_lost():
+    """With wheels that turn steadily the run ends as they come to lie across, at phi = pi/2."""
+    start = [-0.2 * 0.3 / np.tan(0.4), 0, 0.3, 0, 0.4, 2.0, 0.5]
+    module = importlib.import_module("coadjoint.systems.snakeboard")
+    found = module.simulate(start, (0, 10))
+    assert found.status == "DOMAIN"
+    assert abs(found.time[-1] - (np.pi / 2 - 0.4) / 0.5) < 1e-6
+    assert np.isfinite(found["v1"]).all()
+    with pytest.raises(KernelArgumentError, match=r"steered, cos.phi. > 0, .* phi = 2"):
+        module.simulate([1, 0, 0, 0, 2.0, 1, 0.1], (0, 1))
 
 
 # -- knife edge on an inclined plane: Bloch (2003), section 1.6 ------------------------------------
