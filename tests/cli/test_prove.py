@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import json
 
+import pytest
+
+from tests.constrained import PARTICLE
+
 
 def test_certificate_of_a_shipped_system(run):
     """Every claim about the heavy top is proved, the equality of its routes among them."""
@@ -34,3 +38,25 @@ def test_false_claim_is_refuted_with_a_point(run, false_claim):
     assert record["holds"] is False
     assert claim["counterexample"]
     assert claim["defect"] != "0"
+
+
+@pytest.mark.parametrize(
+    ("constraint", "found", "place"),
+    [
+        ('"w = y*u"', "there is no ==", ":17:12: constraints.blade: "),
+        ('"w*u == y"', "w*u == y is not linear in the velocities", ":17: constraints.blade: "),
+        ('"z == x"', "is one on positions", ":17: constraints.blade: "),
+        ('"w == y*u"\nmore = "w == y*u + 1"', "more contradicts", ":18: constraints.more: "),
+        ('"w == y*u"\nmore = "2*w == 2*y*u"', "more follows from", ":18: constraints.more: "),
+        ('"w == y*u"\n[forces]\nq = "1"', "there is no such velocity as 'q'", ":19:1: forces.q: "),
+    ],
+)
+def test_wrong_constraints_are_wrong_input(run, folder, constraint, found, place):
+    """The message names file, line and key, and the exit status is that of wrong input."""
+    path = folder / "particle.toml"
+    path.write_text(PARTICLE.replace('"w == y*u"', constraint), encoding="utf-8")
+    result = run("prove", path)
+    assert result.exit_code == 2
+    assert f"particle.toml{place}" in result.stderr
+    assert found in " ".join(result.stderr.split())
+    assert not result.stdout
