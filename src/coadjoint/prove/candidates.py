@@ -249,10 +249,11 @@ def about_candidates(motion: ConstrainedRates, known: Sequence[Known]) -> Iterat
     degrees = affordable(search)
     found = search.found(degrees)
     if search.independent(found):
-        where, values = "at the default parameters", default_numbers(motion.equations.spec)
-        search = CandidateSearch(motion, known, values)
-        numeric = AtNumbers(motion, values)
-        for element in search.new(degrees):
+        values = default_numbers(motion.equations.spec)
+        numeric, at_numbers = AtNumbers(motion, values), CandidateSearch(motion, known, values)
+        if not at_numbers.samples.obstacle:
+            search, where = at_numbers, "at the default parameters"
+        for element in search.new(degrees) if search is at_numbers else ():
             text = described(motion.field, element)
             yield (
                 f"{text} is conserved {where}",

@@ -28,6 +28,8 @@ from coadjoint.spec import Variable
 
 #: Values by name.
 Values = dict[str, Residue]
+#: How often a first point is tried.
+TRIES = 200
 #: The derivatives of a function that are not zero, by the names of the state.
 Slopes = list[tuple[str, Element]]
 
@@ -78,14 +80,15 @@ class Samples:
         self.motion, self.field = motion, motion.field
         self.state = motion.equations.setting.state
         self._source = random.Random(3)  # noqa: S311 (not for secrets)
-        names = motion.equations.setting.parameters
-        given = {name: residue(value) for name, value in (parameters or {}).items()}
-        self._parameters = {name: given.get(name) or self._draw() for name in names}
-        self._parameters |= given  # zeros, too
+        self._given = parameters
+        self._parameters = self._choice()
 
     def points(self) -> Iterator[Point]:
-        """Endless points; poles, and points without the square roots, are passed over."""
-        while True:
+        """Endless points, but none beside an obstacle.
+
+        Poles, and points without the square roots, are passed over.
+        """
+        while not self.obstacle:
             with suppress(ZeroDivisionError):
                 yield self._point()
 
@@ -104,9 +107,20 @@ class Samples:
             if known.function != "sqrt" and known.argument not in arguments:
                 arguments.append(known.argument)
         symbols = [self.field[name] for name in self.field.names]
-        if len(arguments) < 2 or all(argument in symbols for argument in arguments):
-            return ""
-        return f"functions of {len(arguments)} arguments occur, which may be related"
+        if len(arguments) > 1 and not all(argument in symbols for argument in arguments):
+            return f"functions of {len(arguments)} arguments occur, which may be related"
+        for _ in range(TRIES):  # a square root of parameters alone is there at all points or none
+            with suppress(ZeroDivisionError):
+                self._point()
+                return ""
+            self._parameters = self._choice()
+        return "no point has all square roots modulo a prime"
+
+    def _choice(self) -> Values:
+        """The parameters: as given, or random."""
+        if self._given is not None:
+            return {name: residue(value) for name, value in self._given.items()}
+        return {name: self._draw() for name in self.motion.equations.setting.parameters}
 
     @cached_property
     def unit(self) -> tuple[Variable, ...]:
