@@ -202,7 +202,7 @@ def test_jacobian_equals_divided_differences_exactly(system):
     programs = lower(derive(shipped(system)))
     rhs, jacobian = programs["rhs"], programs["jacobian"]
     (point,) = rational_points((*rhs.state, *rhs.parameters), 1, seed=5)
-    point = textbook.within(system, point)
+    point = textbook.rational(system, point)
     found = run(jacobian, point, Fraction, functions(system))
     n, h, slack = len(rhs.state), Fraction(1, 7), Fraction(0)
     if system in textbook.QUOTIENTS:
@@ -219,7 +219,7 @@ def test_programs_give_the_book_formulas(system):
     """The Program of rhs, run on fractions, equals the textbook's rates."""
     rhs = lower(derive(shipped(system)))["rhs"]
     for free in rational_points((*rhs.state, *rhs.parameters), 3, seed=6):
-        point = textbook.within(system, free)
+        point = textbook.rational(system, free)
         x, p = [point[n] for n in rhs.state], [point[n] for n in rhs.parameters]
         found = run(rhs, point, Fraction, functions(system))
         if functions(system) is exactly:

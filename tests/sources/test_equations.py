@@ -60,7 +60,7 @@ def points(name, count):
     """Exact random points, each with its values of state and parameters."""
     state, parameters = textbook.STATES[name], textbook.PARAMETERS[name]
     for free in rational_points((*state, *parameters), count):
-        point = textbook.within(name, free)
+        point = textbook.rational(name, free)
         yield point, [point[n] for n in state], [point[n] for n in parameters]
 
 

@@ -129,6 +129,22 @@ def within(name: str, point: dict[str, Any]) -> dict[str, Any]:
     return point
 
 
+def rational(name: str, point: dict[str, Any]) -> dict[str, Any]:
+    """A point moved to where the heights of rolling bodies have rational roots.
+
+    ``1 + (4/3)^2 = (5/3)^2`` of a disk, ``1 + 2^2 + 2^2 = 3^2`` of an ellipsoid, and
+    ``A^2 (1 - z^2) + (A z/2)^2 z^2 = A^2 (1 - z^2/2)^2`` of a spheroid.
+    """
+    if name in ("rolling_disk", "euler_disk"):
+        return point | {"Gamma2": point["Gamma1"] * 4 / 3}
+    if name == "rolling_ellipsoid":
+        long = 2 * point["axes1"] * point["Gamma1"]
+        return point | {f"axes{n}": long / point[f"Gamma{n}"] for n in (2, 3)}
+    if name == "body_of_revolution":
+        return point | {"C": point["A"] * point["Gamma3"] / 2}
+    return point
+
+
 def numbered(name: str, count: int) -> tuple[str, ...]:
     """``Pi1, Pi2, ...``."""
     return tuple(f"{name}{n + 1}" for n in range(count))
