@@ -5,7 +5,8 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.derive.constrained import ConstrainedMotion, rate_name
+from coadjoint.derive.constrained import ConstrainedMotion
+from coadjoint.derive.kinematics import rate_name
 from coadjoint.derive.solver import Solve, solution_defects, solve_in_kernel, solver_names
 from coadjoint.exact import Field
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, derived

@@ -145,7 +145,7 @@ BY_HAND = {
     "body_of_revolution": 6 + 1 + 3 + 3 + 3 * 13 + 9 + 10 + 10 + 15 + 21 + 15 + 15 + 4 + 4 + 9 + 6,
     # squares; I Omega x Omega written out; L D L^T of 4 x 4
     "suslov": 3 + 3 * 11 + 28,
-    # I Omega x Omega; Gamma x Omega; Gamma/I, its pivot, both sides of the multiplier; quotient, sums
+    # I Omega x Omega; Gamma x Omega; Gamma/I, its pivot, both sides of the multiplier; the rest
     "veselova": 6 + 9 + 3 + 9 + 12 + 1 + 9,
     "chaplygin_sleigh": 4 + 2 + 3 + 1,  # m a v omega/J; m omega (a omega + u)/m as two products
     # sin, cos; B, velocities, its rates, convected; forces, mass, known side, quotient

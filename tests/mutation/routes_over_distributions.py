@@ -146,7 +146,7 @@ DISTRIBUTED = (
     ),
     *of(
         "constrained",
-        "constrained",
+        "kinematics",
         (),
         ("self.rate(beta)])", "-self.rate(beta)])", "a moving constraint of the other sign"),
         tests=AFFINE,

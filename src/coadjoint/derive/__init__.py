@@ -14,12 +14,12 @@ from coadjoint.derive import (
     cayley_klein,
     clebsch,
     complexification,
-    constrained,
     euler_lagrange,
     euler_poincare,
     hamel,
     hamilton_pontryagin,
     kaluza_klein,
+    kinematics,
     lax,
     legendre,
     lie_poisson,
@@ -84,12 +84,12 @@ SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType(
         "canonical": canonical.symbols,
         "cayley-klein": cayley_klein.symbols,
         "clebsch": clebsch.symbols,
-        "hamel": constrained.symbols,
+        "hamel": kinematics.symbols,
         "hamilton-pontryagin": hamilton_pontryagin.symbols,
         "kaluza-klein": kaluza_klein.symbols,
         "lax": lax.symbols,
         "manakov": manakov.symbols,
-        "nonholonomic": constrained.symbols,
+        "nonholonomic": kinematics.symbols,
     }
 )
 

@@ -1,237 +1,35 @@
-r"""Constrained motion: what the routes with constraints share beside the distribution itself.
+r"""Constrained motion: what the routes with constraints share beside the kinematics.
 
-The kernel computes in the order of a careful hand: moving entries of B (``_b1``), the velocities
-that constraints give, the rates of positions (``dGamma1_dt``), those of the entries (``_e1``), the
-part :math:`c = \dot B \eta + \dot\beta` of the accelerations that needs none (``_c1``), then what a
-route puts into :math:`\mathcal{M} \dot\eta = k`, and at last the reactions.
-Comes in: a Distribution. Goes out: these definitions, and the Exact part of Equations. Routes make
-matrix and right side by themselves.
+A route puts matrix and right side into :math:`\mathcal{M} \dot\eta = k`; constraints that are kept
+join them with their multipliers, the kernel solves, and the reactions follow.
+Comes in: the Kinematics of a distribution. Goes out: the Exact part of Equations.
 Read next: `coadjoint.derive.nonholonomic`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.configuration import fault
-from coadjoint.derive.distribution import Distribution, Equation, Row, distribution
+from coadjoint.derive.distribution import Distribution, Equation, Row
 from coadjoint.derive.equations import Exact
-from coadjoint.derive.frames import Frame
+from coadjoint.derive.kinematics import Kinematics, Matrix, kept_rows, multiplier_name, rate_name
 from coadjoint.derive.legendre import coupled_blocks
 from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import make_setting
-from coadjoint.derive.solver import Definition, Solve, solve_in_kernel, solver_names
+from coadjoint.derive.solver import Definition, Solve, solve_in_kernel
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.poisson.ranks import generic_rank
-from coadjoint.spec import Spec
 from coadjoint.spec.model import Section
-from coadjoint.spec.names import derived_names
-
-Matrix = tuple[Row, ...]
-
-
-def rate_name(name: str) -> str:
-    """Name of a time derivative: ``dOmega1_dt``."""
-    return next(iter(derived_names([name])))
-
-
-def multiplier_name(place: int) -> str:
-    """Name of minus the multiplier of a constraint that is kept."""
-    return f"_u{place + 1}"
-
-
-def symbols(spec: Spec) -> tuple[str, ...]:
-    """The names that the definitions of a constrained motion need."""
-    found = distribution(make_setting(spec))
-    solved = len(found.solved)
-    count = len(_moving_entries(found))
-    size = len(found.independent) + len(found.kept)
-    return (
-        *(f"_b{n + 1}" for n in range(count)),
-        *map(rate_name, found.frame.positions),
-        *(f"_e{n + 1}" for n in range(count)),
-        *(f"_c{n + 1}" for n in range(solved)),
-        *(f"_k{n + 1}" for n in range(len(found.frame.velocities))),
-        *map(rate_name, found.frame.velocities),
-        *solver_names(range(size)),
-        *map(multiplier_name, range(len(found.kept))),
-        *(equation.reaction for equation in found.equations),
-    )
-
-
-def _moving_entries(found: Distribution) -> list[Element]:
-    """Entries of B, beta and A that move and are no symbols, each up to its sign."""
-    field, moving = found.setting.field, set(found.frame.positions)
-    kept = [e for row in kept_rows(found) for e in row]
-    places = [n for n, name in enumerate(found.frame.velocities) if name in found.solved]
-    given = [e for n in places for e in (*found.B[n], found.beta[n])]
-    known: list[Element] = []
-    for entry in (*given, *kept):
-        if not field.reach(entry) & moving or is_symbol(found, entry):
-            continue
-        if not any(entry == other or entry == -other for other in known):
-            known.append(entry)
-    return known
-
-
-def kept_rows(found: Distribution) -> list[Row]:
-    """``(A, -b)`` of the kept constraints, in eta."""
-    field = found.setting.field
-    rest = dict.fromkeys(found.independent, field.zero)
-    return [
-        (*field.gradient(residual, found.independent), field.substitute(residual, rest))
-        for _, residual in found.kept
-    ]
-
-
-def is_symbol(found: Distribution, entry: Element) -> bool:
-    """Whether an element is a name or minus a name, which needs no other."""
-    field = found.setting.field
-    return any(entry in (field[name], -field[name]) for name in found.frame.positions)
 
 
 @dataclass(frozen=True)
-class ConstrainedMotion:
-    """The kinematics of a distribution, its recurring values named.
-
-    Attributes:
-        distribution: What the constraints allow.
-    """
-
-    distribution: Distribution
-
-    @property
-    def frame(self) -> Frame:
-        """The velocities and their fields."""
-        return self.distribution.frame
-
-    @cached_property
-    def entries(self) -> list[Element]:
-        """What ``_b1``, ``_b2``, ... are."""
-        return _moving_entries(self.distribution)
-
-    def named(self, entry: Element) -> Element:
-        """An entry of B, beta or A, by its name where it has one."""
-        field = self.frame.setting.field
-        for n, known in enumerate(self.entries):
-            if entry == known:
-                return field[f"_b{n + 1}"]
-            if entry == -known:
-                return -field[f"_b{n + 1}"]
-        return entry
-
-    def rate(self, entry: Element) -> Element:
-        """The time derivative of an entry, by its name where it has one."""
-        field = self.frame.setting.field
-        for n, known in enumerate(self.entries):
-            if entry == known:
-                return field[f"_e{n + 1}"]
-            if entry == -known:
-                return -field[f"_e{n + 1}"]
-        return self.moved(entry)
-
-    def moved(self, function: Element) -> Element:
-        """``dz/dt . df/dz`` of a function of positions, with the rates by their names."""
-        field = self.frame.setting.field
-        pairs = zip(
-            field.gradient(function, self.frame.positions), self.frame.positions, strict=True
-        )
-        return field.sum(slope * self.position_rates[name] for slope, name in pairs if slope != 0)
-
-    @cached_property
-    def position_rates(self) -> Mapping[str, Element]:
-        """``dz/dt`` of the positions: a velocity where it is one, else a name."""
-        field = self.frame.setting.field
-        return {
-            name: self.frame_rates[name] if self._is_velocity(name) else field[rate_name(name)]
-            for name in self.frame.positions
-        }
-
-    @cached_property
-    def frame_rates(self) -> Mapping[str, Element]:
-        """``dz/dt`` in the velocities."""
-        return self.frame.rates(self.frame.setting.elements(self.frame.velocities))
-
-    def _is_velocity(self, position: str) -> bool:
-        field, value = self.frame.setting.field, self.frame_rates[position]
-        return any(value == field[name] for name in self.frame.velocities)
-
-    @cached_property
-    def solved(self) -> list[int]:
-        """Places of the velocities that constraints give."""
-        names = self.distribution.solved
-        return [n for n, name in enumerate(self.frame.velocities) if name in names]
-
-    @cached_property
-    def independent(self) -> list[int]:
-        """Places of the others."""
-        return [n for n in range(len(self.frame.velocities)) if n not in self.solved]
-
-    @cached_property
-    def B(self) -> Matrix:
-        """``d xi / d eta`` with names for its moving entries."""
-        return tuple(tuple(map(self.named, row)) for row in self.distribution.B)
-
-    @cached_property
-    def c(self) -> Row:
-        """``dB/dt eta + dbeta/dt`` by name, a component for each velocity of the frame."""
-        field = self.frame.setting.field
-        names = {place: f"_c{n + 1}" for n, place in enumerate(self.solved)}
-        return tuple(
-            field[names[n]] if n in names and self._convected[n] != 0 else field.zero
-            for n in range(len(self.frame.velocities))
-        )
-
-    @cached_property
-    def _convected(self) -> Row:
-        """The same, in the rates of the entries."""
-        field, found = self.frame.setting.field, self.distribution
-        eta = self.frame.setting.elements(found.independent)
-        return tuple(
-            field.sum([*(self.rate(b) * x for b, x in zip(row, eta, strict=True)), self.rate(beta)])
-            for row, beta in zip(found.B, found.beta, strict=True)
-        )
-
-    def velocities(self) -> list[Definition]:
-        """The velocities that constraints give, each from eta."""
-        field, found = self.frame.setting.field, self.distribution
-        eta = self.frame.setting.elements(found.independent)
-        return [
-            (
-                self.frame.velocities[n],
-                field.sum(
-                    [
-                        *(b * x for b, x in zip(self.B[n], eta, strict=True)),
-                        self.named(found.beta[n]),
-                    ]
-                ),
-            )
-            for n in self.solved
-        ]
-
-    def kinematics(self) -> list[Definition]:
-        """Everything that rests on velocities and positions alone, in order."""
-        rates = self.frame_rates
-        entries = [(f"_b{n + 1}", entry) for n, entry in enumerate(self.entries)]
-        moved = [(f"_e{n + 1}", self.moved(entry)) for n, entry in enumerate(self.entries)]
-        positions = [
-            (rate_name(name), rates[name])
-            for name in self.frame.positions
-            if not self._is_velocity(name)
-        ]
-        convected = [
-            (f"_c{n + 1}", self._convected[place])
-            for n, place in enumerate(self.solved)
-            if self._convected[place] != 0
-        ]
-        return [*entries, *self.velocities(), *positions, *moved, *convected]
-
-    # -- accelerations ------------------------------------------------------------------
+class ConstrainedMotion(Kinematics):
+    """Kinematics with accelerations: what the kernel solves for, and what rests on it."""
 
     @cached_property
     def accelerations(self) -> Row:

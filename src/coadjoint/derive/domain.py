@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from coadjoint.derive.constrained import multiplier_name
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.kinematics import multiplier_name
 from coadjoint.derive.solver import pivot_name
 from coadjoint.exact import Element
 

@@ -19,8 +19,8 @@ from collections.abc import Sequence
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.attitudes import quaternion, turning_places
-from coadjoint.derive.constrained import ConstrainedMotion
 from coadjoint.derive.distribution import Distribution
+from coadjoint.derive.kinematics import Kinematics
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
@@ -60,7 +60,7 @@ def attitude_rate(setting: Setting, components: Sequence[str]) -> tuple[Element,
 
 def contact_rate(found: Distribution) -> tuple[Element, ...]:
     """``-O ds/dt``: the velocity of the point of contact in space, the height last."""
-    setting, motion = found.setting, ConstrainedMotion(found)
+    setting, motion = found.setting, Kinematics(found)
     q = Quaternion(*setting.elements(setting_attitude(setting)))
     carried = Quaternion.pure([motion.rate(x) for x in arm(setting)])
     return setting.field.vector((-(q * carried * q.conjugate)).vector)

@@ -16,10 +16,11 @@ Read next: `coadjoint.derive.nonholonomic`, the road by projection.
 
 from __future__ import annotations
 
-from coadjoint.derive.constrained import ConstrainedMotion, Matrix, emission
+from coadjoint.derive.constrained import ConstrainedMotion, emission
 from coadjoint.derive.distribution import Row, distribution
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.equations import Equations, Step, component, partial, symbol
+from coadjoint.derive.kinematics import Matrix
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.exact import Element

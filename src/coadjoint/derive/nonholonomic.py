@@ -27,11 +27,12 @@ Read next: `coadjoint.derive.hamel`, the road by the constrained Lagrangian.
 
 from __future__ import annotations
 
-from coadjoint.derive.constrained import ConstrainedMotion, Matrix, emission
+from coadjoint.derive.constrained import ConstrainedMotion, emission
 from coadjoint.derive.distribution import Row, distribution
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.equations import Equations, Step, component, partial, symbol
 from coadjoint.derive.frames import Frame
+from coadjoint.derive.kinematics import Matrix
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.derive.solver import Definition
 from coadjoint.errors import DerivationError

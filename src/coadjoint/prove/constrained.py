@@ -17,8 +17,8 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.constrained import rate_name
 from coadjoint.derive.interpret import determinant
+from coadjoint.derive.kinematics import rate_name
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
 from coadjoint.exact import Element

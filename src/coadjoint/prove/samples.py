@@ -19,7 +19,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from coadjoint.algebra.linear import PRIME, echelon_modulo
-from coadjoint.derive.constrained import kept_rows
+from coadjoint.derive.kinematics import kept_rows
 from coadjoint.exact import Element
 from coadjoint.poisson.ranks import Residue, residue, residue_call
 from coadjoint.prove.constrained import ConstrainedRates

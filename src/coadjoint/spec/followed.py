@@ -13,12 +13,13 @@ from coadjoint.algebra.attitudes import turning_places
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.constrained import Reconstructed, Rolling
+from coadjoint.spec.constrained_schema import ReconstructedPart
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Shape, Variable
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.quantities import Parameter
-from coadjoint.spec.schema import ReconstructedPart, SpecFile
+from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.shapes import words
 from coadjoint.spec.source import Source
 from coadjoint.spec.structure import read_default

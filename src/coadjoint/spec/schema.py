@@ -12,6 +12,12 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from coadjoint.spec.algebra_schema import AlgebraPart, OperandPart, Part, also_text, named
+from coadjoint.spec.constrained_schema import (
+    DissipationPart,
+    ReconstructedPart,
+    RollingPart,
+    SectionPart,
+)
 from coadjoint.spec.values import (
     DEFINITION_PATTERN,
     POISSON_PATTERN,
@@ -171,58 +177,6 @@ class ReductionPart(Part):
         json_schema_extra=named(),
     )
     where: list[str] = Field([], description="functions of all variables that vanish there")
-
-
-class DissipationPart(Part):
-    """Dissipation by a function of the velocities."""
-
-    R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
-
-
-class RollingPart(Part):
-    """A body that rolls on a plane."""
-
-    arm: str = Field(
-        description="from the point of contact to the centre of mass, seen from the body"
-    )
-    normal: str = Field(description="the advected vector normal to the plane")
-
-
-class ReconstructedPart(Part):
-    """A variable that follows from the motion and does not act on it."""
-
-    model_config = ConfigDict(json_schema_extra=also_text)
-
-    rate: str | None = Field(None, description="its time derivative")
-    attitude: Literal["quaternion"] | None = Field(
-        None, description="'quaternion' for the attitude that the angular velocity turns"
-    )
-    default: Numbers | None = Field(None, description="where it begins; by default at zero")
-    unit: Unit = Field("1", description="unit, such as 'm'; '1' if dimensionless")
-    doc: Prose = Field("", description="what it is, for documents")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_text(cls, value: object) -> object:
-        return {"rate": value} if isinstance(value, str) else value
-
-    @model_validator(mode="after")
-    def _one_way(self) -> ReconstructedPart:
-        if (self.rate is None) == (self.attitude is None):
-            raise ValueError("either rate or attitude")
-        return self
-
-
-class SectionPart(Part):
-    """The momentum along a section of the constraint distribution."""
-
-    section: Annotated[dict[str, str], Field(min_length=1)] = Field(
-        description="components of the section, as Omega = 's', by the names of the velocities "
-        "that no constraint gives; those left out are zero",
-        json_schema_extra=named(),
-    )
-    unit: Unit = Field("1", description="unit of the momentum; '1' if dimensionless")
-    doc: Prose = Field("", description="what it is, for documents")
 
 
 class ObservablePart(Part):
