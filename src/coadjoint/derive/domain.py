@@ -46,7 +46,9 @@ def bounds(equations: Equations) -> tuple[Bound, ...]:
     """All bounds of a system; none where nothing is declared and nothing is constrained."""
     setting, found = equations.setting, list[Bound]()
     for condition in equations.spec.domain:
-        left, right = setting.formula(condition.left), setting.formula(condition.right)
+        left, right = (
+            setting.formula(side, setting.reactions) for side in (condition.left, condition.right)
+        )
         value = left - right if condition.sign.startswith(">") else right - left
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)

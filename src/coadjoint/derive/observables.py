@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.reconstruction import spatial_momentum
-from coadjoint.derive.setting import Setting, shaped
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symmetries import momentum_maps
 from coadjoint.exact import Element
 from coadjoint.spec import Formula
@@ -41,13 +41,10 @@ def observables(
     reactions = [
         (name, setting.field[name]) for each in spec.constraints for name in each.reactions
     ]
-    known: dict[str, Quantity] = dict(reactions)
-    for each in spec.constraints:
-        known[each.reaction] = shaped([known[name] for name in each.reactions], each.shape)
     declared = [
         part
         for entry in spec.observables
-        for part in _named(entry.components, setting, entry.formula, known)
+        for part in _named(entry.components, setting, entry.formula, setting.reactions)
     ]
     values = momentum_maps(setting, energy)
     maps = [

@@ -145,6 +145,16 @@ class Setting:
 
         return lax_integrals(self)
 
+    @cached_property
+    def reactions(self) -> Mapping[str, Quantity]:
+        """The multipliers of constraints, whole and by component, as symbols."""
+        found: dict[str, Quantity] = {}
+        for each in self.spec.constraints:
+            parts = self.elements(each.reactions)
+            found |= zip(each.reactions, parts, strict=True)
+            found[each.reaction] = shaped(parts, each.shape)
+        return found
+
     # -- elements -----------------------------------------------------------------------
 
     def elements(self, names: Sequence[str]) -> tuple[Element, ...]:

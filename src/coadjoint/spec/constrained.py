@@ -6,7 +6,7 @@ Read next: `coadjoint.derive.nonholonomic`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -60,6 +60,12 @@ class Constraint:
     def in_one_line(self) -> str:
         """The equation without its line breaks."""
         return self.left.in_one_line
+
+
+def reaction_shapes(constraints: Sequence[Constraint]) -> dict[str, Shape]:
+    """Shapes of the multipliers, whole and by component."""
+    names = {each.reaction: each.shape for each in constraints}
+    return {name: () for each in constraints for name in each.reactions} | names
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.constrained import Condition, Constraint, Section
+from coadjoint.spec.constrained import Condition, Constraint, Section, reaction_shapes
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
@@ -157,13 +157,17 @@ class ConstraintReader:
         scope = make_scope("a dissipation", self.motion, self.quantities)
         return read_formula(self.source, ("dissipation", "R"), self.file.dissipation.R, scope)
 
-    def domain(self) -> tuple[Condition, ...]:
-        """The declared inequalities.
+    def domain(self, constraints: Sequence[Constraint]) -> tuple[Condition, ...]:
+        """The declared inequalities, which may name reactions: a body leaves the plane.
+
+        Args:
+            constraints: Those whose reactions may be named.
 
         Raises:
             SpecError: One is no inequality between scalars, or has a name that none may have.
         """
-        scope = make_scope("a condition", self.motion, self.quantities)
+        reactions = reaction_shapes(constraints)
+        scope = make_scope("a condition", self.motion, self.quantities, reactions)
         found = []
         for name, text in self.file.domain.items():
             key: KeyPath = ("domain", name)

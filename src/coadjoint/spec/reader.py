@@ -32,6 +32,7 @@ from coadjoint.spec.consistency import (
     check_sizes,
     check_tables,
 )
+from coadjoint.spec.constrained import reaction_shapes
 from coadjoint.spec.constraints import ConstraintReader, solved_velocities
 from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
@@ -48,7 +49,6 @@ from coadjoint.spec.model import (
     Observable,
     Parameter,
     Section,
-    Shape,
     Spec,
     Symmetry,
     Variable,
@@ -180,7 +180,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         constraints=constraints,
         forces=constrained.forces(),
         dissipation=constrained.dissipation(),
-        domain=constrained.domain(),
+        domain=constrained.domain(constraints),
         rolling=rolling,
         reconstruction=followed,
         sections=sections,
@@ -255,8 +255,7 @@ class _Formulas:
         return read_newton(self.source, self.file.newton, variables, self.quantities)
 
     def observables(self, constraints: Sequence[Constraint]) -> tuple[Observable, ...]:
-        reactions: dict[str, Shape] = {n: () for each in constraints for n in each.reactions}
-        reactions |= {each.reaction: each.shape for each in constraints}
+        reactions = reaction_shapes(constraints)
         scope = make_scope("an observable", self.motion, self.quantities, reactions)
         found = []
         for name, part in self.file.observables.items():
