@@ -289,6 +289,10 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
     }
     if spec.definitions:  # the texts of casimirs and claims may hold them
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
+    if spec.constraints:  # in the order of the rows of the function constraint_residual
+        record["constraints"] = {
+            name: each.in_one_line for each in spec.constraints for name in each.components
+        }
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

@@ -277,6 +277,13 @@ class Equations:
         return rates_followed(self.setting, self.distribution)
 
     @cached_property
+    def projection(self) -> Equations | None:
+        """The nearest state on the constraints that are kept, in place of the rates."""
+        from coadjoint.derive.projection import projected  # which makes Equations
+
+        return projected(self)
+
+    @cached_property
     def intermediates(self) -> frozenset[str]:
         """Names of L, D, y and z of the solves in the kernel."""
         return frozenset(name for each in self.exact.solves for name in solver_names(each.block))

@@ -34,6 +34,11 @@ def multiplier_name(place: int) -> str:
     return f"_u{place + 1}"
 
 
+def shift_name(place: int) -> str:
+    """Name of the change of a velocity by which it comes onto the constraints that are kept."""
+    return f"_s{place + 1}"
+
+
 def symbols(spec: Spec) -> tuple[str, ...]:
     """The names that the definitions of a constrained motion need."""
     found = distribution(make_setting(spec))
@@ -49,6 +54,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         *map(rate_name, found.frame.velocities),
         *solver_names(range(size)),
         *map(multiplier_name, range(len(found.kept))),
+        *map(shift_name, range(len(found.independent) if found.kept else 0)),
         *(equation.reaction for equation in found.equations),
     )
 

@@ -43,11 +43,14 @@ class Reference:
 
         Args:
             function: ``rhs``, ``jacobian``, ``energy``, ``observables``,
-                ``poisson_tensor``, ``constraint_residual`` or ``domain``.
+                ``poisson_tensor``, ``constraint_residual``, ``projection``, ``reconstruction`` or
+                ``domain``.
             inputs: State and parameter components by name.
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function by name.
         """
+        if function == "projection":
+            return self._projection.evaluate("rhs", inputs, number, call)
         field, exact = self.equations.setting.field, self.equations.exact
         known, factors = dict(inputs), dict[int, Value]()
 
@@ -82,6 +85,11 @@ class Reference:
         rates = [_chained(slopes, known, value) for slopes in self._rate_slopes]
         places = range(len(self.state))
         return [rate[j] if j in rate else number(ZERO) for rate in rates for j in places]
+
+    @cached_property
+    def _projection(self) -> Reference:
+        assert self.equations.projection is not None, "asked for only where constraints are kept"
+        return Reference(self.equations.projection)
 
     @cached_property
     def _bounds(self) -> tuple[Bound, ...]:

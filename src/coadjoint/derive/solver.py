@@ -3,7 +3,8 @@ r"""Solving in the kernel: ``A x = b`` as straight-line definitions instead of a
 A symmetric matrix whose leading minors do not vanish is :math:`A = L D L^T` with ones on the
 diagonal of L, so that ``L y = b``, ``D z = y`` and ``L^T x = z`` are solved entry by entry. Each
 entry of L, D, y and z becomes a definition with a leading underscore, which no spec can declare;
-it is never expanded, since the closed form of a sixth velocity would fill a book.
+it is never expanded, since the closed form of a sixth velocity would fill a book. What is zero in
+y and z before any number is put in, as behind zeros of b, is left out.
 Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
 Read next: `coadjoint.derive.legendre`, which solves for velocities.
 """
@@ -95,15 +96,19 @@ def solve_in_kernel(field: Field, solve: Solve) -> list[Definition]:
     """
     known, block, names = solve.known, solve.block, solve.names
     definitions, factors = _factorised(field, solve.matrix, block)
-    y = [field[forward_name(i)] for i in block]
+    y: dict[int, Element] = {}
     size = range(len(block))
     for i in size:
-        before = field.sum(factors[i, k] * y[k] for k in size[:i] if (i, k) in factors)
-        definitions.append((forward_name(block[i]), known[i] - before))
+        value = known[i] - field.sum(factors[i, k] * y[k] for k in y if (i, k) in factors)
+        if value == 0:
+            continue
+        y[i] = field[forward_name(block[i])]
+        definitions.append((forward_name(block[i]), value))
         definitions.append((scaled_name(block[i]), y[i] / field[pivot_name(block[i])]))
     for i in reversed(size):
+        z = field[scaled_name(block[i])] if i in y else field.zero
         after = (factors[k, i] * field[names[k]] for k in size[i + 1 :] if (k, i) in factors)
-        definitions.append((names[i], field[scaled_name(block[i])] - field.sum(after)))
+        definitions.append((names[i], z - field.sum(after)))
     return definitions
 
 
@@ -140,8 +145,10 @@ def solution_defects(
     factors = _entries_of_factor(field, definitions, block)
     size = range(len(block))
     d = [field[pivot_name(i)] for i in block]
-    y = [field[forward_name(i)] for i in block]
-    z = [field[scaled_name(i)] for i in block]
+    y, z = (
+        [field[name] if name in definitions else field.zero for name in map(make, block)]
+        for make in (forward_name, scaled_name)
+    )
 
     def row(i: int, k: int) -> Element:
         return factors.get((i, k), field.zero)

@@ -1,10 +1,10 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
 Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``energy``, ``observables``, ``poisson_tensor``, ``constraint_residual`` and ``domain``. An
-element is a sum of products in the order of the field; what depends on parameters alone is gathered
-into the coefficients, equal coefficients are factored out, and pairs of factors that recur are
-shared.
+them, ``energy``, ``observables``, ``poisson_tensor``, ``constraint_residual``, ``projection``,
+``reconstruction`` and ``domain``. An element is a sum of products in the order of the field; what
+depends on parameters alone is gathered into the coefficients, equal coefficients are factored out,
+and pairs of factors that recur are shared.
 Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
@@ -281,6 +281,9 @@ def lower(equations: Equations) -> dict[str, Program]:
         programs["constraint_residual"] = _program(
             equations, "constraint_residual", exact.residuals
         )
+    if equations.projection is not None:
+        nearest = zip(setting.state, equations.projection.exact.rates, strict=True)
+        programs["projection"] = _program(equations.projection, "projection", tuple(nearest))
     if equations.followed:
         followed = [(f"d{name}/dt", rate) for name, rate in equations.followed]
         names = (*setting.state, *(name for name, _ in equations.followed))

@@ -115,7 +115,7 @@ class Program:
 
     Attributes:
         name: ``rhs``, ``jacobian``, ``energy``, ``observables``, ``poisson_tensor``,
-            ``constraint_residual``, ``reconstruction`` or ``domain``.
+            ``constraint_residual``, ``projection``, ``reconstruction`` or ``domain``.
         state: Component names of the state, in order, and of what else it takes beside it.
         parameters: Component names of the parameters, in order.
         statements: In the order of evaluation, those of level ``parameters`` first.

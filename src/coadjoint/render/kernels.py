@@ -35,6 +35,7 @@ SUMMARIES: Final = {
     "poisson_tensor": "Poisson tensor, brackets of the components of the state",
     "almost_poisson_tensor": "Almost-Poisson tensor, velocities standing for their momenta",
     "constraint_residual": "Left minus right sides of the constraints",
+    "projection": "State moved onto the constraints by the least change of velocities",
     "reconstruction": "Rates of what is reconstructed; state holds the state, then its rows",
     "domain": "What is positive where the system is defined, one row for each entry of DOMAIN",
 }

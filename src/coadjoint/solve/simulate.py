@@ -5,6 +5,7 @@ Comes in: an initial state and times. Goes out: a `Solution`. Read next: `coadjo
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, pack, pack_parameters
+from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.reconstruct import beginning
 from coadjoint.solve.solution import Solution
@@ -52,6 +54,8 @@ def simulate(
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
     domain = Domain(system, packed, target)
     domain.check_start(initial)
+    constraints = Constraints(system, packed, target)
+    initial = constraints.beginning(initial, atol)
     followed = beginning(system, initial, reconstruct)
     initial = np.concatenate([initial, followed])
     rates, latest = _rates(system, packed, target, followed.size)
@@ -65,7 +69,9 @@ def simulate(
         solver = getattr(scipy.integrate, name)(
             rates, times[0], initial, times[-1], rtol=rtol, atol=atol, **options
         )
-        times, states, status, reason = _follow(solver, times, max_steps, latest, domain)
+        times, states, status, reason = _follow(
+            solver, times, max_steps, latest, domain, constraints
+        )
     return _solution(system, times, states, packed, status, reason)
 
 
@@ -84,6 +90,7 @@ def _follow(
     max_steps: int,
     latest: Array,
     domain: Domain,
+    constraints: Constraints,
 ) -> tuple[Array, Array, str, str]:
     """The times that were reached, states there, status and reason.
 
@@ -93,17 +100,19 @@ def _follow(
     states = np.empty((solver.n, times.size))
     states[:, 0] = solver.y
     reached, steps, reason = 1, 0, ""
+    here = (solver.t, solver.y.copy())
     try:
         while solver.status == "running" and steps < max_steps:
-            before = (solver.t, solver.y.copy())
             reason = solver.step() or ""
             if reason or not np.isfinite(solver.y).all():
                 break
+            before, here = here, (solver.t, constraints.put_back(solver))
+            path = partial(constraints.along, solver.dense_output)
             after = int(np.searchsorted(times, solver.t, side="right"))
             if after > reached:
-                states[:, reached:after] = solver.dense_output()(times[reached:after])
+                states[:, reached:after] = path()(times[reached:after])
             points = zip(times[reached:after].tolist(), states.T[reached:after], strict=True)
-            end = domain.leaves(solver.dense_output, before, [*points, (solver.t, solver.y)])
+            end = domain.leaves(path, before, [*points, here])
             if end is not None:
                 return *_ended(times, states, end), "DOMAIN", domain.reason(end)
             reached, steps = after, steps + 1

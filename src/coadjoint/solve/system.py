@@ -162,9 +162,24 @@ class System:
 
         Rows follow the declared constraints. What a constraint gives a velocity is put in, so
         that its rows are 0; those of other constraints stay at the level of rounding along a
-        trajectory that begins on them.
+        trajectory that `simulate` follows.
         """
         return self.evaluate("constraint_residual", state, parameters, target, out)
+
+    def projection(
+        self,
+        state: ArrayLike | Mapping[str, ArrayLike],
+        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """The nearest state on the constraints, shape ``(n, *batch)``; arguments as in `rhs`.
+
+        Positions stay. Velocities change by the d of least kinetic energy ``d . M d / 2`` with
+        which all constraints hold to rounding. Only systems have it that keep a constraint,
+        one that gives no velocity outright.
+        """
+        return self.evaluate("projection", state, parameters, target, out)
 
     def domain(
         self,
@@ -269,7 +284,9 @@ class System:
             state: Initial state, ``(n,)`` or by name.
             t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
             parameters: As in `rhs`, shared.
-            method: A method of `scipy.integrate`; ``"auto"`` is ``"DOP853"``, order 8.
+            method: A method of `scipy.integrate`; ``"auto"`` is ``"DOP853"``, order 8. Where
+                constraints are kept, one-step methods go on from the `projection` of each step;
+                BDF and LSODA remember steps and are left alone.
             rtol: Relative tolerance of a step.
             atol: Absolute tolerance of a step.
             samples: Number of evenly spaced samples when ``t`` is a pair.
@@ -283,13 +300,14 @@ class System:
 
         Returns:
             The labelled trajectory, with observables and the drift of what is conserved. One that
-            could not be followed to the end has a status other than ``OK`` and ends before. Where
+            could not be followed to the end has a status other than ``OK`` and ends before. Each
+            sample is on the constraints to rounding, whatever the method. Where
             it leaves the domain it ends with the last point inside, found to 1e-12 of a step;
             points between the samples and the ends of steps are not tried.
 
         Raises:
-            KernelArgumentError: The state is a batch or outside the domain, times do not increase,
-                or a name is unknown.
+            KernelArgumentError: The state is a batch, outside the domain or off the constraints,
+                times do not increase, or a name is unknown.
         """
         from coadjoint.solve.simulate import simulate
 

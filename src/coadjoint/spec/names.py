@@ -53,8 +53,8 @@ _C_HEADERS = _words(
 _OURS = _words(
     """
     state parameters out count state_stride parameters_stride out_stride np math numpy
-    rhs jacobian energy observables poisson_tensor constraint_residual reconstruction
-    domain target time t drift
+    rhs jacobian energy observables poisson_tensor constraint_residual projection
+    reconstruction domain target time t drift
     """
 )
 _OURS_PATTERN = re.compile(r"(casimir|integral)\d+(_\d+)?|COADJOINT(_.*)?")

@@ -1,0 +1,102 @@
+r"""The projection onto constraints that are kept: that it arrives, moves least, and moves no more.
+
+Nothing is solved here. The residuals R are affine, and so is the condition of the least change
+:math:`M d + A^T u = 0`, with M the second derivative of the constrained Lagrangian and A that of
+R: put into them, the projected state gives the very rows that the kernel solves, line by line.
+Comes in: Equations with constraints that are kept. Goes out: claims for the certificate.
+Read next: `coadjoint.solve.constraints`, which uses it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.distribution import Distribution
+from coadjoint.derive.emission import lagrangian_of
+from coadjoint.derive.kinematics import multiplier_name, shift_name
+from coadjoint.derive.solver import solution_defects
+from coadjoint.exact import Element
+from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.zero import Decision, decide_zero
+
+
+def about_projection(first: Equations) -> Iterator[Examined]:
+    """Three claims where constraints are kept, none elsewhere."""
+    if first.projection is None:
+        return
+    found = first.projection.distribution
+    assert found is not None
+    names = ", ".join(equation.name for equation, _ in found.kept)
+    kept = f"every state onto {names}"
+    yield f"the projection moves {kept}", "constraint", partial(_arrival, first.projection)
+    yield (
+        "the projection changes velocities alone, by the least kinetic energy of the change",
+        "constraint",
+        partial(_least, first.projection),
+    )
+    yield (
+        "the projection leaves a state on the constraints",
+        "constraint",
+        partial(_rest, first.projection),
+    )
+
+
+def _arrival(projection: Equations) -> list[Element]:
+    """Residuals after, minus the rows of the solve that give them; then defects of the solve."""
+    field, rows = projection.setting.field, _rows(projection)
+    after = dict(zip(projection.setting.state, projection.exact.rates, strict=True))
+    definitions = dict(projection.exact.definitions)
+    defects = [
+        projection.closed(field.substitute(residual, after)) - rows[multiplier_name(n)]
+        for n, (_, residual) in enumerate(_kept(projection).kept)
+    ]
+    return defects + [
+        defect
+        for solve in projection.exact.solves
+        for defect in solution_defects(field, solve, definitions)
+    ]
+
+
+def _least(projection: Equations) -> list[Element]:
+    """``M d + A^T u`` minus the rows of the solve that make it vanish; changes of positions."""
+    field, found = projection.setting.field, _kept(projection)
+    after = zip(projection.setting.state, projection.exact.rates, strict=True)
+    changes = {name: value - field[name] for name, value in after}
+    rows, eta = _rows(projection), found.independent
+    energy = field.substitute(lagrangian_of(projection.setting), found.solved)
+    defects = [change for name, change in changes.items() if name not in eta]
+    for place, (name, slope) in enumerate(zip(eta, field.gradient(energy, eta), strict=True)):
+        mass = zip(field.gradient(slope, eta), eta, strict=True)
+        pulls = (
+            field.derivative(residual, name) * field[multiplier_name(n)]
+            for n, (_, residual) in enumerate(found.kept)
+        )
+        total = field.sum([*(m * changes[other] for m, other in mass), *pulls])
+        defects.append(total - rows.get(shift_name(place), field.zero))
+    return defects
+
+
+def _rest(projection: Equations) -> Decision:
+    """The right sides, which vanish on the constraints: the change solves ``K d = 0`` there."""
+    sides = [projection.closed(k) for solve in projection.exact.solves for k in solve.known]
+    motion = ConstrainedRates(projection)
+    return decide_zero(sides, motion.field, motion.where)
+
+
+def _kept(projection: Equations) -> Distribution:
+    assert projection.distribution is not None, "asked for only where constraints are kept"
+    return projection.distribution
+
+
+def _rows(projection: Equations) -> dict[str, Element]:
+    """``A x - b`` of the solves by the name of the unknown of the row, in the state and x."""
+    field, closed = projection.setting.field, projection.closed
+    rows = {}
+    for solve in projection.exact.solves:
+        x = projection.setting.elements(solve.names)
+        for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
+            left = field.sum(closed(a) * value for a, value in zip(row, x, strict=True))
+            rows[name] = left - closed(known)
+    return rows
