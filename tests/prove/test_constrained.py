@@ -9,16 +9,17 @@ import sympy
 from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero
-from tests.constrained import PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
+from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
+JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
 DRIVEN = ("[claims]", '[forces]\nw = "3"\n[dissipation]\nR = "k*u^2/2"\n[claims]')
 
 
 def verdicts(routes):
     """Verdict by statement of the claims that need no search."""
     found = {}
-    for statement, kind, examine in about_constraints(routes):
+    for statement, kind, examine in about_constraints(ConstrainedRates(routes[0]), routes[1:]):
         if kind in ("constraint", "equivalence", "conserved"):
             decision = examine()
             if not hasattr(decision, "verdict"):
@@ -117,3 +118,22 @@ def test_a_false_claim_beside_a_constraint_with_functions_is_refuted():
     assert math.cos(x) * u == pytest.approx(math.sin(x) * v)
     energy = of.rate(of.equations.exact.energy)
     assert decide_zero([energy], of.field, of.where).verdict is Verdict.PROVED
+
+
+def test_combinations_of_rows_give_what_determinants_give(monkeypatch):
+    """The rate of the energy and of a momentum is the same by both roads, and spoiled ones not."""
+    of = motion(BALL, JELLETT)
+    functions = [of.equations.exact.energy, dict(of.equations.exact.observables)["J"]]
+    short = [of.value(weighted(of, f)) for f in functions]
+    monkeypatch.setattr(ConstrainedRates, "_weights", lambda *_: iter(()))
+    for function, value in zip(functions, short, strict=True):
+        assert of.field.is_zero(of.value(weighted(of, function)) - value)
+    monkeypatch.setattr(ConstrainedRates, "_along", lambda self, block, c: block.known[0])
+    assert not of.field.is_zero(of.value(weighted(of, functions[0])) - short[0])
+
+
+def weighted(of, function):
+    """The part of a rate that the accelerations have."""
+    names = of.distribution.independent
+    slopes = of.field.gradient(of.closed(function), names)
+    return of.field.sum(s * of.field[f"d{name}_dt"] for s, name in zip(slopes, names, strict=True))

@@ -4,6 +4,7 @@ import pytest
 
 from coadjoint.errors import ClaimError
 from coadjoint.prove import Certificate, Claim
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.rolling import about_rolling
 from coadjoint.prove.zero import Decision
 from tests.rolling import BALL, DISK, FOLLOWED_SLEIGH, derived
@@ -20,7 +21,7 @@ WRONG = ("r*Gamma + chi", "r*Gamma + vector(0, 0, r*Gamma3)")
 def decisions(*changes):
     """The decision of each claim, by the word it turns on."""
     found = {}
-    for statement, kind, decide in about_rolling(derived(BALL, *changes)):
+    for statement, kind, decide in about_rolling(ConstrainedRates(derived(BALL, *changes))):
         assert kind == "rolling"
         decision = decide()
         assert isinstance(decision, Decision)
@@ -62,4 +63,4 @@ def test_another_arm_than_that_of_the_constraint_slips():
 
 def test_other_systems_make_no_such_claims():
     """A sleigh does not roll."""
-    assert list(about_rolling(derived(FOLLOWED_SLEIGH))) == []
+    assert list(about_rolling(ConstrainedRates(derived(FOLLOWED_SLEIGH)))) == []

@@ -181,16 +181,21 @@ def section_momenta(found: Distribution, lagrangian: Element) -> list[tuple[str,
 
 def section_vector(found: Distribution, section: Section) -> Row:
     """``B sigma``: a section as a vector of the frame."""
+    along = section_components(found, section)
+    return tuple(
+        found.setting.field.sum(b * x for b, x in zip(row, along, strict=True)) for row in found.B
+    )
+
+
+def section_components(found: Distribution, section: Section) -> Row:
+    """``sigma``: the components of a section along the independent velocities."""
     setting = found.setting
     parts = dict.fromkeys(found.independent, setting.field.zero)
     for variable in setting.spec.variables:
         if variable.name in section.section:
             values = setting.components(section.section[variable.name])
             parts |= dict(zip(variable.components, values, strict=True))
-    along = list(parts.values())
-    return tuple(
-        setting.field.sum(b * x for b, x in zip(row, along, strict=True)) for row in found.B
-    )
+    return tuple(parts.values())
 
 
 def _check_regular(

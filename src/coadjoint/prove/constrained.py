@@ -17,11 +17,13 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.constrained import section_components
+from coadjoint.derive.distribution import Row
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.kinematics import rate_name
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
-from coadjoint.exact import Element
+from coadjoint.exact import Element, Field
 from coadjoint.poisson.ranks import generic_rank
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
@@ -70,20 +72,48 @@ class ConstrainedRates:
         """An element affine in accelerations and multipliers, in the state alone."""
         rest = self.field.substitute(self.closed(element), self._resting)
         parts = []
-        for matrix, known, names in self._blocks:
-            slopes = self.field.gradient(rest, names)
-            if all(slope == 0 for slope in slopes):
-                continue
-            if slopes in matrix:  # a momentum: no determinant is needed
-                parts.append(known[matrix.index(slopes)])
-                continue
-            bordered = (
-                *((*row, k) for row, k in zip(matrix, known, strict=True)),
-                (*slopes, self.field.zero),
-            )
-            parts.append(-determinant(bordered) / determinant(matrix))
-        unknown = {name: self.field.zero for *_, names in self._blocks for name in names}
+        for block in self._blocks:
+            slopes = self.field.gradient(rest, block.names)
+            if any(slope != 0 for slope in slopes):
+                parts.append(self._along(block, slopes))
+        unknown = {name: self.field.zero for block in self._blocks for name in block.names}
         return self.field.sum([self.field.substitute(rest, unknown), *parts])
+
+    def _along(self, block: Solve, c: Row) -> Element:
+        """``c . x`` where x solves a block.
+
+        No determinant is needed where ``c = w M``: for the energy w is eta, for the momentum along
+        a section of the distribution it is that section, and a unit vector for its basis.
+        """
+        field = self.field
+        for weights in self._weights(block):
+            turned = (_dot(field, weights, column) for column in zip(*block.matrix, strict=True))
+            if all(field.is_zero(x - y) for x, y in zip(turned, c, strict=True)):
+                return _dot(field, weights, block.known)
+        bordered = (
+            *((*row, k) for row, k in zip(block.matrix, block.known, strict=True)),
+            (*c, field.zero),
+        )
+        return -determinant(bordered) / determinant(tuple(map(tuple, block.matrix)))
+
+    def _weights(self, block: Solve) -> Iterator[Row]:
+        """Combinations of the equations of a block that are worth a trial."""
+        one, zero = self.field.one, self.field.zero
+        for name in block.names:
+            yield tuple(one if name == other else zero for other in block.names)
+        for values in self._directions:
+            yield tuple(values.get(name, zero) for name in block.names)
+
+    @cached_property
+    def _directions(self) -> list[dict[str, Element]]:
+        """The velocities and the declared sections, by the names of the accelerations."""
+        found = self.distribution
+        sections = (section_components(found, each) for each in found.setting.spec.sections)
+        velocities = self.equations.setting.elements(found.independent)
+        return [
+            dict(zip(map(rate_name, found.independent), map(self.closed, values), strict=True))
+            for values in (velocities, *sections)
+        ]
 
     @cached_property
     def _resting(self) -> dict[str, Element]:
@@ -97,15 +127,13 @@ class ConstrainedRates:
         return known
 
     @cached_property
-    def _blocks(
-        self,
-    ) -> list[tuple[tuple[tuple[Element, ...], ...], list[Element], Sequence[str]]]:
-        """Matrix, right side and unknowns of every solve, in the state alone."""
-        closed = self.closed
+    def _blocks(self) -> list[Solve]:
+        """Every solve, in the state alone."""
         return [
-            (
-                tuple(tuple(map(closed, row)) for row in solve.matrix),
-                [closed(k) for k in solve.known],
+            Solve(
+                tuple(tuple(map(self.closed, row)) for row in solve.matrix),
+                list(map(self.closed, solve.known)),
+                solve.block,
                 solve.names,
             )
             for solve in self.equations.exact.solves
@@ -126,12 +154,13 @@ class ConstrainedRates:
         return self.value(changed - field.sum([*power, *work]))
 
 
-def about_constraints(routes: Sequence[Equations]) -> Iterator[Examined]:
-    """The constraints, the solve in the kernel, the equality of routes and the energy."""
-    first = routes[0]
-    found = first.distribution
-    assert found is not None, first.route
-    motion = ConstrainedRates(first)
+def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
+    return field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)
+
+
+def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> Iterator[Examined]:
+    """The constraints, the solve in the kernel, the equality with other routes and the energy."""
+    first, found = motion.equations, motion.distribution
     count = len(found.equations)
     text = f"the {count} constraints are" if count > 1 else "the constraint is"
     yield f"{text} independent: {_rank_text(first)}", "constraint", partial(_rank, first)
@@ -140,7 +169,7 @@ def about_constraints(routes: Sequence[Equations]) -> Iterator[Examined]:
         "constraint",
         lambda: _solved(first),
     )
-    for other in routes[1:]:
+    for other in others:
         yield (
             f"{first.route} and {other.route} give the same motion",
             "equivalence",
@@ -223,11 +252,22 @@ def _differences(first: Equations, other: Equations, one: Solve, two: Solve) -> 
 
 def _balance_text(first: Equations) -> str:
     """The law of the energy."""
-    spec, found = first.spec, first.distribution
-    assert found is not None
-    driven = bool(spec.forces or spec.dissipation)
-    if not driven and found.is_linear:
+    if keeps_energy(first):
         return "the energy is conserved"
-    gains = ["the power of the forces"] * driven
-    gains += ["the work of the moving constraints"] * (not found.is_linear)
+    gains = ["the power of the forces"] * _driven(first)
+    gains += ["the work of the moving constraints"] * (not _linear(first))
     return f"the energy changes by {' and '.join(gains)}"
+
+
+def keeps_energy(first: Equations) -> bool:
+    """Whether the law of the energy says that it is conserved."""
+    return not _driven(first) and _linear(first)
+
+
+def _driven(first: Equations) -> bool:
+    return bool(first.spec.forces or first.spec.dissipation)
+
+
+def _linear(first: Equations) -> bool:
+    assert first.distribution is not None, first.route
+    return first.distribution.is_linear

@@ -34,11 +34,12 @@ from itertools import combinations, islice
 
 from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyRing
+from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.algebra.linear import PRIME, echelon_modulo, rational_vector
 from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, Field
+from coadjoint.exact.element import remove_factor
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates, Examined
@@ -225,28 +226,43 @@ class Measure:
         return self.field.sum([self.divergence, *growth])
 
 
-def factors(field: Field, element: Element) -> list[Element]:
+def factors(field: Field, element: Element, known: Sequence[Element] = ()) -> list[Element]:
     """The irreducible factors of the numerator of an element, without numbers and repetition.
+
+    Known ones are divided out first: to find factors of many terms takes far longer.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
     >>> factors(field, (x**2 - y**2) ** 3 / x)
     [x - y, x + y]
+    >>> factors(field, (x**2 - y**2) ** 3 / x, [x + y, x - 2])
+    [x + y, x - y]
     """
     if element == 0:
         return []
-    (quotient,) = element.combined().parts
-    places = [n for n, e in enumerate(map(max, zip(*quotient.numer, strict=True))) if e]
+    rest, found = _numerator(element), list[Element]()
+    for divisor in (p for p in map(_numerator, known) if not p.is_ground):
+        count, rest = remove_factor(rest, divisor)
+        found += [_polynomial(field, divisor)] * bool(count)
+    places = [n for n, e in enumerate(map(max, zip(*rest, strict=True))) if e]
     if not places:
-        return []
+        return found
     # among the symbols that occur: one nesting for each of a hundred others takes very long
-    ring = PolyRing([quotient.numer.ring.symbols[n] for n in places], QQ, lex)
-    whole = ring.from_dict({tuple(e[n] for n in places): x for e, x in quotient.numer.items()})
-    names = [str(symbol) for symbol in ring.symbols]
-    return [
-        field.polynomial(names, {e: Fraction(str(x)) for e, x in factor.items()})
-        for factor, _ in whole.factor_list()[1]
-    ]
+    ring = PolyRing([rest.ring.symbols[n] for n in places], QQ, lex)
+    whole = ring.from_dict({tuple(e[n] for n in places): x for e, x in rest.items()})
+    return [*found, *(_polynomial(field, factor) for factor, _ in whole.factor_list()[1])]
+
+
+def _polynomial(field: Field, p: PolyElement) -> Element:
+    """A polynomial in some symbols of a field, as an element of it."""
+    names = [str(symbol) for symbol in p.ring.symbols]
+    return field.polynomial(names, {e: Fraction(str(x)) for e, x in p.items()})
+
+
+def _numerator(element: Element) -> PolyElement:
+    """The numerator of a nonzero element."""
+    (quotient,) = element.combined().parts
+    return quotient.numer
 
 
 def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
@@ -321,11 +337,11 @@ def _closed_form(
     tried, since to find that a polynomial of many symbols is irreducible may take minutes.
     """
     whole, found = Measure(motion), list[Element]()
-    for short, minor in zip(measure.minors, whole.minors, strict=True):
+    for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
         reducible = len(factors(measure.field, short)) > 1
-        found += factors(measure.field, minor) if reducible else [minor]
+        own = factors(measure.field, minor, found) if reducible else [minor]
         (written,) = motion.field.quotients(minor.combined())
-        found += [divisor for divisor, _ in written.divisors]
+        found = [*own, *(divisor for divisor, _ in written.divisors), *found]
     known = list[Element]()
     for element in found:
         factor = -element if leading(element) < 0 else element

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from coadjoint.derive import Equations
 from coadjoint.derive.followed import arm
 from coadjoint.groups.vectors import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
@@ -24,12 +23,13 @@ from coadjoint.prove.zero import Decision, decide_zero
 _Examined = tuple[str, str, Callable[[], Decision]]
 
 
-def about_rolling(first: Equations) -> Iterator[_Examined]:
+def about_rolling(motion: ConstrainedRates) -> Iterator[_Examined]:
     """The claims about a body that rolls; none about any other."""
+    first = motion.equations
     setting, rolling = first.setting, first.spec.rolling
     if rolling is None:
         return
-    motion, s, Gamma = ConstrainedRates(first), arm(setting), rolling.normal
+    s, Gamma = arm(setting), rolling.normal
     text, by_name = rolling.arm.in_one_line, {v.name: v for v in setting.spec.variables}
     Y, Omega, normal = (
         setting.elements(by_name[name].components)
