@@ -11,7 +11,7 @@ import pytest
 
 from coadjoint.cli.arguments import load_system
 from tests.rolling import FOLLOWED_SLEIGH
-from tests.solve.domains import STONE
+from tests.solve.domains import STONE, SUSLOV
 from tests.specs import RIGID_BODY
 
 
@@ -34,6 +34,29 @@ def test_the_default_state_has_vectors_of_unit_length(run):
     for name, direction in {"Pi": (1, 2, 3), "Gamma": (2, 3, 1)}.items():
         values = [initial[f"{name}{n}"] for n in (1, 2, 3)]
         assert values == [n / math.sqrt(14) for n in direction]
+
+
+def test_a_start_off_the_constraints_ends_with_status_2(run):
+    """With the constraint, its residual and where to begin instead."""
+    result = run("simulate", "veselova", "--state", "Omega=1,2,3")
+    assert result.exit_code == 2
+    assert "twistless, dot(Gamma, Omega) == 0, does not hold" in result.stderr
+    assert "left minus right is 3; expected 0" in result.stderr
+    assert "Omega3 = 0: begin there" in result.stderr
+    assert run("simulate", "veselova", "--state", "Omega=1,2,0", "--time", "0.1").exit_code == 0
+
+
+def test_a_start_that_nobody_gave_is_on_the_constraints(run, folder):
+    """Without defaults (1, 2, 3)/|.| goes onto Omega1 + 2 Omega2 + 2 Omega3 = 0."""
+    (folder / "suslov_0.toml").write_text(SUSLOV)
+    result = run("simulate", "suslov_0.toml", "--time", "0.1", "--json")
+    assert result.exit_code == 0, result.stderr
+    first = json.loads(result.stdout)["initial"]
+    assert abs(first["Omega1"] + 2 * first["Omega2"] + 2 * first["Omega3"]) < 1e-15
+    assert first["Omega1"] != 0
+    given = run("simulate", "suslov_0.toml", "--state", "Omega=1,2,3")
+    assert given.exit_code == 2
+    assert "left minus right is 11" in given.stderr
 
 
 def test_state_and_parameters_come_from_the_command_line(run):

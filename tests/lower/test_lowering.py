@@ -52,11 +52,12 @@ def test_lowering_is_undone_exactly(system):
         "energy": equations.energy is None,
         "poisson_tensor": not equations.poisson_tensor,
         "constraint_residual": equations.distribution is None,
+        "projection": equations.projection is None,
         "reconstruction": not equations.followed,
         "domain": equations.distribution is None and not equations.spec.domain,
     }
     named = ["rhs", "jacobian", "energy", "observables", "poisson_tensor"]
-    named += ["constraint_residual", "reconstruction", "domain"]
+    named += ["constraint_residual", "projection", "reconstruction", "domain"]
     assert list(programs) == [name for name in named if not without.get(name)]
     for program in programs.values():
         check_inverse(equations, program)

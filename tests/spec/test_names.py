@@ -59,6 +59,7 @@ def test_letters_of_the_books_are_free():
         ("state", "generated code"),
         ("np", "generated code"),
         ("energy", "generated code"),
+        ("projection", "generated code"),
         ("reconstruction", "generated code"),
         ("drift", "generated code"),
         ("t", "generated code"),

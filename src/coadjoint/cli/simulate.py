@@ -60,7 +60,7 @@ def _assignments(
     multiple=True,
     help="Initial value of a quantity or component, e.g. Pi=1,0,0, or of the whole state without "
     "a name. Default: what the spec says, else each vector of unit length along (1, 2, 3, ...), "
-    "each scalar 1. Repeatable.",
+    "each scalar 1, then moved onto the constraints. Repeatable.",
 )
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long.")
 @click.option("--method", default="auto", show_default=True, help="auto is DOP853.")
@@ -103,10 +103,15 @@ def command(
         from coadjoint.solve.trace import check_traced  # which needs NumPy
 
         check_traced(loaded)
+    given = chosen_parameters(loaded.PARAMETERS, parameters)
+    start: Any = initial_state(loaded.STATE, state)
+    declared = state or all(quantity.default for quantity in loaded.STATE.values())
+    if "projection" in loaded.functions and not declared:  # no fault of the user
+        start = loaded.projection(start, given)
     solution = loaded.simulate(
-        initial_state(loaded.STATE, state),
+        start,
         (0.0, time),
-        chosen_parameters(loaded.PARAMETERS, parameters),
+        given,
         method=method,
         rtol=rtol,
         samples=samples,
