@@ -19,6 +19,7 @@ MOVING_MASS = (BY_HAND, "-k", "mass_that_moves")
 FORCED = (BY_HAND, "-k", "forces_and_dissipation")
 REACTIONS = (BY_HAND, "-k", "force_of_the_particle or given or push")
 PENDULUM = (BY_HAND, "-k", "pendulum")
+PROJECTION = ("tests/derive/test_projection.py", "-k", "multiple")
 
 PROJECTED = (
     *of(
@@ -112,6 +113,21 @@ CONSTRAINED_LAGRANGIAN = (
 
 #: What both routes share.
 DISTRIBUTED = (
+    *of(
+        "projection",
+        "projection",
+        (),
+        ("-residual for n", "residual for n", "a projection away from the constraints"),
+        ("sides.get(name, field.zero)", "sides.get(name, field.one)"),
+        (", motion.named(b)]", "]", "a projection that forgets what is affine"),
+        tests=PROJECTION,
+    ),
+    *of(
+        "projection",
+        "projection",
+        ("suslov",),
+        ("+ changes.get(name, field.zero)", "- changes.get(name, field.zero)"),
+    ),
     *of(
         "frames",
         "frames",

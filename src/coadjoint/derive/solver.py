@@ -99,7 +99,8 @@ def solve_in_kernel(field: Field, solve: Solve) -> list[Definition]:
     y: dict[int, Element] = {}
     size = range(len(block))
     for i in size:
-        value = known[i] - field.sum(factors[i, k] * y[k] for k in y if (i, k) in factors)
+        before = field.sum(factors[i, k] * y[k] for k in y if (i, k) in factors)
+        value = known[i] - before
         if value == 0:
             continue
         y[i] = field[forward_name(block[i])]
