@@ -62,11 +62,19 @@ BY_OPERATION = [
 
 
 def agrees(equations, name):
-    """Whether derived rates are the book's at a random point; of a chart, at its image."""
+    """Whether derived rates are the book's at a random point; of a chart, at its image.
+
+    With constraints the reactions count, too: some constants move nothing, and the constraint
+    bears the force that they make.
+    """
     in_state = equations.chart is None
     moved = equations.rates if in_state else carried(equations)
     ((point, x, p),) = points(name, 1) if in_state else in_chart(equations, name, 1)
-    return same(values(moved, solved(equations, point)), textbook.RATES[name](x, p))
+    at = solved(equations, point)
+    borne = [r for each in equations.spec.constraints for r in each.reactions if r in at]
+    expected = textbook.OBSERVABLES[name](x, p) if borne else {}
+    found = [*values(moved, at), *values([equations.observables[r] for r in borne], at)]
+    return same(found, [*textbook.RATES[name](x, p), *(expected[r] for r in borne)])
 
 
 def with_constants(name, constants):
@@ -117,6 +125,8 @@ def test_every_sign_of_every_structure_constant(name):
             continue
         routes = followed(changed)
         for equations in routes:
+            if equations.route == "hamel":  # it knows no reactions, which may be all that is made
+                continue
             by_matrices = equations.pair is not None
             assert agrees(equations, name) == by_matrices, (flip, equations.route)
         assert not routes or not all(equations.pair for equations in routes), flip
@@ -206,6 +216,8 @@ def test_minus_and_plus_in_a_spec(name, route):
     """A spec that says right where the book says left is seen, too, or refused for that."""
     text, count = re.subn(r'(invariance +=) "left"', r'\1 "right"', shipped(name).path.read_text())
     assert count == 1
+    # what rolls is refused as right invariant when it is read; the route shall see it by itself
+    text = re.sub(r"\[rolling\]\n(.+\n)+", "", text)
     wrong = bare(spec(text), (route,))
     found = attempted(wrong, route, make_setting(wrong))
     if isinstance(found, str):
