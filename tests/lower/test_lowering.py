@@ -132,30 +132,31 @@ BY_HAND = {
     "n_particles": 6 * (3 + 6 + 2 + 1 + 3 + 3) + 9,
     "rocking_disk": 2 + 4 + 4 + 8,  # cos and sin; r^2 + l^2 - 2 r l cos; torque and quotient
     "underwater_vehicle": 6 + 4 * 9 + 3 + 12,  # velocities, cross products, a sum, torque
-    # s and its rate; Y, ds/dt x .., dGamma/dt; signs of products with s; I + m (s^2 - s s^T); the
+    # s and its rate; Y, ds/dt x .., dGamma/dt; signs of -m s_i s_j; I + m (s^2 - s s^T); the
     # force m(Omega x Y + Omega x ds/dt); I Omega x Omega, s x force, weight, sums; L D L^T, solves
-    "chaplygin_ball": 6 + 3 + 3 * 9 + 4 + 18 + 15 + 6 + 9 + 9 + 6 + 15 + 15,
-    "chaplygin_ball_centred": 3 + 3 + 3 * 9 + 4 + 18 + 15 + 6 + 9 + 3 + 15 + 15,  # no weight
-    "routh_sphere": 4 + 3 + 3 * 9 + 4 + 18 + 15 + 4 + 9 + 2 + 2 + 2 + 15 + 15,  # I1 = I2
-    # as routh_sphere: sine, s; its rate by the quotient rule, entry by entry; s3 = 0
-    **dict.fromkeys(("rolling_disk", "euler_disk"), 4 + 4 + 18 + 9 + 2 * 6 + 12 + 16 + 4 + 8 + 30),
-    # h, s; dGamma/dt; ds/dt by the quotient rule, entry by entry; Y, ds/dt turned, the force of
-    # both; I + m (s^2 - s s^T), L D L^T, solves; I Omega x Omega, I full; weight; torque; sums
-    "rolling_ellipsoid": 9 + 7 + 9 + 3 * 13 + 10 + 10 + 15 + 21 + 15 + 15 + 36 + 9 + 9 + 6,
-    # h, u, v, s; of ds/dt three entries; the rest as above, with I1 = I2
-    "body_of_revolution": 6 + 1 + 3 + 3 + 3 * 13 + 9 + 10 + 10 + 15 + 21 + 15 + 15 + 4 + 4 + 9 + 6,
+    "chaplygin_ball": 6 + 3 + 3 * 9 + 3 + 18 + 15 + 6 + 9 + 9 + 6 + 15 + 15,
+    "chaplygin_ball_centred": 3 + 3 + 3 * 9 + 3 + 18 + 15 + 6 + 9 + 3 + 15 + 15,  # no weight
+    "routh_sphere": 4 + 3 + 3 * 9 + 3 + 18 + 15 + 4 + 9 + 2 + 2 + 2 + 15 + 15,  # I1 = I2
+    # sine h, s; dGamma/dt; h'; s' = (r Gamma' - s h')/h; Y, s' turned, the force of both; I + m
+    # (s^2 - s s^T) with s3 = 0, L D L^T of 2 x 2; I Omega x Omega, I1 = I2; torques, sums, solves
+    **dict.fromkeys(("rolling_disk", "euler_disk"), 4 + 4 + 9 + 4 + 8 + 10 + 15 + 12 + 4 + 4 + 27),
+    # h, s; dGamma/dt; h' and s' = (c Gamma' - s h')/h; Y, ds/dt turned, the force of both;
+    # I + m (s^2 - s s^T), L D L^T, solves; I Omega x Omega, I full; weight; torque; sums
+    "rolling_ellipsoid": 9 + 7 + 9 + 6 + 3 * 4 + 10 + 10 + 15 + 21 + 15 + 15 + 36 + 9 + 9 + 6,
+    # h, s; h' and s' as there, with l in one entry; signs of -m s_i s_j; the rest, with I1 = I2
+    "body_of_revolution": 4 + 7 + 9 + 3 + 12 + 2 + 20 + 15 + 21 + 3 + 15 + 15 + 4 + 4 + 9 + 6,
     # squares; I Omega x Omega written out; L D L^T of 4 x 4
     "suslov": 3 + 3 * 11 + 28,
     # I Omega x Omega; Gamma x Omega; Gamma/I, its pivot, both sides of the multiplier; the rest
     "veselova": 6 + 9 + 3 + 9 + 12 + 1 + 9,
-    "chaplygin_sleigh": 4 + 2 + 3 + 1,  # m a v omega/J; m omega (a omega + u)/m as two products
+    "chaplygin_sleigh": 4 + 3,  # m a v omega/J and its sign; m a omega^2/m
     # sin, cos; B, velocities, its rates, convected; forces, mass, known side, quotient
     "rolling_disk_vertical": 2 + 2 + 2 + 4 + 2 + 4 + 5 + 3 + 1,
-    # functions; driver; normal and its rate; forces; both sides of the multiplier; pivot; sums
-    "knife_edge_cvt": 5 + 5 + 5 + 6 + 8 + 2 + 6 + 1 + 4,
+    # functions; driver; rate of the normal; L, D; forces; both sides of the multiplier; the rest
+    "knife_edge_cvt": 2 + 6 + 3 + 1 + 4 + 4 + 7 + 1 + 4,
     # functions; constraints, their rates, forces; two columns of L, weighted; pivots and the entry
     # between them; two known sides with quotients; u and accelerations
-    "snakeboard": 3 + 3 + 6 + 7 + 12 + 4 + 8 + 9 + 11 + 14 + 16 + 2 + 2 + 18,
+    "snakeboard": 2 + 3 + 6 + 7 + 12 + 4 + 8 + 9 + 11 + 14 + 16 + 2 + 2 + 18,
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
 }
 

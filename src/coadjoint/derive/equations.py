@@ -9,7 +9,9 @@ Read next: `coadjoint.prove.claims` and `coadjoint.lower.lowering`.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
@@ -259,6 +261,27 @@ class Equations:
             if name not in self.kept:
                 known[name] = self.setting.field.substitute(value, known)
         return known
+
+    def definitions_of(self, elements: Iterable[Element]) -> list[tuple[str, Element]]:
+        """The definitions on which elements rest, in their order."""
+        wanted = frozenset[str]().union(*map(self.setting.field.reach, elements))
+        found = []
+        for name, value in reversed(self.exact.definitions):
+            if name in wanted:
+                wanted |= self.setting.field.reach(value)
+                found.append((name, value))
+        return found[::-1]
+
+    @cached_property
+    def numbers(self) -> dict[str, Fraction]:
+        """Definitions that are numbers, such as a velocity that a constraint keeps at 0."""
+        field, known, numbers = self.setting.field, dict[str, Element](), dict[str, Fraction]()
+        for name, value in self.exact.definitions:
+            closed = field.substitute(value, known)
+            number = field.as_number(closed)
+            if number is not None:
+                known[name], numbers[name] = closed, number
+        return numbers
 
     @cached_property
     def kept(self) -> tuple[str, ...]:

@@ -1,8 +1,9 @@
 r"""Kinematics of a constrained motion: everything that rests on velocities and positions alone.
 
 The kernel computes in the order of a careful hand: moving entries of B (``_b1``), the velocities
-that constraints give, the rates of positions (``dGamma1_dt``), those of the entries (``_e1``), and
-the part :math:`c = \dot B \eta + \dot\beta` of the accelerations that needs none (``_c1``).
+that constraints give, the rates of positions (``dGamma1_dt``), those of square roots (``_g1``) and
+of the entries (``_e1``), and the part :math:`c = \dot B \eta + \dot\beta` of the accelerations
+that needs none (``_c1``).
 Comes in: a Distribution. Goes out: these definitions, and what they are called.
 Read next: `coadjoint.derive.constrained`, which solves for the accelerations.
 """
@@ -48,6 +49,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return (
         *(f"_b{n + 1}" for n in range(count)),
         *map(rate_name, found.frame.positions),
+        *(f"_g{n + 1}" for n in range(len(_moving_roots(found)))),
         *(f"_e{n + 1}" for n in range(count)),
         *(f"_c{n + 1}" for n in range(solved)),
         *(f"_k{n + 1}" for n in range(len(found.frame.velocities))),
@@ -70,8 +72,24 @@ def _moving_entries(found: Distribution) -> list[Element]:
         if not field.reach(entry) & moving or is_symbol(found, entry):
             continue
         if not any(entry == other or entry == -other for other in known):
-            known.append(entry)
+            known.append(-entry if _is_negative(found, entry) else entry)
     return known
+
+
+def _moving_roots(found: Distribution) -> list[str]:
+    """Square roots in moving entries, of which each has its rate computed once."""
+    field = found.setting.field
+    present = frozenset[str]().union(*map(field.functions_in, _moving_entries(found)))
+    return [
+        name
+        for name, known in field.adjoined.items()
+        if name in present and known.function == "sqrt" and field.function_free(known.argument)
+    ]
+
+
+def _is_negative(found: Distribution, entry: Element) -> bool:
+    """Whether an entry begins with a minus sign, which costs a negation."""
+    return found.setting.field.quotients(entry)[0].monomials[0].number < 0
 
 
 def kept_rows(found: Distribution) -> list[Row]:
@@ -130,13 +148,41 @@ class Kinematics:
                 return -field[f"_e{n + 1}"]
         return self.moved(entry)
 
-    def moved(self, function: Element) -> Element:
-        """``dz/dt . df/dz`` of a function of positions, with the rates by their names."""
+    def moved(self, function: Element, name: str = "") -> Element:
+        """``dz/dt . df/dz`` of a function of positions, with the rates by their names.
+
+        A square root h moves by its rate: ``N/h`` by ``(N' - (N/h) h')/h``, with the name of N/h.
+        """
+        field, rates = self.frame.setting.field, self.position_rates
+        slopes = dict(zip(rates, field.gradient(function, rates), strict=True))
+        parts = []
+        for n, root in enumerate(self.roots):
+            outer = field.derivative(function, root)
+            if outer == 0:
+                continue
+            inner = zip(rates, field.gradient(field[root], rates), strict=True)
+            slopes |= {z: slopes[z] - outer * slope for z, slope in inner}
+            rest = function + field[root] * outer  # what is not over h
+            if name and root not in field.functions_in(rest):
+                outer = (rest - field[name]) / field[root]
+            parts.append(outer * field[f"_g{n + 1}"])
+        return field.sum([*(s * rates[z] for z, s in slopes.items() if s != 0), *parts])
+
+    @cached_property
+    def roots(self) -> list[str]:
+        """The generators of the square roots of which ``_g1``, ``_g2``, ... are the rates."""
+        return _moving_roots(self.distribution)
+
+    def _rates_of_roots(self) -> list[Definition]:
+        """``h' = u'/(2 h)`` of ``h = sqrt(u)``."""
         field = self.frame.setting.field
-        pairs = zip(
-            field.gradient(function, self.frame.positions), self.frame.positions, strict=True
-        )
-        return field.sum(slope * self.position_rates[name] for slope, name in pairs if slope != 0)
+        return [
+            (
+                f"_g{n + 1}",
+                self.moved(field.adjoined[root].argument) / (2 * field[root]),
+            )
+            for n, root in enumerate(self.roots)
+        ]
 
     @cached_property
     def position_rates(self) -> Mapping[str, Element]:
@@ -213,7 +259,9 @@ class Kinematics:
         """Everything that rests on velocities and positions alone, in order."""
         rates = self.frame_rates
         entries = [(f"_b{n + 1}", entry) for n, entry in enumerate(self.entries)]
-        moved = [(f"_e{n + 1}", self.moved(entry)) for n, entry in enumerate(self.entries)]
+        moved = [
+            (f"_e{n + 1}", self.moved(entry, f"_b{n + 1}")) for n, entry in enumerate(self.entries)
+        ]
         positions = [
             (rate_name(name), rates[name])
             for name in self.frame.positions
@@ -224,4 +272,5 @@ class Kinematics:
             for n, place in enumerate(self.solved)
             if self._convected[place] != 0
         ]
-        return [*entries, *self.velocities(), *positions, *moved, *convected]
+        roots = self._rates_of_roots()
+        return [*entries, *self.velocities(), *positions, *roots, *moved, *convected]

@@ -37,6 +37,7 @@ from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.derive.solver import Definition
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
+from coadjoint.exact.roots import lifted
 from coadjoint.spec import Spec
 
 
@@ -111,7 +112,7 @@ def _forces(
     momenta = field.gradient(lagrangian, frame.velocities)
     parts = zip(
         frame.inertial(momenta, xi),
-        frame.slopes(lagrangian),
+        (lifted(field, slope) for slope in frame.slopes(lagrangian)),
         external_forces(frame),
         mass,
         momenta,

@@ -10,14 +10,14 @@ Read next: `coadjoint.lower.check` and `coadjoint.crosscheck.oracle`, which supp
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from operator import add, mul
 from typing import TypeVar
 
-from coadjoint.derive.domain import Bound, bounds
+from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
 from coadjoint.exact import Element
 
@@ -35,6 +35,7 @@ class Reference:
         self.state = equations.setting.state
         self.parameters = equations.setting.parameters
         self.deep = bool(equations.kept)
+        self._functions: dict[str, tuple[Sequence[Element], list[tuple[str, Element]]]] = {}
 
     def evaluate(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
@@ -51,31 +52,40 @@ class Reference:
         """
         if function == "projection":
             return self._projection.evaluate("rhs", inputs, number, call)
-        field, exact = self.equations.setting.field, self.equations.exact
-        known, factors = dict(inputs), dict[int, Value]()
+        if function not in self._functions:
+            elements = self._elements(function)
+            self._functions[function] = elements, self.equations.definitions_of(elements)
+        elements, definitions = self._functions[function]
+        field, known, factors = self.equations.setting.field, dict(inputs), dict[int, Value]()
 
         def value(element: Element) -> Value:
             return field.evaluate(element, known, number, call, factors)
 
-        for name, definition in exact.definitions:
+        for name, definition in definitions:
             known[name] = value(definition)
+        if function == "jacobian":
+            return self._jacobian(value, number)
+        return [value(element) for element in elements]
+
+    def _elements(self, function: str) -> Sequence[Element]:
+        """What a function computes; of the Jacobian, what it is the derivative of."""
+        exact = self.equations.exact
         match function:
-            case "rhs":
-                return [value(rate) for rate in exact.rates]
+            case "rhs" | "jacobian":
+                return exact.rates
             case "energy" if exact.energy is not None:
-                return [value(exact.energy)]
+                return (exact.energy,)
             case "observables":
-                return [value(observable) for _, observable in exact.observables]
+                return [observable for _, observable in exact.observables]
             case "poisson_tensor" if exact.poisson_tensor is not None:
-                return [value(entry) for row in exact.poisson_tensor for entry in row]
+                return [entry for row in exact.poisson_tensor for entry in row]
             case "constraint_residual":
-                return [value(residual) for _, residual in exact.residuals]
+                return [residual for _, residual in exact.residuals]
             case "reconstruction":
-                return [value(rate) for _, rate in self.equations.followed]
+                return [rate for _, rate in self.equations.followed]
             case "domain":
-                return [value(bound.element) for bound in self._bounds]
-        assert function == "jacobian", function
-        return self._jacobian(value, number)
+                return [bound.element for bound in bounds(self.equations)]
+        raise AssertionError(function)
 
     def _jacobian(self, value: Callable[[Element], Value], number: Number[Value]) -> list[Value]:
         """``d rate_i / d x_j`` through the definitions, one after the other."""
@@ -92,12 +102,9 @@ class Reference:
         return Reference(self.equations.projection)
 
     @cached_property
-    def _bounds(self) -> tuple[Bound, ...]:
-        return bounds(self.equations)
-
-    @cached_property
     def _definition_slopes(self) -> list[tuple[str, _Slopes]]:
-        return [(name, self._slopes(value)) for name, value in self.equations.exact.definitions]
+        definitions = self.equations.definitions_of(self.equations.exact.rates)
+        return [(name, self._slopes(value)) for name, value in definitions]
 
     @cached_property
     def _rate_slopes(self) -> list[_Slopes]:

@@ -44,6 +44,10 @@ class Graph:
         """An input or statement."""
         return self._intern("symbol", (), name)
 
+    def named(self, name: str, numbers: Mapping[str, Fraction]) -> int:
+        """The number that a name stands for, or its symbol."""
+        return self.number(numbers[name]) if name in numbers else self.symbol(name)
+
     def _constant(self, node: int) -> Fraction | None:
         """The value of a constant node, else None."""
         if self.kinds[node] == "negate":

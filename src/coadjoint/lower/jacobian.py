@@ -9,7 +9,7 @@ Read next: `coadjoint.lower.check`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from coadjoint.derive import Equations
@@ -43,7 +43,7 @@ def residual_slopes(equations: Equations) -> list[ResidualSlope]:
     field, found, row = equations.setting.field, list[ResidualSlope](), 0
     solved = {name for solve in equations.exact.solves for name in solve.names}
     inner = {name for name, _ in equations.exact.definitions}
-    inner -= solved | equations.intermediates
+    inner -= solved | equations.intermediates | equations.numbers.keys()
     for solve in equations.exact.solves:
         for entries, known in zip(solve.matrix, solve.known, strict=True):
             unknowns = (field[unknown] for unknown in solve.names)
@@ -82,11 +82,12 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
             slopes[graph.symbol(name)] = {name: graph.number(1)}
         elif name not in equations.intermediates:
             slopes[graph.symbol(name)] = graph.derivative(value, slopes)
-    first = 0
+    first, numbers = 0, equations.numbers
+    entries = {name: graph.named(name, numbers) for name in (*definitions, *numbers)}
     for solve in equations.exact.solves:
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
         columns = [_through(graph, row, slopes, rhs.state) for row in own]
-        solved |= _solved(graph, solve, rhs.state, columns, definitions)
+        solved |= _solved(graph, solve, rhs.state, columns, entries)
         first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
@@ -140,26 +141,28 @@ def _solved(
     solve: Solve,
     state: Sequence[str],
     residuals: Sequence[Sequence[int]],
-    present: Collection[str],
+    entries: Mapping[str, int],
 ) -> dict[str, Slopes]:
     """``x' = A^-1 r`` by L and D for each component of the state: slopes by unknown.
 
     Args:
-        graph: Where L and D are symbols.
+        graph: Where L and D are.
         solve: What is solved.
         state: Names of the components.
         residuals: r, a row for each unknown, a column for each component of the state.
-        present: Names of the entries of L and D that are not zero.
+        entries: L and D by name, what is zero in L left out.
     """
     size = range(len(solve.names))
     factors = {
-        (i, k): graph.symbol(name)
+        (i, k): entries[name]
         for i in size
         for k in size[:i]
-        if (name := factor_name(solve.block[i], solve.block[k])) in present
+        if (name := factor_name(solve.block[i], solve.block[k])) in entries
     }
     one = graph.number(1)
-    shares = [graph.divide(one, graph.symbol(pivot_name(i))) for i in solve.block]
+    # No pivot is defined where the unknown is always 0, and none is read there.
+    pivots = [entries.get(name, graph.symbol(name)) for name in map(pivot_name, solve.block)]
+    shares = [graph.divide(one, pivot) for pivot in pivots]
 
     def less(start: int, terms: Iterable[tuple[int, int]]) -> int:
         products = (graph.negate(graph.multiply(a, b)) for a, b in terms)

@@ -60,6 +60,7 @@ class Lowering:
         self._members = equations.moving
         self._forms: dict[tuple[int, bool], Form] = {}
         self._marks: set[Any] = set()
+        self._numbers = equations.numbers
         self._kept: list[Element] = []
         self._products: dict[bool, list[Product]] = {True: [], False: []}
         for element in elements:
@@ -241,7 +242,7 @@ class Lowering:
             return self.graph.product(map(self._factor, self._pairs[name]))
         known = self.field.adjoined.get(name)
         if known is None:
-            return self.graph.symbol(name)
+            return self.graph.named(name, self._numbers)
         fixed = not self._moves(known.argument)
         argument = self._build(self._form(known.argument, fixed=fixed), fixed=fixed)
         return self.graph.call(known.function, argument)

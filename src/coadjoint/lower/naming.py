@@ -64,7 +64,7 @@ class Naming:
         """The finished Program."""
         for definition, node in self.definitions.items():
             if self._uses[self.graph.symbol(definition)]:
-                self._state(definition, self._tree(node), self._fixed[definition])
+                self._define(definition, node)
         outputs = tuple(
             Output(label, self._inline(node, fixed=False)) for label, node in self.outputs
         )
@@ -102,6 +102,13 @@ class Naming:
         return self.graph.operands[node][0] if negated else node
 
     # -- statements ---------------------------------------------------------------------
+
+    def _define(self, name: str, node: int) -> None:
+        """State a definition, by whose name later operations read its value."""
+        tree = Symbol(self._names[node]) if node in self._names else self._tree(node)
+        self._state(name, tree, self._fixed[name])
+        if self.graph.kinds[node] not in ("number", "symbol", "negate"):
+            self._names.setdefault(node, name)
 
     def _state(self, name: str, value: Node, fixed: bool) -> None:
         self.statements.append(Statement(name, value, "parameters" if fixed else "member"))

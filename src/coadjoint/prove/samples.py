@@ -218,14 +218,8 @@ class Samples:
     @cached_property
     def _needed(self) -> list[tuple[str, Element]]:
         """The definitions on which the rates rest, in order."""
-        exact = self.motion.equations.exact
-        wanted = set[str]().union(*map(self.field.reach, exact.rates))
-        kept = []
-        for name, value in reversed(exact.definitions):
-            if name in wanted:
-                wanted |= self.field.reach(value)
-                kept.append((name, value))
-        return kept[::-1]
+        equations = self.motion.equations
+        return equations.definitions_of(equations.exact.rates)
 
 
 class AtNumbers(ConstrainedRates):
