@@ -6,10 +6,11 @@ import math
 import pytest
 import sympy
 
-from coadjoint.prove import Verdict
+from coadjoint.prove import Verdict, prove
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
+from tests.specs import spec
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
 JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
@@ -137,3 +138,25 @@ def weighted(of, function):
     names = of.distribution.independent
     slopes = of.field.gradient(of.closed(function), names)
     return of.field.sum(s * of.field[f"d{name}_dt"] for s, name in zip(slopes, names, strict=True))
+
+
+def test_a_reaction_is_an_integral_only_where_it_is_constant():
+    """The push m u v/(1 + y^2) of the particle changes; that of a flat blade is 0 and does not."""
+    claimed = (
+        "[claims]\nconserved = [",
+        '[observables]\npush = "blade_reaction"\n[claims]\nconserved = ["push", ',
+    )
+    flat = ("w == y*u", "w == k*u")
+    verdict = {c.statement: c.verdict for c in prove(spec(PARTICLE, claimed)).claims}
+    assert verdict["push is conserved"] is Verdict.REFUTED
+    verdict = {c.statement: c.verdict for c in prove(spec(PARTICLE, claimed, flat)).claims}
+    assert verdict["push is conserved"] is Verdict.PROVED
+
+
+def test_the_energy_is_said_to_be_conserved_once():
+    """A spec that claims it adds nothing; one whose forces change it is refuted."""
+    for changes, texts in (((), ["the energy is conserved"]), ((DRIVEN,), ["energy is conserved"])):
+        claims = prove(spec(PARTICLE, *changes)).claims
+        found = [c for c in claims if c.statement.endswith("energy is conserved")]
+        assert [c.statement for c in found] == texts
+        assert found[0].verdict is (Verdict.REFUTED if changes else Verdict.PROVED)

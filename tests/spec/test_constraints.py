@@ -84,7 +84,7 @@ def test_forces_sections_and_dissipation_are_read():
 ROUTES = 'routes = ["nonholonomic", "hamel"]'
 CLAIMS = "[claims]"
 FAULTS = [
-    ((BLADE, ""), "constraints", "a table of 0", "at least 1 item"),
+    ((BLADE, ""), "constraints", "an empty table", "expected at least 1 item."),
     ((BLADE, "blade = 3"), "constraints.blade", "3", "expected text in quotes"),
     (("[constraints]\n" + BLADE, ""), "routes", "constraints", "no table [constraints]"),
     (

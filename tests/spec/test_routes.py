@@ -102,3 +102,20 @@ def test_slip_in_what_a_route_starts_from_is_refused(text, change, key, found, s
         spec(text, change)
     assert (caught.value.key, caught.value.found) == (key, found)
     assert said in str(caught.value)
+
+
+def test_momenta_that_are_no_state_are_never_emitted():
+    """Where the state has velocities, the route canonical is proved equal to another route only."""
+    particle = """
+title = "x"
+routes = ["canonical", "euler-lagrange"]
+[variables]
+q = { role = "coordinate" }
+v = { role = "velocity", of = "q" }
+[lagrangian]
+l = "v^2/2"
+"""
+    with pytest.raises(SpecError, match="the state has velocities") as caught:
+        spec(particle)
+    assert (caught.value.key, caught.value.found) == ("routes[1]", "canonical")
+    assert spec(particle, ('"canonical", "euler-lagrange"', '"euler-lagrange", "canonical"'))

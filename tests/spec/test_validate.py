@@ -35,11 +35,11 @@ CHANGES = [
     (('"velocity"', '"velocty"'), "variables.Omega.role", "velocty", "'velocity'?"),
     (('"lie-poisson"]', '"lie-poison"]'), "routes[2]", "lie-poison", "'lie-poisson'?"),
     (('"lie-poisson"]', '"euler-poincare"]'), "routes", "a list of 2", "no entry twice"),
-    (('["euler-poincare", "lie-poisson"]', "[]"), "routes", "a list of 0", "at least 1"),
+    (('["euler-poincare", "lie-poisson"]', "[]"), "routes", "an empty list", "at least 1"),
     (('["dot(Pi, Pi)"]', '"dot(Pi, Pi)"'), "claims.casimirs", "dot(Pi, Pi)", "a list"),
     (('name = "so(3)"', 'name = "so(3)"\ninvariance = "both"'), "algebra.invariance", "both", "'l"),
     (('Pi = { role = "momentum" }', "Pi = 3"), "variables.Pi", 3, "a table"),
-    (('name = "so(3)"', ""), "algebra", "a table of 0", "exactly one of name"),
+    (('name = "so(3)"', ""), "algebra", "an empty table", "exactly one of name"),
     # numbers
     (("[1, 2, 3]", "[1, 2, nan]"), "parameters.I.default", "a list of 3", "finite"),
     (("[1, 2, 3]", "1e400"), "parameters.I.default", "1E+400", "INTEGER_DIGITS"),

@@ -336,7 +336,7 @@ def _constrained_integral(motion: ConstrainedRates, claim: Integral) -> Decision
     parts = first.setting.components(claim.formula, names)
     level = [g for f in claim.where for g in first.setting.components(f, names)]
     rates = [motion.rate(part) for part in (*level, *parts)]
-    functions = [*map(first.closed, level), *motion.where.relations]
+    functions = [*map(motion.in_state, level), *motion.where.relations]
     text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
     ideal = Ideal(motion.field, functions, text)
     if claim.where and ideal.contains(motion.field.one):  # on an empty set anything is conserved

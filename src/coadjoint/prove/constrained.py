@@ -63,10 +63,16 @@ class ConstrainedRates:
         return dict(zip(names, map(self.closed, self.equations.exact.rates), strict=True))
 
     def rate(self, function: Element) -> Element:
-        """The time derivative of a function of state and velocities."""
-        names, closed = self.equations.setting.state, self.closed(function)
+        """The time derivative of a function of state and velocities, or of reactions."""
+        names, closed = self.equations.setting.state, self.in_state(function)
         slopes = zip(self.field.gradient(closed, names), names, strict=True)
         return self.value(self.field.sum(s * self.rates[name] for s, name in slopes if s != 0))
+
+    def in_state(self, function: Element) -> Element:
+        """A function of the state alone, also where it names reactions."""
+        closed = self.closed(function)
+        rests = self.field.reach(closed) & set(self.equations.kept)
+        return self.value(closed) if rests else closed
 
     def value(self, element: Element) -> Element:
         """An element affine in accelerations and multipliers, in the state alone."""

@@ -295,6 +295,15 @@ def _check_first(source: Source, file: SpecFile) -> None:
             expected=f"one of {listed(others)} before it",
             hint=f'Write "{others[0]}" before it.',
         )
+    roles = {part.role for part in file.variables.values()}
+    if first == "canonical" and file.poisson is None and "momentum" not in roles:
+        raise source.fault(
+            ("routes", 0),
+            "the route canonical moves momenta, and the state has velocities",
+            found=first,
+            expected="variables with role = 'momentum', or euler-lagrange before it",
+            hint='Write "euler-lagrange" before it.',
+        )
 
 
 def _check_use(source: Source, file: SpecFile) -> None:

@@ -48,7 +48,8 @@ def shown(value: object, most: int = 60) -> str:
     if isinstance(value, int) and value.bit_length() > 1000:
         return f"an integer of {value.bit_length()} bits"
     if isinstance(value, (dict, list)):
-        return f"a {'table' if isinstance(value, dict) else 'list'} of {len(value)}"
+        kind = "table" if isinstance(value, dict) else "list"
+        return f"a {kind} of {len(value)}" if value else f"an empty {kind}"
     text = str(value).lower() if isinstance(value, bool) else ascii(value)
     text = str(value) if type(value).__name__ in ("Decimal", "Fraction") else text
     return text if len(text) <= most else text[: most - 3] + "..."

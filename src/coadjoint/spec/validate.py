@@ -234,4 +234,5 @@ def _expected(detail: ErrorDetails) -> str:
     if detail["type"] == "string_too_long":
         limit = "TITLE_CHARACTERS" if detail["loc"][-1] == "title" else "UNIT_CHARACTERS"
         return f"at most {getattr(limits, limit)} characters ({limit})"
+    message = re.sub(r" after validation, not \d+$", "", message)
     return re.sub(r"^\w+ should (?:be|have) (?:a valid )?", "", message)
