@@ -6,11 +6,12 @@ import math
 import pytest
 import sympy
 
+from coadjoint.derive import derive
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
-from tests.specs import spec
+from tests.specs import shipped, spec
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
 JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
@@ -160,3 +161,18 @@ def test_the_energy_is_said_to_be_conserved_once():
         found = [c for c in claims if c.statement.endswith("energy is conserved")]
         assert [c.statement for c in found] == texts
         assert found[0].verdict is (Verdict.REFUTED if changes else Verdict.PROVED)
+
+
+@pytest.mark.parametrize(
+    ("name", "where"),
+    [
+        ("veselova", "wherever Gamma1^2 + Gamma2^2 + Gamma3^2 is not 0"),
+        ("suslov", "wherever a1^2 + a2^2 + a3^2 is not 0"),
+        ("knife_edge_cvt", "everywhere"),
+        ("chaplygin_sleigh", "everywhere, each gives a velocity"),
+    ],
+)
+def test_where_the_rank_drops_is_said(name, where):
+    """A blade has a direction at every angle, a normal of length 0 is none."""
+    statement, *_ = next(iter(about_constraints([derive(shipped(name))])))
+    assert statement == f"the constraint is independent: rank 1 {where}"

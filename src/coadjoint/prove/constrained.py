@@ -18,12 +18,13 @@ from functools import cached_property, partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.constrained import section_components
-from coadjoint.derive.distribution import Row
+from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.derive.interpret import determinant
-from coadjoint.derive.kinematics import rate_name
+from coadjoint.derive.kinematics import kept_rows, rate_name
+from coadjoint.derive.legendre import LARGEST_BLOCK
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson.ranks import generic_rank
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
@@ -31,6 +32,8 @@ from coadjoint.prove.zero import Decision, decide_zero
 
 #: (statement, kind, what must be zero or a decision already made)
 Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
+#: Characters of a determinant that a statement shows.
+SHORT = 60
 
 
 class ConstrainedRates:
@@ -202,9 +205,30 @@ def _rank_text(first: Equations) -> str:
     """Where the rank is certain."""
     found = first.distribution
     assert found is not None
+    rank = f"rank {len(found.equations)}"
     if not found.kept:
-        return f"rank {len(found.equations)} everywhere, each gives a velocity"
-    return f"rank {len(found.equations)} at almost every point"
+        return f"{rank} everywhere, each gives a velocity"
+    gram = _gram(found)
+    if gram is not None and first.setting.field.as_number(gram) is not None:
+        return f"{rank} everywhere"
+    text = "" if gram is None else element_text(first.setting.field, gram)
+    short = 0 < len(text) <= SHORT
+    return f"{rank} wherever {text} is not 0" if short else f"{rank} at almost every point"
+
+
+def _gram(found: Distribution) -> Element | None:
+    """``det(A A^T)`` of the constraints that are kept, in the velocities of the state.
+
+    Over the real numbers it is zero exactly where these depend on each other. None of more than
+    three, whose determinant would fill a page.
+    """
+    field, rows = found.setting.field, [row[:-1] for row in kept_rows(found)]
+    if len(rows) > LARGEST_BLOCK:
+        return None
+    products = tuple(
+        tuple(field.sum(x * y for x, y in zip(a, b, strict=True)) for b in rows) for a in rows
+    )
+    return field.normal(determinant(products))
 
 
 def _rank(first: Equations) -> Decision:
@@ -215,6 +239,8 @@ def _rank(first: Equations) -> Decision:
     assert generic_rank(first.setting.field, rows) == len(rows), "distribution refuses these"
     if not found.kept:
         return Decision(Verdict.PROVED, "a minor of A that is 1 or -1")
+    if "almost" not in _rank_text(first):
+        return Decision(Verdict.PROVED, "det(A A^T) of the constraints that give no velocity")
     return Decision(Verdict.PROVED, "rank of A at a random point")
 
 
