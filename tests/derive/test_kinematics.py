@@ -8,6 +8,7 @@ from coadjoint.exact.roots import lifted
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Call, Symbol, walk
 from tests.constrained import BALL, PARTICLE, SLEIGH, derived, motion
+from tests.rolling import FOLLOWED_SLEIGH
 
 BLADE = 'blade = "w == y*u"'
 #: h = sqrt(1 + y^2) in the entry of B, alone and beside what is not over it.
@@ -86,3 +87,20 @@ def test_roots_are_lifted_only_where_that_is_shorter():
     assert lifted(ring, slope) == u / h
     assert lifted(ring, u * y / h**3) == u * y / h**3
     assert lifted(ring, u + y) == u + y
+
+
+def test_the_document_ends_with_brackets_and_what_is_reconstructed():
+    """Of the sleigh {M_omega, M_v} = -m (u + a omega), by hand, and the rates of its place."""
+    sleigh = motion(FOLLOWED_SLEIGH)
+    steps = {step.title: dict(step.lines) for step in sleigh.equations.steps}
+    (brackets,) = (lines for title, lines in steps.items() if title.startswith("Almost-Poisson"))
+    ring = sleigh.field
+    m, a, u, omega = (ring[name] for name in ("m", "a", "u", "omega"))
+    ((left, value),) = brackets.items()
+    assert left.text == "{M_omega, M_v}"
+    assert value == -m * (u + a * omega)
+    followed = {
+        left.text: value for left, value in steps["Reconstruction, after the motion"].items()
+    }
+    assert list(followed) == ["dtheta/dt", "dx/dt", "dy/dt"]
+    assert followed["dtheta/dt"] == omega

@@ -18,6 +18,7 @@ AFFINE = (BY_HAND, "-k", "constraint_that_moves")
 MOVING_MASS = (BY_HAND, "-k", "mass_that_moves")
 FORCED = (BY_HAND, "-k", "forces_and_dissipation")
 REACTIONS = (BY_HAND, "-k", "force_of_the_particle or given or push")
+ROOTS = ("tests/derive/test_kinematics.py", "-k", "quotient_rule")
 PENDULUM = (BY_HAND, "-k", "pendulum")
 PROJECTION = ("tests/derive/test_projection.py", "-k", "multiple")
 
@@ -166,6 +167,15 @@ DISTRIBUTED = (
         (),
         ("self.rate(beta)])", "-self.rate(beta)])", "a moving constraint of the other sign"),
         tests=AFFINE,
+    ),
+    *of(
+        "constrained",
+        "kinematics",
+        (),
+        ("(rest - field[name]) / field[root]", "(rest + field[name]) / field[root]"),
+        ("slopes[z] - outer * slope", "slopes[z]", "a root that moves twice"),
+        ("/ (2 * field[root])", "/ field[root]", "the slope of a root without its half"),
+        tests=ROOTS,
     ),
     *of(
         "constrained",

@@ -27,10 +27,23 @@ Read next: `coadjoint.derive.hamel`, the road by the constrained Lagrangian.
 
 from __future__ import annotations
 
+from itertools import combinations
+
+from coadjoint.derive.almost_poisson import Tensor
 from coadjoint.derive.constrained import ConstrainedMotion, emission
-from coadjoint.derive.distribution import Row, distribution
+from coadjoint.derive.distribution import Distribution, Row, distribution
 from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.equations import Equations, Step, component, partial, symbol
+from coadjoint.derive.equations import (
+    Equations,
+    Left,
+    Step,
+    bracket,
+    component,
+    partial,
+    rate,
+    symbol,
+)
+from coadjoint.derive.followed import rates_followed
 from coadjoint.derive.frames import Frame
 from coadjoint.derive.kinematics import Matrix
 from coadjoint.derive.setting import Setting, setting_of
@@ -39,6 +52,9 @@ from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.roots import lifted
 from coadjoint.spec import Spec
+
+#: Terms of a bracket up to which the document shows it.
+SHOWN = 8
 
 
 def derive(given: Spec | Setting) -> Equations:
@@ -58,7 +74,7 @@ def derive(given: Spec | Setting) -> Equations:
     definitions = [*motion.kinematics(), *named]
     reactions = motion.reactions(mass, forces)
     exact = emission(motion, lagrangian, definitions, reduced, known, reactions)
-    steps = _steps(motion, lagrangian, named, reduced, known, reactions)
+    steps = _steps(motion, lagrangian, named, reduced, known, reactions, exact.poisson_tensor)
     return Equations(setting, "nonholonomic", exact, steps, distribution=motion.distribution)
 
 
@@ -160,6 +176,7 @@ def _steps(
     reduced: Matrix,
     known: Row,
     reactions: list[Definition],
+    tensor: Tensor | None,
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     setting, found = motion.frame.setting, motion.distribution
@@ -228,5 +245,29 @@ def _steps(
             r"\dot p - F = A^T \lambda",
             tuple((symbol(name), value) for name, value in reactions),
         ),
+        Step(
+            "Almost-Poisson bracket of the momenta M = B^T p",
+            "{M_i, M_j} = -<p, [D_i, D_j]>",
+            r"\{M_i, M_j\} = -\langle p, [D_i, D_j] \rangle",
+            tuple(_brackets(found, tensor)),
+        ),
+        Step(
+            "Reconstruction, after the motion",
+            "the rates of what acts on nothing",
+            r"\dot g = g \xi",
+            tuple((rate(name), value) for name, value in rates_followed(setting, found)),
+        ),
     )
     return tuple(step for step in steps if step.lines)
+
+
+def _brackets(found: Distribution, tensor: Tensor | None) -> list[tuple[Left, Element]]:
+    """The brackets of the momenta that are not zero; none at all where any of them is long."""
+    names = found.setting.state
+    values = [
+        (bracket(f"M_{names[i]}", f"M_{names[j]}"), tensor[i][j])
+        for i, j in combinations(range(len(names)), 2)
+        if tensor is not None and {names[i], names[j]} <= set(found.independent)
+    ]
+    short = all(len(found.setting.field.terms(value)) <= SHOWN for _, value in values)
+    return [pair for pair in values if short and pair[1] != 0]
