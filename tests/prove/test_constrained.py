@@ -174,5 +174,5 @@ def test_the_energy_is_said_to_be_conserved_once():
 )
 def test_where_the_rank_drops_is_said(name, where):
     """A blade has a direction at every angle, a normal of length 0 is none."""
-    statement, *_ = next(iter(about_constraints([derive(shipped(name))])))
+    statement, *_ = next(about_constraints(ConstrainedRates(derive(shipped(name))), ()))
     assert statement == f"the constraint is independent: rank 1 {where}"
