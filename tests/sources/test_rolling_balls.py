@@ -146,7 +146,7 @@ def test_12_2_1_momentum_of_the_centred_ball_is_constant_in_space():
     """dM/dt = M x Omega, so that M . M and M . Gamma stay; M x Omega is not that off centre."""
     given = ball("chaplygin_ball_centred")
     check_law(emitted("chaplygin_ball_centred"), given.M, cross(given.M, given.Omega))
-    stated = {f"{name} is conserved" for name in ("energy", "vertical", "dot(M, M)")}
+    stated = {f"{name} is conserved" for name in ("the energy", "vertical", "dot(M, M)")}
     assert stated <= proved("chaplygin_ball_centred")
     off = ball("chaplygin_ball")
     with pytest.raises(AssertionError):
