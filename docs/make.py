@@ -22,9 +22,10 @@ from coadjoint.spec.schema import json_schema
 ROOT = Path(__file__).resolve().parents[1]
 PICTURES = {
     "heavy_top.png": "simulate heavy_top --set I=1,1,0.6 --set m=0.3 "
-    "--state Pi=0,0,3 --state Gamma=0.6,0,0.8 --time 20",
+    "--state Pi=0,0,3 --state Gamma=0.6,0,0.8 --time 20 --plot",
     "gyrostat.png": "simulate examples/gyrostat.toml --state Pi=0.01,1,0.01 --state L=0.2 "
-    "--time 60",
+    "--time 60 --plot",
+    "chaplygin_ball.png": "simulate chaplygin_ball --time 20 --trace",
 }
 
 
@@ -41,7 +42,7 @@ def run(words: list[str]) -> None:
 def draw() -> None:
     """The pictures of the README."""
     for name, words in PICTURES.items():
-        run([*words.split(), "--plot", f"docs/pictures/{name}"])
+        run([*words.split(), f"docs/pictures/{name}"])
 
 
 def write_derivations(folder: Path) -> None:

@@ -43,9 +43,17 @@ def test_the_rigid_body_moves_as_a_pendulum(example, tmp_path):
     assert (tmp_path / "body.png").stat().st_size > 10_000
 
 
+def test_the_rattleback_turns_round_one_way_only(example, tmp_path):
+    """Against its sense the spin changes its sign, with it it stays; the trace is drawn."""
+    last = example("rattleback")["main"](str(tmp_path / "trace.png"))
+    assert last[-5.0] > 1
+    assert last[5.0] > 4.5
+    assert (tmp_path / "trace.png").stat().st_size > 10_000
+
+
 def test_every_example_has_its_test():
     """No script of the folder is left out here."""
     tested = Path(__file__).read_text(encoding="utf-8")
     scripts = sorted(path.stem for path in EXAMPLES.glob("*.py"))
-    assert len(scripts) == 4
+    assert len(scripts) == 5
     assert all(f'example("{name}")' in tested for name in scripts)
