@@ -296,7 +296,8 @@ def _check_first(source: Source, file: SpecFile) -> None:
             hint=f'Write "{others[0]}" before it.',
         )
     roles = {part.role for part in file.variables.values()}
-    if first == "canonical" and file.poisson is None and "momentum" not in roles:
+    paired = file.poisson is not None or "momentum" in roles
+    if first == "canonical" and file.lagrangian is not None and not paired:
         raise source.fault(
             ("routes", 0),
             "the route canonical moves momenta, and the state has velocities",
