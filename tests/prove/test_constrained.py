@@ -176,3 +176,12 @@ def test_where_the_rank_drops_is_said(name, where):
     """A blade has a direction at every angle, a normal of length 0 is none."""
     statement, *_ = next(about_constraints(ConstrainedRates(derive(shipped(name))), ()))
     assert statement == f"the constraint is independent: rank 1 {where}"
+
+
+def test_routes_that_move_positions_otherwise_are_told_apart():
+    """The second carries the normal the other way, with equal equations for accelerations."""
+    first, second = derived(BALL).values()
+    same = "nonholonomic and hamel give the same motion"
+    assert verdicts([first, second])[same] is Verdict.PROVED
+    wrong = spoiled(second, "dGamma1_dt", lambda rate: -rate)
+    assert verdicts([first, wrong])[same] is Verdict.REFUTED

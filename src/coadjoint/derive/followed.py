@@ -61,7 +61,7 @@ def attitude_rate(setting: Setting, components: Sequence[str]) -> tuple[Element,
 def contact_rate(found: Distribution) -> tuple[Element, ...]:
     """``-O ds/dt``: the velocity of the point of contact in space, the height last."""
     setting, motion = found.setting, Kinematics(found)
-    q = Quaternion(*setting.elements(setting_attitude(setting)))
+    q = Quaternion(*setting.elements(attitude_components(setting)))
     carried = Quaternion.pure([motion.rate(x) for x in arm(setting)])
     return setting.field.vector((-(q * carried * q.conjugate)).vector)
 
@@ -73,6 +73,6 @@ def arm(setting: Setting) -> tuple[Element, ...]:
     return setting.components(rolling.arm)
 
 
-def setting_attitude(setting: Setting) -> tuple[str, ...]:
+def attitude_components(setting: Setting) -> tuple[str, ...]:
     """Names of the components of the attitude of a rolling body."""
     return next(q.components for q in setting.spec.reconstruction if q.name == ATTITUDE)

@@ -34,7 +34,7 @@ from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.exact import Element
 from coadjoint.poisson.jacobi import Triple, schouten_bracket
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import nonzero_at
 from coadjoint.prove.ideals import real_function
 from coadjoint.prove.identities import antisymmetry_defects
@@ -44,6 +44,7 @@ from coadjoint.prove.zero import (
     NEGLIGIBLE,
     NORMAL_FORM,
     Decision,
+    Examined,
     decide_zero,
     random_points,
 )

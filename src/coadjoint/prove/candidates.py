@@ -35,10 +35,10 @@ from coadjoint.derive.interpret import Quantity
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
-from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec import Spec
 
 #: Degrees in the velocities and in the positions up to which integrals are looked for: those of

@@ -7,7 +7,7 @@ Read next: `coadjoint.prove.identities` for what must be zero, `coadjoint.prove.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from time import perf_counter
@@ -51,13 +51,11 @@ from coadjoint.prove.zero import (
     NORMAL_FORM,
     NORMAL_FORM_WITH_FUNCTIONS,
     Decision,
+    Examined,
     decide_zero,
 )
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.model import Integral, SpatialMomentum
-
-#: (statement, kind, what must be zero or a decision already made)
-Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
 
 
 def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:

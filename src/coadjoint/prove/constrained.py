@@ -13,7 +13,7 @@ Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive import Equations
@@ -28,10 +28,8 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson.ranks import generic_rank
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero
 
-#: (statement, kind, what must be zero or a decision already made)
-Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
 #: Characters of a determinant that a statement shows.
 SHORT = 60
 
@@ -67,9 +65,13 @@ class ConstrainedRates:
 
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and velocities, or of reactions."""
-        names, closed = self.equations.setting.state, self.in_state(function)
-        slopes = zip(self.field.gradient(closed, names), names, strict=True)
-        return self.value(self.field.sum(s * self.rates[name] for s, name in slopes if s != 0))
+        return self.value(self._carried(self.in_state(function)))
+
+    def _carried(self, function: Element) -> Element:
+        """The time derivative of a function of the state, in accelerations."""
+        names = self.equations.setting.state
+        slopes = zip(self.field.gradient(function, names), names, strict=True)
+        return self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
     def in_state(self, function: Element) -> Element:
         """A function of the state alone, also where it names reactions."""
@@ -157,10 +159,7 @@ class ConstrainedRates:
         power = [f * x for f, x in zip(external_forces(found.frame), xi, strict=True)]
         rest = dict.fromkeys(found.frame.velocities, field.zero)
         work = [-field.substitute(e.residual, rest) * field[e.reaction] for e in found.equations]
-        closed, names = self.closed(energy), setting.state
-        slopes = zip(field.gradient(closed, names), names, strict=True)
-        changed = field.sum(s * self.rates[name] for s, name in slopes if s != 0)
-        return self.value(changed - field.sum([*power, *work]))
+        return self.value(self._carried(self.closed(energy)) - field.sum([*power, *work]))
 
 
 def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
@@ -172,7 +171,8 @@ def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> 
     first, found = motion.equations, motion.distribution
     count = len(found.equations)
     text = f"the {count} constraints are" if count > 1 else "the constraint is"
-    yield f"{text} independent: {_rank_text(first)}", "constraint", partial(_rank, first)
+    rank, decision = _rank(found)
+    yield f"{text} independent: {rank}", "constraint", lambda: decision
     yield (
         "the kernel solves for the accelerations: L D L^T = B^T M B",
         "constraint",
@@ -201,19 +201,22 @@ def _kept(motion: ConstrainedRates, residual: Element) -> list[Element]:
     return [motion.rate(residual)]
 
 
-def _rank_text(first: Equations) -> str:
-    """Where the rank is certain."""
-    found = first.distribution
-    assert found is not None
-    rank = f"rank {len(found.equations)}"
+def _rank(found: Distribution) -> tuple[str, Decision]:
+    """The rank of A, which the derivation has refused to be less, where it is certain, and how."""
+    field, rank = found.setting.field, f"rank {len(found.equations)}"
+    rows = [{k: e for k, e in enumerate(row) if e != 0} for row in found.A]
+    assert generic_rank(field, rows) == len(rows), "distribution refuses these"
     if not found.kept:
-        return f"{rank} everywhere, each gives a velocity"
+        minor = Decision(Verdict.PROVED, "a minor of A that is 1 or -1")
+        return f"{rank} everywhere, each gives a velocity", minor
     gram = _gram(found)
-    if gram is not None and first.setting.field.as_number(gram) is not None:
-        return f"{rank} everywhere"
-    text = "" if gram is None else element_text(first.setting.field, gram)
-    short = 0 < len(text) <= SHORT
-    return f"{rank} wherever {text} is not 0" if short else f"{rank} at almost every point"
+    text = "" if gram is None else element_text(field, gram)
+    if gram is None or len(text) > SHORT:
+        random = Decision(Verdict.PROVED, "rank of A at a random point")
+        return f"{rank} at almost every point", random
+    where = "everywhere" if field.as_number(gram) is not None else f"wherever {text} is not 0"
+    method = "det(A A^T) of the constraints that give no velocity"
+    return f"{rank} {where}", Decision(Verdict.PROVED, method)
 
 
 def _gram(found: Distribution) -> Element | None:
@@ -229,19 +232,6 @@ def _gram(found: Distribution) -> Element | None:
         tuple(field.sum(x * y for x, y in zip(a, b, strict=True)) for b in rows) for a in rows
     )
     return field.normal(determinant(products))
-
-
-def _rank(first: Equations) -> Decision:
-    """The rank of A, which the derivation has refused to be less."""
-    found = first.distribution
-    assert found is not None
-    rows = [{k: e for k, e in enumerate(row) if e != 0} for row in found.A]
-    assert generic_rank(first.setting.field, rows) == len(rows), "distribution refuses these"
-    if not found.kept:
-        return Decision(Verdict.PROVED, "a minor of A that is 1 or -1")
-    if "almost" not in _rank_text(first):
-        return Decision(Verdict.PROVED, "det(A A^T) of the constraints that give no velocity")
-    return Decision(Verdict.PROVED, "rank of A at a random point")
 
 
 def _solved(first: Equations) -> list[Element]:
@@ -260,14 +250,11 @@ def _same_solves(first: Equations, other: Equations) -> list[Element]:
     pairs = zip(first.exact.solves, other.exact.solves, strict=True)
     for one, two in pairs:
         defects += _differences(first, other, one, two)
+    solved = {name for solve in first.exact.solves for name in solve.names}
     rates = zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True)
     return [
         *defects,
-        *(
-            first.closed(a) - other.closed(b)
-            for name, a, b in rates
-            if first.setting.field[rate_name(name)] != a
-        ),
+        *(first.closed(a) - other.closed(b) for x, a, b in rates if rate_name(x) not in solved),
     ]
 
 

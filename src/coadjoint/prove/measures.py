@@ -42,10 +42,10 @@ from coadjoint.exact import Element, Field
 from coadjoint.exact.element import remove_factor
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
-from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.samples import AtNumbers, Point, Samples, leading
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero
 
 #: Largest denominator of an exponent that is taken for one.
 DENOMINATOR = 12

@@ -24,9 +24,9 @@ from coadjoint.derive.constrained import section_momenta, section_vector
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.exact import Element, element_text
-from coadjoint.prove.constrained import ConstrainedRates, Examined
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import SHOWN
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.model import Section
 
 

@@ -18,8 +18,8 @@ from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.kinematics import multiplier_name, shift_name
 from coadjoint.derive.solver import solution_defects
 from coadjoint.exact import Element
-from coadjoint.prove.constrained import ConstrainedRates, Examined
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.zero import Decision, Examined, decide_zero
 
 
 def about_projection(first: Equations) -> Iterator[Examined]:

@@ -11,19 +11,16 @@ Read next: `coadjoint.derive.followed`, which rests on (i).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from coadjoint.derive.followed import arm
 from coadjoint.groups.vectors import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, decide_zero
-
-#: (statement, kind, how it is decided)
-_Examined = tuple[str, str, Callable[[], Decision]]
+from coadjoint.prove.zero import Examined, decide_zero
 
 
-def about_rolling(motion: ConstrainedRates) -> Iterator[_Examined]:
+def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
     """The claims about a body that rolls; none about any other."""
     first = motion.equations
     setting, rolling = first.setting, first.spec.rolling

@@ -8,7 +8,7 @@ same certificate.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -49,6 +49,10 @@ class Decision:
     method: str
     point: dict[str, str] = field(default_factory=dict)
     defect: str = ""
+
+
+#: (statement, kind, what must be zero or a decision already made)
+Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
 
 
 def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:
