@@ -1,5 +1,7 @@
-"""The Certificate: a list of claims, each with its verdict, its method and the time it took.
+"""The Certificate: claims with their verdicts, and findings with their scope.
 
+A claim is asserted by the spec or by the engine, and is proved, refuted or numerically supported. A
+finding is what a search, a rank or a count gave: nobody asserted it, so that it decides nothing.
 Comes in: what the proofs found. Goes out: a frozen record, as a table for people and as JSON for
 programs; times are shown and never stored, since generated files are the same bytes everywhere.
 """
@@ -62,16 +64,49 @@ class Claim:
 
 
 @dataclass(frozen=True)
+class Finding:
+    """What a rank, a search or a count gave.
+
+    Attributes:
+        statement: What was found, e.g. ``integrals of degree <= 2: a space of dimension 3``.
+        kind: As of a claim.
+        method: How it was found.
+        scope: Where it holds, e.g. ``for almost all parameters``; empty for everywhere.
+        error: How likely it is wrong, in words; empty where it is exact.
+        seconds: How long the search took.
+    """
+
+    statement: str
+    kind: str
+    method: str
+    scope: str = ""
+    error: str = ""
+    seconds: float = field(default=0.0, compare=False)
+
+    def as_record(self) -> dict[str, Any]:
+        """The finding as JSON values, without the time."""
+        return {
+            "statement": self.statement,
+            "kind": self.kind,
+            "method": self.method,
+            "scope": self.scope,
+            "error": self.error,
+        }
+
+
+@dataclass(frozen=True)
 class Certificate:
-    """Everything that is claimed of one system.
+    """Everything that is claimed of one system, and what was found out about it.
 
     Attributes:
         system: Name of the system.
         claims: In the order in which they were examined.
+        findings: Likewise.
     """
 
     system: str
     claims: tuple[Claim, ...]
+    findings: tuple[Finding, ...] = ()
 
     @property
     def refuted(self) -> tuple[Claim, ...]:
@@ -103,7 +138,11 @@ class Certificate:
 
     def as_record(self) -> dict[str, Any]:
         """The certificate as JSON values, without times."""
-        return {"system": self.system, "claims": [claim.as_record() for claim in self.claims]}
+        return {
+            "system": self.system,
+            "claims": [claim.as_record() for claim in self.claims],
+            "findings": [finding.as_record() for finding in self.findings],
+        }
 
     def __str__(self) -> str:
         width = max((len(claim.statement) for claim in self.claims), default=0)

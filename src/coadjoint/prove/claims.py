@@ -23,7 +23,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.prove.almost_poisson import about_reduced_bracket
 from coadjoint.prove.candidates import about_candidates, known_integrals
-from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints, keeps_energy
@@ -51,8 +51,10 @@ from coadjoint.prove.zero import (
     NORMAL_FORM,
     NORMAL_FORM_WITH_FUNCTIONS,
     Decision,
+    Discovery,
     Examined,
     decide_zero,
+    make_entry,
 )
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.model import Integral, SpatialMomentum
@@ -75,23 +77,18 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         setting = make_setting(spec)
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
     field = routes[0].setting.field
-    claims, start = [], perf_counter()
+    claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
         found = examine()
-        decision = found if isinstance(found, Decision) else decide_zero(found, field)
+        if not isinstance(found, Decision | Discovery):
+            found = decide_zero(found, field)
         seconds, start = perf_counter() - start, perf_counter()
-        claims.append(
-            Claim(
-                statement,
-                kind,
-                decision.verdict,
-                decision.method,
-                seconds,
-                decision.point,
-                decision.defect,
-            )
-        )
-    return Certificate(spec.name, tuple(claims))
+        entry = make_entry(statement, kind, found, seconds)
+        if isinstance(entry, Claim):
+            claims.append(entry)
+        else:
+            findings.append(entry)
+    return Certificate(spec.name, tuple(claims), tuple(findings))
 
 
 def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:

@@ -18,7 +18,7 @@ from typing import Any
 import mpmath
 
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.certificate import Claim, Finding, Verdict
 from coadjoint.prove.ideals import Ideal, real_function
 
 DIGITS = 50
@@ -51,8 +51,32 @@ class Decision:
     defect: str = ""
 
 
-#: (statement, kind, what must be zero or a decision already made)
-Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
+@dataclass(frozen=True)
+class Discovery:
+    """How something was found that nobody claims: a rank, the end of a search, a count.
+
+    Attributes:
+        method: How it was found.
+        scope: Where it holds; empty for everywhere.
+        error: How likely it is wrong, in words; empty where it is exact.
+    """
+
+    method: str
+    scope: str = ""
+    error: str = ""
+
+
+#: (statement, kind, what must be zero, or a decision already made, or how it was found)
+Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision | Discovery]]
+
+
+def make_entry(
+    statement: str, kind: str, found: Decision | Discovery, seconds: float
+) -> Claim | Finding:
+    """The entry of the certificate for a statement: a claim if it was decided, else a finding."""
+    if isinstance(found, Discovery):
+        return Finding(statement, kind, found.method, found.scope, found.error, seconds)
+    return Claim(statement, kind, found.verdict, found.method, seconds, found.point, found.defect)
 
 
 def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:
