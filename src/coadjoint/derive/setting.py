@@ -19,7 +19,7 @@ from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element, Field, Region
 from coadjoint.spec import Formula, Spec, tree
 from coadjoint.spec.components import FORMS
 from coadjoint.spec.model import Parameter, Shape, Variable, unpacked
@@ -236,12 +236,23 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     more = len(spec.routes) * bool(symbols) + len(spec.transformations)
     room = _function_calls(spec) * (1 + more)
     field = Field([*names, *symbols], room, positive)
+    parameters = frozenset(name for p in spec.parameters for name in p.components)
+    field.region = Region(parameters, _defaults(quantities))
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = whole(quantity, values)
     for each in spec.reconstruction:
         values[each.name] = shaped([values[name] for name in each.components], each.shape)
     return Setting(spec, field, values)
+
+
+def _defaults(quantities: Sequence[Variable | Parameter]) -> dict[str, Fraction]:
+    """The default of each component that has one."""
+    return {
+        name: value
+        for each in quantities
+        for name, value in zip(each.components, each.default or (), strict=False)
+    }
 
 
 def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:

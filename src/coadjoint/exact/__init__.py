@@ -7,6 +7,7 @@ SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
 from coadjoint.exact.jets import JetField
+from coadjoint.exact.region import Inequality, Region
 from coadjoint.exact.text import element_text
 
-__all__ = ["Element", "Field", "JetField", "element_text"]
+__all__ = ["Element", "Field", "Inequality", "JetField", "Region", "element_text"]

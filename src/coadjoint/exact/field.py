@@ -22,6 +22,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.region import Region
 from coadjoint.exact.written import Adjoined, Monomial, Written
 
 Value = TypeVar("Value")
@@ -54,6 +55,7 @@ class Field:
     def __init__(self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()) -> None:
         self.names = tuple(names)
         self.positive = frozenset(positive)
+        self.region = Region()  # what else may be assumed: `make_setting` says
         # A spec name cannot begin with an underscore, so a slot cannot meet one.
         # Two for each function: sine and cosine come together.
         self._free = [f"_f{n + 1}" for n in range(2 * slots)]

@@ -36,9 +36,9 @@ from coadjoint.poisson.jacobi import Triple, schouten_bracket
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import nonzero_at
-from coadjoint.prove.ideals import real_function
 from coadjoint.prove.identities import antisymmetry_defects
 from coadjoint.prove.integrability import Basis
+from coadjoint.prove.points import Points, real_function
 from coadjoint.prove.zero import (
     DIGITS,
     NEGLIGIBLE,
@@ -46,7 +46,6 @@ from coadjoint.prove.zero import (
     Decision,
     Examined,
     decide_zero,
-    random_points,
 )
 
 Pair = tuple[int, int]
@@ -153,10 +152,8 @@ class ReducedBracket:
     def defect_somewhere(self) -> tuple[Triple, Decision] | None:
         """A triple whose Jacobi defect is not zero at some point; None if none is found."""
         entries = [e for row in (*self.tensor, *self.turn) for e in row]
-        present = frozenset[str]().union(*map(self.field.reach, entries))
-        names = [name for name in self.field.names if name in present]
         plain = all(map(self.field.function_free, entries))
-        for point in islice(random_points(names, self.field.positive), TRIED):
+        for point in islice(Points(self.field, entries), TRIED):
             with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):
                 for triple, value in self._defects_at(point, plain).items():
                     if value:

@@ -123,9 +123,9 @@ class Measure:
     @cached_property
     def allowed(self) -> Mapping[str, Element]:
         """The velocities that kept constraints give in terms of the others."""
-        kept = [residual for _, residual in self.motion.distribution.kept]
-        relations = [self.motion.closed(residual) for residual in kept]
-        return Ideal(self.field, relations, "", self.velocities).solved
+        kept, closed = self.motion.where, self.motion.closed
+        relations, nonzero = map(closed, kept.relations), list(map(closed, kept.nonzero))
+        return Ideal(self.field, list(relations), "", self.velocities, nonzero).solved
 
     @cached_property
     def free(self) -> list[str]:

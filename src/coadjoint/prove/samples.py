@@ -144,7 +144,7 @@ class Samples:
         lengths = [self.squared(each) - 1 for each in self.unit]
         texts = [f"dot({each.name}, {each.name}) = 1" for each in self.unit]
         text = ", ".join(filter(None, (kept.text, *texts)))
-        return Ideal(self.field, [*kept.relations, *lengths], text)
+        return kept.also(lengths, text)
 
     def slopes(self, function: Element) -> Slopes:
         """The derivatives of a function by the state."""

@@ -1,34 +1,46 @@
-"""Deciding that elements are zero: by normal form, and where that cannot tell, by 50 digits.
+"""Deciding that elements are zero: by normal form, and where that cannot tell, at points.
 
-Comes in: elements that should be zero. Goes out: a verdict, a method, and a counter-example point
-for what is not zero. Points are small rationals from a fixed sequence, so that every run gives the
-same certificate.
+Comes in: elements that should be zero, everywhere or where relations hold. Goes out: a verdict, a
+method, and a counter-example point for what is not zero. Points lie in the domain that is declared
+and on the zero set of the relations. A value refutes if interval arithmetic keeps it from zero.
+Where no point is found, nothing is decided and an error says so. Points are the same in every run,
+so that every run gives the same certificate.
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import islice
 from typing import Any
 
 import mpmath
 
+from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Claim, Finding, Verdict
-from coadjoint.prove.ideals import Ideal, real_function
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.points import (
+    DIGITS,
+    Branch,
+    Points,
+    Values,
+    random_points,
+    real,
+    real_function,
+)
 
-DIGITS = 50
+__all__ = ["DIGITS", "Decision", "Discovery", "decide_zero", "random_points", "real_function"]
+
 #: Points at which a nonzero normal form is tried before it counts as numerically supported.
 POINTS = 20
 #: Relative size below which a 50-digit value counts as zero; cancellation may cost 20 digits.
 NEGLIGIBLE = mpmath.mpf(10) ** -(DIGITS - 20)
-#: Size below which a value counts as zero at points of a zero set found by iteration; where the
-#: zero set is singular such points have half the digits.
-ON_ZERO_SET = mpmath.mpf(10) ** -12
+#: Size below which a value counts as zero at points of a zero set found by iteration.
+ON_ZERO_SET = mpmath.mpf(10) ** -20
+#: Denominators that a method shows, and the length of each.
+SHOWN, SHOWN_TEXT = 3, 40
 NORMAL_FORM = "normal form in the field of rational functions"
 CONSTANTS = "exact arithmetic on the structure constants"
 NORMAL_FORM_WITH_FUNCTIONS = "normal form modulo the relations of the elementary functions"
@@ -80,140 +92,218 @@ def make_entry(
 
 
 def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:
-    """Whether every element is zero.
+    """Whether every element is zero, in the region that is assumed of the field.
 
-    A normal form of zero is a proof. A nonzero one refutes where no elementary function occurs;
-    otherwise 50-digit values at random points refute, or support and say so.
+    A normal form of zero is a proof. Of anything else values at points refute, or support.
 
     Args:
         elements: What should be zero.
         ring: Where they live.
         where: Relations on whose zero set alone they should be zero; by default everywhere.
+
+    Raises:
+        UndecidedError: The elements are not proved to be zero, and no point is found at which they
+            have values; or there is no point where the relations hold.
     """
     if where is not None and where.relations:
         return _decide_where(elements, ring, where)
     left = [element for element in map(ring.normal, elements) if element != 0]
-    plain = all(ring.function_free(element) for element in elements)
     if not left:
+        plain = all(map(ring.function_free, elements))
         return Decision(Verdict.PROVED, NORMAL_FORM if plain else NORMAL_FORM_WITH_FUNCTIONS)
-    for element in left:
-        counterexample = _counterexample(element, ring)
-        if counterexample is not None:
-            point, value = counterexample
-            named = {name: str(value) for name, value in point.items()}
-            method = "exact" if ring.function_free(element) else f"{DIGITS}-digit"
-            return Decision(Verdict.REFUTED, f"{method} counter-example", named, value)
-    assert not plain, "a nonzero rational function is nonzero at almost every point"
-    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {POINTS} random points")
+    found = _look(left, ring, Branch(), "")
+    if isinstance(found, Decision):
+        return found
+    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {found} random points")
+
+
+def check_defined(functions: Sequence[Element], ring: Field, where: Ideal | None = None) -> None:
+    """Refuse functions that have no value anywhere: of those anything would be true.
+
+    Raises:
+        UndecidedError: No point is found at which all of them have values.
+    """
+    if all(map(ring.function_free, functions)):
+        return
+    branches = where.branches if where is not None and where.relations else (Branch(),)
+    for branch in branches:
+        with suppress(ZeroDivisionError):
+            values = [ring.substitute(each, branch.solved) for each in functions]
+            if next(iter(Points(ring, values, branch)), None) is not None:
+                return
+    place = f", where {where.scope}" if where is not None and where.relations else ""
+    raise UndecidedError(f"no point is found at which it has a value{place}. {ADVICE}")
+
+
+class UndecidedError(ClaimError):
+    """Nothing is known of a claim: no point is found at which it could fail."""
 
 
 def _decide_where(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
-    """Whether every element is zero where relations hold."""
-    left = [rest for rest in map(where.remainder, elements) if rest != 0]
-    if not left:
-        return Decision(Verdict.PROVED, f"normal form modulo the ideal of {where.text}")
-    if not where.is_solved:
-        return _decide_near(left, ring, where)
-    found = decide_zero(list(map(where.on_zero_set, elements)), ring)
-    point = found.point
-    if point:
-        shown = {**point, **_solved_values(point, ring, where)}
-        point = {name: shown[name] for name in ring.names if name in shown}
-    return Decision(found.verdict, f"{found.method}, where {where.text}", point, found.defect)
+    """Whether every element is zero where relations hold: on each branch of their zero set."""
+    if where.contains(ring.one):
+        raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+    if all(map(where.contains, elements)):
+        if not where.has_points:  # on an empty set anything is true
+            raise UndecidedError(f"no point is found where {where.scope}. {ADVICE}")
+        method = f"normal form modulo the ideal of {where.scope}"
+        return Decision(Verdict.PROVED, method + _but_for_poles(elements, where))
+    counts, defined = list[int](), 0
+    for branch in where.branches:
+        with suppress(ZeroDivisionError):  # a pole on all of the branch
+            values = [ring.substitute(element, branch.solved) for element in elements]
+            defined += 1
+            rest = Ideal(ring, branch.rest)
+            left = [value for value in values if not rest.contains(value)]
+            found = _look(left, ring, branch, where.scope) if left else None
+            if isinstance(found, Decision):
+                return found
+            counts += [] if found is None else [found]
+    if not where.branches:
+        raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+    if not defined:
+        raise UndecidedError(f"it has no value anywhere where {where.scope}. {ADVICE}")
+    if counts:
+        method = f"{DIGITS}-digit values at {sum(counts)} points where {where.scope}"
+        return Decision(Verdict.SUPPORTED, method)
+    if not where.has_points:
+        raise UndecidedError(f"no point is found where {where.scope}. {ADVICE}")
+    branches = f"each of {defined} branches" if defined > 1 else "the solutions"
+    method = f"normal form on {branches} of {where.scope}"
+    return Decision(Verdict.PROVED, method + _but_for_poles(elements, where))
 
 
-def _solved_values(point: Mapping[str, str], ring: Field, where: Ideal) -> dict[str, str]:
-    """What relations give at a point as text, to 15 digits where functions occur."""
-    free = dict.fromkeys(ring.names, Fraction(1)) | {n: Fraction(v) for n, v in point.items()}
-    numbers = {name: _number(value) for name, value in free.items()}
-    values = {}
-    for name, root in where.solved.items():
-        with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):  # a pole: no value
-            if ring.function_free(root):
-                values[name] = str(ring.evaluate(root, free, Fraction, _no_call))
-            else:
-                value = ring.evaluate(root, numbers, _number, real_function)
-                values[name] = mpmath.nstr(value, 15)
-    return values
+#: What to do about a claim that has no value at any point.
+ADVICE = (
+    "Expected real points, in [domain] and with the declared signs, at which the claim has a "
+    "value. Correct the claim, or give defaults near which there are some."
+)
 
 
-def _decide_near(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
-    """Whether every element is zero at points of a zero set that only numbers find.
+def _but_for_poles(elements: Sequence[Element], where: Ideal) -> str:
+    """Denominators in which something moves and which may vanish, as what is excluded."""
+    ring, found = where.field, list[Element]()
+    for element in elements:
+        for written in ring.quotients(ring.normal(element)):
+            found += [divisor for divisor, _ in written.divisors if divisor not in found]
+    found = [each for each in found if where.may_vanish(each)]
+    texts = [element_text(ring, each) for each in found]
+    if not texts:
+        return ""
+    if len(texts) > SHOWN or any(len(text) > SHOWN_TEXT for text in texts):
+        return ", wherever no denominator is 0"
+    return f", wherever {', '.join(texts)} {'are' if len(texts) > 1 else 'is'} not 0"
 
-    A remainder that is not zero refutes nothing yet: an ideal need not hold all that vanishes on
-    its real zero set, as x is not in the ideal of x^2.
+
+def _look(elements: Sequence[Element], ring: Field, branch: Branch, scope: str) -> Decision | int:
+    """What values say of elements whose normal form is not zero.
+
+    Returns:
+        A refutation, or the number of points at which each of them is zero.
+
+    Raises:
+        UndecidedError: One of them has no value at any point that is found.
     """
-    seen = 0
+    counts, where = list[int](), f", where {scope}" if scope else ""
+    for element in elements:
+        seen = 0
+        points = Points(ring, [element], branch)
+        for point in points:
+            with mpmath.workdps(DIGITS):
+                value = _value(element, ring, point, branch)
+            if value:
+                exact = ring.function_free(element) and not branch.rest
+                method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
+                shown = _shown(points, point)
+                return Decision(Verdict.REFUTED, method, shown, value)
+            seen += value is not None
+            if seen == POINTS:
+                break
+        counts.append(seen)
+    if not min(counts):
+        raise UndecidedError(f"no point is found at which it has a value{where}. {ADVICE}")
+    return min(counts)
+
+
+def _value(element: Element, ring: Field, point: Values, branch: Branch) -> str | None:
+    """The value of an element at a point as text; empty for zero, None where nothing is known."""
+    try:
+        if branch.rest:
+            return _near_value(element, ring, point)
+        if ring.function_free(element):
+            exact = ring.evaluate(element, point, Fraction, real_function)
+            return str(exact) if exact else ""
+        return _certain_value(element, ring, point)
+    except (ZeroDivisionError, ValueError, OverflowError):
+        return None
+
+
+def _near_value(element: Element, ring: Field, point: Values) -> str:
+    """The value at a point that lies on a zero set up to rounding."""
+    value, size = _with_size(element, ring, point)
+    return "" if abs(value) <= ON_ZERO_SET * max(1, size) else mpmath.nstr(value, 15)
+
+
+def _certain_value(element: Element, ring: Field, point: Values) -> str | None:
+    """The value at a rational point: not zero if an interval says so."""
+    numbers = {name: real(value) for name, value in point.items()}
+    value, size = _with_size(element, ring, numbers)
+    if abs(value) <= NEGLIGIBLE * size:
+        return ""
+    return mpmath.nstr(value, 15) if is_certainly_nonzero(element, ring, point) else None
+
+
+def _with_size(element: Element, ring: Field, numbers: Values) -> tuple[Any, Any]:
+    """The value of an element and that of its largest addend, beside which cancellation shows."""
+    value = ring.evaluate(element, numbers, real, real_function)
+    addends = (ring.evaluate(part, numbers, real, real_function) for part in ring.terms(element))
+    return value, max(map(abs, addends), default=mpmath.mpf(0))
+
+
+def is_certainly_nonzero(element: Element, ring: Field, point: Mapping[str, Fraction]) -> bool:
+    """Whether interval arithmetic keeps the value at a rational point from zero.
+
+    Raises:
+        ValueError: A function may not be defined there, or a denominator may be zero.
+    """
+    with _interval_digits(DIGITS):
+        numbers = {name: _interval(value) for name, value in point.items()}
+        value = ring.evaluate(element, numbers, _interval, _interval_function)
+        if not (value.a > -mpmath.inf and value.b < mpmath.inf):
+            raise ValueError("a denominator may be zero")
+        return bool(value.a > 0 or value.b < 0)
+
+
+def _interval(value: Fraction) -> Any:
+    return mpmath.iv.mpf(value.numerator) / value.denominator
+
+
+def _interval_function(function: str, argument: Any) -> Any:
+    if function in ("sqrt", "log") and not argument.a > 0:
+        raise ValueError(f"{function} of {argument}")
+    return getattr(mpmath.iv, function)(argument)
+
+
+@contextmanager
+def _interval_digits(digits: int) -> Iterator[None]:
+    """The working precision of intervals, for a while."""
+    before, mpmath.iv.dps = mpmath.iv.dps, digits
+    try:
+        yield
+    finally:
+        mpmath.iv.dps = before
+
+
+def _shown(points: Points, point: Values) -> dict[str, str]:
+    """A point as text: the symbols on which values rest, exact where they are."""
+    ring, branch = points.ring, points.branch
+    reached = frozenset[str]().union(*map(ring.reach, (*points.elements, *branch.rest)))
+    for name, root in branch.solved.items():
+        reached |= {name, *ring.reach(root)}
     with mpmath.workdps(DIGITS):
-        for point in where.near(islice(random_points(ring.names, ring.positive), POINTS)):
-            values = [ring.evaluate(element, point, _number, real_function) for element in elements]
-            largest = max(values, key=abs)
-            if abs(largest) > ON_ZERO_SET:
-                shown = {
-                    name: mpmath.nstr(point[name], 15)
-                    for name in ring.names
-                    if any(name in ring.reach(e) for e in (*elements, *where.relations))
-                }
-                method = f"{DIGITS}-digit counter-example, where {where.text}"
-                return Decision(Verdict.REFUTED, method, shown, mpmath.nstr(largest, 15))
-            seen += 1
-    if not seen:
-        reason = (
-            f"nonzero remainder modulo the ideal of {where.text}, no real point of which is known"
-        )
-        return Decision(Verdict.REFUTED, reason, {}, element_text(ring, elements[0]))
-    method = f"{DIGITS}-digit values at {seen} points where {where.text}"
-    return Decision(Verdict.SUPPORTED, method)
+        values = points.complete(point)
+    return {name: _text(values[name]) for name in ring.names if name in reached}
 
 
-def random_points(
-    names: Sequence[str], positive: Set[str] = frozenset(), seed: int = 1
-) -> Iterator[dict[str, Fraction]]:
-    """Endless small nonzero rationals, the same in every run, with the assumed signs."""
-    source = random.Random(seed)  # noqa: S311 (not for secrets)
-    while True:
-        sizes = [Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
-        signs = [1 if name in positive else source.choice((-1, 1)) for name in names]
-        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
-
-
-def _counterexample(element: Element, ring: Field) -> tuple[dict[str, Fraction], str] | None:
-    """A point where an element is not zero, and its value there."""
-    names = sorted(ring.reach(element), key=ring.names.index)
-    seen = 0
-    # Poles and arguments outside a function's domain are passed over, so more points are drawn.
-    for point in islice(random_points(names, ring.positive), 50 * POINTS):
-        try:
-            value = _nonzero_value(element, ring, point)
-        except (ZeroDivisionError, ValueError):
-            continue
-        if value:
-            return point, value
-        seen += 1
-        if seen == POINTS and not ring.function_free(element):
-            return None
-    return None
-
-
-def _nonzero_value(element: Element, ring: Field, point: dict[str, Fraction]) -> str:
-    """The value of an element at a rational point as text; empty if it is zero there."""
-    if ring.function_free(element):
-        exact = ring.evaluate(element, point, Fraction, _no_call)
-        return str(exact) if exact else ""
-    with mpmath.workdps(DIGITS):
-        numbers = {name: _number(value) for name, value in point.items()}
-        value = ring.evaluate(element, numbers, _number, real_function)
-        # Its size is that of its largest addend, so that cancellation shows.
-        addends = [
-            ring.evaluate(part, numbers, _number, real_function) for part in ring.terms(element)
-        ]
-        negligible = abs(value) <= NEGLIGIBLE * max(map(abs, addends))
-        return "" if negligible else mpmath.nstr(value, 15)
-
-
-def _number(value: Fraction) -> Any:
-    return mpmath.mpf(value.numerator) / value.denominator
-
-
-def _no_call(function: str, argument: Fraction) -> Fraction:
-    raise AssertionError(f"{function}({argument}) in a function-free element")
+def _text(value: Any) -> str:
+    return str(value) if isinstance(value, Fraction) else str(mpmath.nstr(value, 15))
