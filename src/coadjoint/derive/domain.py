@@ -60,19 +60,37 @@ def bounds(equations: Equations) -> tuple[Bound, ...]:
 
 
 def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyType({})) -> Region:
-    """Where claims about a system are looked at: where all its bounds hold.
+    """Where claims about a system are looked at: where its bounds hold and its motion has values.
 
     Args:
         equations: By the emitted route.
         momenta: The momenta in terms of velocities, for what is written in these.
     """
-    found = (Inequality(each.label, each.element, each.strict) for each in bounds(equations))
+    found = [Inequality(each.label, each.element, each.strict) for each in bounds(equations)]
     return replace(
         equations.setting.field.region,
-        inequalities=tuple(found),
+        inequalities=(*found, *_arguments(equations)),
         definitions=dict(equations.exact.definitions),
         momenta=momenta,
     )
+
+
+def _arguments(equations: Equations) -> list[Inequality]:
+    """Arguments of square roots and logarithms in the energy and the rates: they are positive.
+
+    A root has no slope where its argument is zero.
+    """
+    field, exact = equations.setting.field, equations.exact
+    written = [value for _, value in exact.definitions] + list(exact.rates)
+    written += [exact.energy] if exact.energy is not None else []
+    called = {name for each in written for name in field.functions_in(each)}
+    return [
+        Inequality(f"argument of {known.function}", known.argument, True)
+        for known in field.adjoined.values()
+        if known.generator in called
+        and known.function in ("sqrt", "log")
+        and field.as_number(known.argument) is None
+    ]
 
 
 def _pivots(equations: Equations) -> list[Bound]:

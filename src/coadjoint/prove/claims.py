@@ -55,7 +55,6 @@ from coadjoint.prove.zero import (
     Discovery,
     Examined,
     UndecidedError,
-    check_defined,
     decide_zero,
     make_entry,
 )
@@ -323,14 +322,14 @@ def _drifts(first: Equations, parts: Sequence[Element]) -> list[Element]:
     return [rate for part in parts for rate in drift(first, part)]
 
 
-def _casimir(first: Equations, casimir: Formula) -> list[Element]:
+def _casimir(first: Equations, casimir: Formula) -> Decision:
     """The brackets of all components of a claimed Casimir."""
     parts = first.setting.components(casimir)
-    check_defined(in_velocities(first, parts), first.setting.field)
-    return [defect for part in parts for defect in casimir_defects(first, part)]
+    defects = [defect for part in parts for defect in casimir_defects(first, part)]
+    return decide_zero(defects, first.setting.field, None, in_velocities(first, parts))
 
 
-def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision:
+def _integral(first: Equations, claim: Integral) -> Decision:
     """The rates of all components of a claimed integral: zero everywhere, or on its level set.
 
     The motion must stay on the level set, too: there the functions that define it keep the value 0.
@@ -339,14 +338,12 @@ def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision
     rates = _rates(first, claim.formula)
     parts = in_velocities(first, first.setting.components(claim.formula, names))
     if not claim.where:
-        check_defined(parts, field)
-        return rates
+        return decide_zero(rates, field, None, parts)
     functions = [g for f in claim.where for g in first.setting.components(f, names)]
     level = in_velocities(first, functions)
     kept = [rate for formula in claim.where for rate in _rates(first, formula)]
     where = Ideal(field, level, _vanishing(claim))
-    check_defined(parts, field, where)
-    return decide_zero([*kept, *rates], field, where)
+    return decide_zero([*kept, *rates], field, where, parts)
 
 
 def _statement(claim: Integral) -> str:
@@ -363,8 +360,7 @@ def _constrained_integral(motion: ConstrainedRates, claim: Integral) -> Decision
     rates = [motion.rate(part) for part in (*level, *parts)]
     text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
     where = motion.where.also(list(map(motion.in_state, level)), text)
-    check_defined(list(map(motion.in_state, parts)), motion.field, where)
-    return decide_zero(rates, motion.field, where)
+    return decide_zero(rates, motion.field, where, list(map(motion.in_state, parts)))
 
 
 def _vanishing(claim: Integral) -> str:

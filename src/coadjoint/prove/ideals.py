@@ -16,8 +16,10 @@ Read next: `coadjoint.prove.zero`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 from typing import Any
 
 from sympy.polys.groebnertools import groebner
@@ -25,7 +27,7 @@ from sympy.polys.orderings import grevlex, lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.prove.points import Branch, Points, real_function
+from coadjoint.prove.points import Branch, Points, Values, real_function
 from coadjoint.prove.signs import Signs
 
 #: Branches of a zero set that are told apart; beyond them relations stay as they are.
@@ -73,9 +75,12 @@ class Ideal:
         self._signs = Signs(field)
         parameters = field.region.parameters
         self._variables = frozenset(variables or field.names) - parameters
+        self._declared: Sequence[Element] | None = None  # relations of parameters, once these split
         self.excluded: list[Element] = []  # factors that nothing declared keeps from zero
-        found = map(field.normal, relations)
-        self.relations = tuple(self._stripped(each) for each in found if each != 0)
+        found = [each for each in map(field.normal, relations) if each != 0]
+        self.given = tuple(found)
+        self._between_parameters = [each for each in found if self._is_generic(each)]
+        self.relations = tuple(map(self._stripped, found))
         numerators = list(map(_numerator, self.relations))
         numerators += map(_numerator, self._of_functions())
         self._places = sorted(
@@ -151,7 +156,8 @@ class Ideal:
     def _stripped(self, relation: Element) -> Element:
         """A relation without factors that are not zero; those that only we exclude are noted."""
         factors = self._factors(relation)
-        kept = [factor for factor in factors if not self._is_generic(factor)]
+        generic = [] if self._between_parameters else list(filter(self._is_generic, factors))
+        kept = [factor for factor in factors if factor not in generic]
         if not kept:  # a relation between parameters, or one that holds nowhere
             return relation
         for factor in factors:
@@ -172,19 +178,33 @@ class Ideal:
 
         What holds on each of them, and has no pole there, holds on the zero set.
         """
-        self._count = 0
-        return tuple(self._split(list(self.relations), Branch()))
+        self._count, own = 0, self._between_parameters
+        others = [each for each in self.relations if each not in own]
+        found = list[Branch]()
+        for first in self._split(own, Branch()):
+            self._declared = first.rest
+            start = Branch(first.solved, (), first.nonzero)
+            found += self._split([*first.rest, *others], start)
+        return tuple(found)
 
     @cached_property
-    def has_points(self) -> bool:
-        """Whether a real point is found where the relations hold, in the assumed region."""
-        tried = (Points(self.field, (), branch) for branch in self._tried())
-        return any(next(iter(points), None) is not None for points in tried)
+    def some_points(self) -> tuple[tuple[Points, Values], ...]:
+        """A point of the zero set, in the assumed region; none if none is found."""
+        return tuple(islice(self.points(), 1))
 
-    def _tried(self) -> Iterator[Branch]:
-        """Branches on which points are looked for; near defaults none need be told apart."""
-        yield Branch(rest=self.relations)
-        yield from self.branches
+    def points(self, defined: Sequence[Element] = ()) -> Iterator[tuple[Points, Values]]:
+        """Points of the zero set; the first ones near the defaults, where none need be solved for.
+
+        Args:
+            defined: Functions that must have values there.
+        """
+        functions = (*self.given, *defined)
+        whole = Points(self.field, (), Branch(rest=self.relations), functions)
+        yield from ((whole, point) for point in whole.near_defaults())
+        for branch in self.branches:
+            with suppress(ZeroDivisionError):
+                points = Points(self.field, (), branch, functions)
+                yield from ((points, point) for point in points)
 
     def _split(self, relations: Sequence[Element], branch: Branch) -> Iterator[Branch]:
         """The branches of some relations below what is solved for already."""
@@ -276,20 +296,15 @@ class Ideal:
 
     def _may_vanish(self, factor: Element) -> bool:
         """Whether a factor is no relation between parameters that only the others bring about."""
-        if self._is_generic(factor) and factor not in self._declared:
+        if self._declared is not None and self._is_generic(factor, self._declared):
             self._exclude(factor)
             return False
         return True
 
-    @cached_property
-    def _declared(self) -> list[Element]:
-        """Relations between parameters alone that are given as such."""
-        return [f for each in self.relations if self._is_generic(each) for f in self._factors(each)]
-
-    def _is_generic(self, element: Element) -> bool:
-        """Whether an element has symbols, and these are parameters."""
+    def _is_generic(self, element: Element, but: Sequence[Element] = ()) -> bool:
+        """Whether an element has symbols, and these are parameters; some are declared to vanish."""
         reached = self.field.reach(element)
-        return bool(reached) and reached <= self.field.region.parameters
+        return bool(reached) and reached <= self.field.region.parameters and element not in but
 
     def _exclude(self, factor: Element) -> None:
         if factor not in self.excluded:

@@ -48,8 +48,8 @@ ARRIVED = mpmath.mpf(10) ** (15 - DIGITS)
 #: How far a value must be from zero to have a sign, where functions occur.
 SIGNED = mpmath.mpf(10) ** -30
 
-#: Part of the slopes that is added to them where they are not independent.
-DAMPING = mpmath.mpf(10) ** -12
+#: What is added to slopes that may not be independent, beside the square of what is left.
+DAMPING = mpmath.mpf(10) ** -6
 
 Values = dict[str, Any]
 #: A function, and the value that it is to have.
@@ -78,13 +78,23 @@ class Points:
         ring: The field, with the region that is assumed of its symbols.
         elements: The functions, the solved symbols of the branch replaced.
         branch: Where they are looked at; by default everywhere.
+        defined: Functions that must have values there, too: what a claim names, and not only its
+            rate. They may be looked at where a square root is zero.
+
+    Raises:
+        ZeroDivisionError: One of these has a pole on all of the branch.
     """
 
     def __init__(
-        self, ring: Field, elements: Sequence[Element], branch: Branch | None = None
+        self,
+        ring: Field,
+        elements: Sequence[Element],
+        branch: Branch | None = None,
+        defined: Sequence[Element] = (),
     ) -> None:
         self.ring, self.branch = ring, branch or Branch()
         self.elements = tuple(elements)
+        self._defined = tuple(ring.substitute(each, self.branch.solved) for each in defined)
         self.plain = all(map(ring.function_free, self._involved))
 
     # -- what has a value -----------------------------------------------------------------
@@ -97,7 +107,10 @@ class Points:
     def definitions(self) -> dict[str, Element]:
         """What the inequalities name beside symbols, in an order in which it can be computed."""
         region, found = self.ring.region, dict[str, Element]()
-        own = self._reached((*self.elements, *self._roots)) | self.branch.solved.keys()
+        own = (
+            self._reached((*self.elements, *self._defined, *self._roots))
+            | self.branch.solved.keys()
+        )
         # of functions of velocities the momenta follow, of others the velocities
         written = region.momenta if own & region.definitions.keys() else region.definitions
 
@@ -116,7 +129,8 @@ class Points:
     def _involved(self) -> tuple[Element, ...]:
         """Everything that has a value at a point."""
         inequalities = (each.value for each in self.ring.region.inequalities)
-        return (*self.elements, *self._roots, *self.definitions.values(), *inequalities)
+        own = (*self.elements, *self._defined, *self._roots)
+        return (*own, *self.definitions.values(), *inequalities)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -128,9 +142,11 @@ class Points:
     @cached_property
     def _required(self) -> tuple[tuple[Element, bool], ...]:
         """What must be positive, or if not strict not negative; inner functions first."""
+        written = [each for each in self._involved if each not in self._defined]
+        strictly = {name for each in written for name in self.ring.functions_in(each)}
         called = {name for each in self._involved for name in self.ring.functions_in(each)}
         arguments = [
-            (known.argument, True)
+            (known.argument, known.function == "log" or known.generator in strictly)
             for known in self.ring.adjoined.values()
             if known.generator in called and known.function in ("sqrt", "log")
         ]
@@ -206,16 +222,32 @@ class Points:
                     if found is not None and self._is_inside(found):
                         yield found
 
+    def near_defaults(self) -> Iterator[Values]:
+        """The defaults, moved onto the branch and into the domain."""
+        with mpmath.workdps(DIGITS), suppress(ZeroDivisionError, ValueError, OverflowError):
+            start = next(iter(random_points(self.names, self.ring.positive)))
+            found = self._moved(start | self._defaults, TARGETS[0])
+            if found is not None and self._is_inside(found):
+                yield found
+
+    @cached_property
+    def _defaults(self) -> dict[str, Fraction]:
+        """The defaults of the free symbols."""
+        known = self.ring.region.defaults
+        return {name: known[name] for name in self.names if name in known}
+
     def _is_inside(self, free: Values) -> bool:
         """Whether all that is assumed holds, and nothing vanishes by which was divided."""
         if self._violated(free):
             return False
         values = self.complete(free)
-        return all(self.value(each, values) != 0 for each in self.branch.nonzero)
+        for each in self._defined:
+            self.value(each, values)
+        return all(abs(self.value(each, values)) > 0 for each in self.branch.nonzero)
 
     def _starts(self) -> Iterator[Values]:
         """Random points; after the plain ones every other one is near the defaults."""
-        defaults, source = self.ring.region.defaults, random.Random(2)  # noqa: S311 (no secrets)
+        defaults, source = self._defaults, random.Random(2)  # noqa: S311 (no secrets)
         moved = bool(self.branch.rest)  # then the first is that of the defaults
         for number, point in enumerate(random_points(self.names, self.ring.positive)):
             if moved <= number < PLAIN // (1 + moved):
@@ -268,9 +300,10 @@ class Points:
         Slopes are differences over a small part of the step before: values have twice the digits
         that are wanted. What is wanted may depend on each other, so that a multiple of 1 is added.
         """
+        defined = not self._reached(each for each, _ in wanted) <= free.keys()
 
         def values(at: Values) -> list[Any]:
-            whole = self._as_far_as_defined(at)
+            whole = self._as_far_as_defined(at) if defined else at
             return [target - self.value(each, whole) for each, target in wanted]
 
         here = values(free)
@@ -281,7 +314,7 @@ class Points:
             for row, (a, b) in enumerate(zip(here, there, strict=True)):
                 slopes[row, column] = (a - b) / width
         square = slopes * slopes.T
-        size = min(mpmath.norm(mpmath.matrix(here), 2), 1)
+        size = min(mpmath.norm(mpmath.matrix(here), 2), 1) ** 2
         largest = max(abs(square[n, n]) for n in range(len(here)))
         for n in range(len(here)):
             square[n, n] += largest * max(size * DAMPING, mpmath.eps)

@@ -32,7 +32,27 @@ class Signs:
 
     def is_nonzero(self, element: Element, given: Sequence[Element] = ()) -> bool:
         """Whether a polynomial is known to vanish nowhere; some others are given not to."""
-        return self._has_sign(element) or self.is_factor(element, (*given, *self._positive))
+        known = self._positive
+        return (
+            self._has_sign(element)
+            or self.is_factor(element, (*given, *known))
+            or any(self._exceeds(element, each) for each in known)
+        )
+
+    def _exceeds(self, element: Element, other: Element) -> bool:
+        """Whether an element is a multiple of a positive one, and more of the same sign.
+
+        ``x^2 + y^2`` is ``(x^2 + y^2 - 1) + 1``.
+        """
+        (own,), (known,) = element.combined().parts, other.combined().parts
+        if known.powers:
+            return False
+        ratio = own.numer.get(known.numer.LM, 0) / known.numer.LC
+        if not ratio:
+            return False
+        number = Fraction(int(ratio.numerator), int(ratio.denominator))
+        sign = self._sign(self.field.normal(element - other * number))
+        return sign is not None and sign * number >= 0
 
     def is_factor(self, element: Element, others: Sequence[Element]) -> bool:
         """Whether an element is a factor of the numerator of one of some others."""
@@ -71,26 +91,36 @@ class Signs:
 
     def _has_sign(self, element: Element) -> bool:
         """Whether all addends have one sign, and one of them vanishes nowhere."""
-        moved = self.field.substitute(
-            element,
-            {
-                name: self.field.number(bound) + side * self.field[name]
-                for name, (side, bound) in self._bounds.items()
-                if (side != 1 or bound) and not self._is_called(element, name)
-            },
+        moved = self._from_bounds(element)
+        return self._sign(element) not in (None, 0) and any(
+            all(map(self._is_positive, powers)) for _, powers in self._addends(moved)
         )
-        if not moved or len(moved.parts) != 1 or moved.parts[0].powers:
-            return False
-        (quotient,) = self.field.quotients(moved)
-        addends = [(each.number, dict(each.powers)) for each in quotient.monomials]
-        signs = {number > 0 for number, _ in addends}
-        return (
-            len(signs) == 1
-            and all(
-                self._is_positive(n) or e % 2 == 0 for _, each in addends for n, e in each.items()
-            )
-            and any(all(map(self._is_positive, each)) for _, each in addends)
-        )
+
+    def _sign(self, element: Element) -> int | None:
+        """The sign that all addends have where they do not vanish; 0 of zero, None if none."""
+        moved = self._from_bounds(element)
+        if any(part.powers for part in moved.parts):
+            return None
+        addends = self._addends(moved)
+        signs = {1 if number > 0 else -1 for number, _ in addends}
+        powers = [each for _, part in addends for each in part.items()]
+        if len(signs) > 1 or not all(self._is_positive(n) or e % 2 == 0 for n, e in powers):
+            return None
+        return signs.pop() if signs else 0
+
+    def _addends(self, element: Element) -> list[tuple[Fraction, dict[str, int]]]:
+        """The addends of a polynomial: numbers, and powers by name."""
+        written = self.field.quotients(element)
+        return [(each.number, dict(each.powers)) for part in written for each in part.monomials]
+
+    def _from_bounds(self, element: Element) -> Element:
+        """An element with each symbol measured from its bound: ``3 + q`` for ``q > 3``."""
+        moved = {
+            name: self.field.number(bound) + side * self.field[name]
+            for name, (side, bound) in self._bounds.items()
+            if (side != 1 or bound) and not self._is_called(element, name)
+        }
+        return self.field.substitute(element, moved)
 
     def _is_called(self, element: Element, name: str) -> bool:
         """Whether a function of a symbol occurs."""
@@ -114,13 +144,21 @@ class Signs:
         return None
 
     def squares(self, element: Element) -> list[Element]:
-        """Linear polynomials that all vanish where a definite quadratic one does; none else.
+        """What vanishes together where a sum of squares does; nothing where it is none.
 
-        By completing squares: ``x^2 + x*y + y^2`` is ``(x + y/2)^2 + 3*y^2/4``. An empty sum of
-        squares with a constant of the same sign vanishes nowhere, and the constant is returned.
+        Addends of one sign, as in ``x^4 + a*y^2`` for positive a, or those of a quadratic form:
+        ``x^2 + x*y + y^2`` is ``(x + y/2)^2 + 3*y^2/4``. Of one with a constant of the same sign,
+        which vanishes nowhere, that is 1.
         """
+        addends = self.field.terms(element)
+        if len(addends) > 1 and self._from_bounds(element) == element and self._sign(element):
+            return list(addends)
+        return self._completed_squares(element)
+
+    def _completed_squares(self, element: Element) -> list[Element]:
+        """The linear polynomials whose squares a definite quadratic one is the sum of."""
         field, names = self.field, sorted(self.field.reach(element), key=self.field.names.index)
-        if not 1 < len(names) + 1 <= SQUARES or not field.function_free(element):
+        if not 0 < len(names) <= SQUARES or not field.function_free(element):
             return []
         if field.normal(element).combined().parts[0].powers:
             return []

@@ -91,7 +91,12 @@ def make_entry(
     return Claim(statement, kind, found.verdict, found.method, seconds, found.point, found.defect)
 
 
-def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:
+def decide_zero(
+    elements: Sequence[Element],
+    ring: Field,
+    where: Ideal | None = None,
+    defined: Sequence[Element] = (),
+) -> Decision:
     """Whether every element is zero, in the region that is assumed of the field.
 
     A normal form of zero is a proof. Of anything else values at points refute, or support.
@@ -100,77 +105,87 @@ def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = 
         elements: What should be zero.
         ring: Where they live.
         where: Relations on whose zero set alone they should be zero; by default everywhere.
+        defined: Functions that must have values where something is decided: those whose rates the
+            elements are.
 
     Raises:
         UndecidedError: The elements are not proved to be zero, and no point is found at which they
             have values; or there is no point where the relations hold.
     """
     if where is not None and where.relations:
-        return _decide_where(elements, ring, where)
+        return _decide_where(elements, where, defined)
     left = [element for element in map(ring.normal, elements) if element != 0]
     if not left:
+        plain = all(map(ring.function_free, defined))
+        if not plain and next(iter(Points(ring, (), None, defined)), None) is None:
+            raise UndecidedError(f"no point is found at which it has a value. {ADVICE}")
         plain = all(map(ring.function_free, elements))
         return Decision(Verdict.PROVED, NORMAL_FORM if plain else NORMAL_FORM_WITH_FUNCTIONS)
-    found = _look(left, ring, Branch(), "")
+    found = _look(left, ring, Branch(), "", defined)
     if isinstance(found, Decision):
         return found
     return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {found} random points")
-
-
-def check_defined(functions: Sequence[Element], ring: Field, where: Ideal | None = None) -> None:
-    """Refuse functions that have no value anywhere: of those anything would be true.
-
-    Raises:
-        UndecidedError: No point is found at which all of them have values.
-    """
-    if all(map(ring.function_free, functions)):
-        return
-    branches = where.branches if where is not None and where.relations else (Branch(),)
-    for branch in branches:
-        with suppress(ZeroDivisionError):
-            values = [ring.substitute(each, branch.solved) for each in functions]
-            if next(iter(Points(ring, values, branch)), None) is not None:
-                return
-    place = f", where {where.scope}" if where is not None and where.relations else ""
-    raise UndecidedError(f"no point is found at which it has a value{place}. {ADVICE}")
 
 
 class UndecidedError(ClaimError):
     """Nothing is known of a claim: no point is found at which it could fail."""
 
 
-def _decide_where(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
+def _decide_where(
+    elements: Sequence[Element], where: Ideal, defined: Sequence[Element]
+) -> Decision:
     """Whether every element is zero where relations hold: on each branch of their zero set."""
-    if where.contains(ring.one):
+    if where.contains(where.field.one):
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
     if all(map(where.contains, elements)):
-        if not where.has_points:  # on an empty set anything is true
-            raise UndecidedError(f"no point is found where {where.scope}. {ADVICE}")
-        method = f"normal form modulo the ideal of {where.scope}"
-        return Decision(Verdict.PROVED, method + _but_for_poles(elements, where))
-    counts, defined = list[int](), 0
+        return _proof(elements, where, defined, f"modulo the ideal of {where.scope}")
+    ring, counts, split = where.field, list[int](), 0
     for branch in where.branches:
         with suppress(ZeroDivisionError):  # a pole on all of the branch
             values = [ring.substitute(element, branch.solved) for element in elements]
-            defined += 1
+            split += 1
             rest = Ideal(ring, branch.rest)
             left = [value for value in values if not rest.contains(value)]
-            found = _look(left, ring, branch, where.scope) if left else None
+            named = (*where.given, *defined)
+            found = _look(left, ring, branch, where.scope, named) if left else None
             if isinstance(found, Decision):
                 return found
             counts += [] if found is None else [found]
     if not where.branches:
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
-    if not defined:
+    if not split:
         raise UndecidedError(f"it has no value anywhere where {where.scope}. {ADVICE}")
     if counts:
         method = f"{DIGITS}-digit values at {sum(counts)} points where {where.scope}"
         return Decision(Verdict.SUPPORTED, method)
-    if not where.has_points:
-        raise UndecidedError(f"no point is found where {where.scope}. {ADVICE}")
-    branches = f"each of {defined} branches" if defined > 1 else "the solutions"
-    method = f"normal form on {branches} of {where.scope}"
-    return Decision(Verdict.PROVED, method + _but_for_poles(elements, where))
+    branches = f"each of {split} branches" if split > 1 else "the solutions"
+    return _proof(elements, where, defined, f"on {branches} of {where.scope}")
+
+
+def _proof(
+    elements: Sequence[Element], where: Ideal, defined: Sequence[Element], text: str
+) -> Decision:
+    """What is proved of elements where relations hold: at one point of theirs at least.
+
+    Raises:
+        UndecidedError: No point is found; anything is true of an empty set.
+    """
+    poles = _poles(elements, where)
+    named = [each for each in defined if not where.field.function_free(each)]
+    found = where.points([*named, *poles]) if poles or named else where.some_points
+    if not any(_is_regular(poles, *at) for at in found):
+        if not where.branches:
+            raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+        empty = f"no point is found at which it has a value, where {where.scope}"
+        raise UndecidedError(f"{empty}. {ADVICE}")
+    return Decision(Verdict.PROVED, f"normal form {text}{_but_for(poles, where)}")
+
+
+def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:
+    """Whether no denominator vanishes at a point of a zero set."""
+    with mpmath.workdps(DIGITS):
+        values = points.complete(point)
+        return all(abs(real(points.value(each, values))) > ON_ZERO_SET for each in poles)
 
 
 #: What to do about a claim that has no value at any point.
@@ -180,14 +195,18 @@ ADVICE = (
 )
 
 
-def _but_for_poles(elements: Sequence[Element], where: Ideal) -> str:
-    """Denominators in which something moves and which may vanish, as what is excluded."""
+def _poles(elements: Sequence[Element], where: Ideal) -> list[Element]:
+    """Denominators in which something moves and which may vanish."""
     ring, found = where.field, list[Element]()
     for element in elements:
         for written in ring.quotients(ring.normal(element)):
             found += [divisor for divisor, _ in written.divisors if divisor not in found]
-    found = [each for each in found if where.may_vanish(each)]
-    texts = [element_text(ring, each) for each in found]
+    return [each for each in found if where.may_vanish(each)]
+
+
+def _but_for(poles: Sequence[Element], where: Ideal) -> str:
+    """Denominators as what is excluded."""
+    texts = [element_text(where.field, each) for each in poles]
     if not texts:
         return ""
     if len(texts) > SHOWN or any(len(text) > SHOWN_TEXT for text in texts):
@@ -195,7 +214,13 @@ def _but_for_poles(elements: Sequence[Element], where: Ideal) -> str:
     return f", wherever {', '.join(texts)} {'are' if len(texts) > 1 else 'is'} not 0"
 
 
-def _look(elements: Sequence[Element], ring: Field, branch: Branch, scope: str) -> Decision | int:
+def _look(
+    elements: Sequence[Element],
+    ring: Field,
+    branch: Branch,
+    scope: str,
+    defined: Sequence[Element],
+) -> Decision | int:
     """What values say of elements whose normal form is not zero.
 
     Returns:
@@ -207,7 +232,7 @@ def _look(elements: Sequence[Element], ring: Field, branch: Branch, scope: str) 
     counts, where = list[int](), f", where {scope}" if scope else ""
     for element in elements:
         seen = 0
-        points = Points(ring, [element], branch)
+        points = Points(ring, [element], branch, defined)
         for point in points:
             with mpmath.workdps(DIGITS):
                 value = _value(element, ring, point, branch)
