@@ -34,7 +34,7 @@ R = { default = 1 }
 [hamiltonian]
 h = "p1^2/2 + p2^2/2"
 [claims]
-conserved = [{ integral = "INTEGRAL", where = [WHERE] }]
+conserved = [{ claim = "INTEGRAL", where = [WHERE] }]
 """
 BODY = """
 title = "Free rigid body"
@@ -48,7 +48,7 @@ I = { shape = [3], positive = true, default = [1, 2, 3] }
 [hamiltonian]
 h = "mu1^2/(2*I1) + mu2^2/(2*I2) + mu3^2/(2*I3)"
 [claims]
-conserved = [{ integral = "INTEGRAL", where = [WHERE] }]
+conserved = [{ claim = "INTEGRAL", where = [WHERE] }]
 """
 BELT = """
 title = "Two wheels and a belt"
