@@ -5,8 +5,8 @@ SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
 """
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.field import Field
+from coadjoint.exact.field import Condition, Field
 from coadjoint.exact.jets import JetField
 from coadjoint.exact.text import element_text
 
-__all__ = ["Element", "Field", "JetField", "element_text"]
+__all__ = ["Condition", "Element", "Field", "JetField", "element_text"]

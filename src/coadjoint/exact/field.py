@@ -9,6 +9,7 @@ Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import isqrt
@@ -37,6 +38,19 @@ def _paired(addends: list[Any]) -> Any:
     return addends[0]
 
 
+@dataclass(frozen=True)
+class Condition:
+    """An element that is positive, or not negative, wherever anything in its field is asked for.
+
+    Attributes:
+        element: The element.
+        strict: Whether it is never 0.
+    """
+
+    element: Element
+    strict: bool
+
+
 class Field:
     """Rational functions over Q in named symbols and in elementary functions of them.
 
@@ -44,6 +58,9 @@ class Field:
         names: The symbols, in the order that fixes the normal form.
         slots: How many elementary functions may be adjoined.
         positive: The symbols that may be assumed positive.
+
+    Attributes:
+        conditions: What else may be assumed, as ``cos(phi) > 0``.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
@@ -66,6 +83,7 @@ class Field:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self.adjoined: dict[str, Adjoined] = {}
+        self.conditions: tuple[Condition, ...] = ()
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
 
     def __getitem__(self, name: str) -> Element:
