@@ -86,7 +86,7 @@ def test_points_lie_inside_the_domain(text):
         "declared": x,
     }[text]
     if text == "declared":
-        field.conditions = (Condition(field["x1"] - field["x0"] - 300, strict=True),)
+        field.assume([Condition(field["x1"] - field["x0"] - 300, strict=True)])
     element = field.call("sqrt", inside) * x
     points = [point for point, _ in zip(points_inside(field, [element]), range(5), strict=False)]
     assert len(points) == 5

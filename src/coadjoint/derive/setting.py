@@ -244,7 +244,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     for each in spec.reconstruction:
         values[each.name] = shaped([values[name] for name in each.components], each.shape)
     setting = Setting(spec, field, values)
-    field.conditions = _conditions(setting)
+    field.assume(_conditions(setting))
     return setting
 
 

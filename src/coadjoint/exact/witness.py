@@ -28,9 +28,9 @@ Point = dict[str, Fraction]
 
 #: Binary digits of interval bounds.
 PRECISION = 200
-#: Points at which a value is tried, and the largest number of points drawn to find them.
+#: Points at which a value is tried, and how many are drawn to find each.
 TRIES = 12
-DRAWN = 400
+DRAWN = 12
 #: Steps from a point outside a domain towards it.
 STEPS = 40
 #: Largest argument of exp, sin and cos; of more, numbers would have millions of digits.
@@ -102,12 +102,16 @@ def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> 
         mpmath.iv.prec = before
 
 
-def witness_nonzero(field: Field, element: Element) -> Point | None:
+def witness_nonzero(
+    field: Field, element: Element, defined: Iterable[Element] = (), *, tries: int = TRIES
+) -> Point | None:
     """A point of the domain at which an element is certainly not zero.
 
     Args:
         field: Where the element lives; its declared signs and conditions hold at the point.
         element: What should not be zero.
+        defined: What else has to have a value at the point.
+        tries: At how many points.
 
     Returns:
         Values of the symbols that the element depends on; None where no point was found, which
@@ -120,7 +124,7 @@ def witness_nonzero(field: Field, element: Element) -> Point | None:
     {'q': Fraction(-3, 5)}
     """
     names = field.reach(element)
-    for point in islice(points_inside(field, [element]), TRIES):
+    for point in islice(points_inside(field, [element, *defined], tries * DRAWN), tries):
         with suppress(*UNDEFINED):
             if enclosure(field, element, point).sign:
                 return {name: value for name, value in point.items() if name in names}
@@ -137,14 +141,20 @@ def is_nonzero(field: Field, element: Element) -> bool:
     return field.function_free(element) or witness_nonzero(field, element) is not None
 
 
-def points_inside(field: Field, elements: Iterable[Element]) -> Iterator[Point]:
+def points_inside(
+    field: Field, elements: Iterable[Element], drawn: int = TRIES * DRAWN
+) -> Iterator[Point]:
     """Rational points at which elements are defined and the conditions of the field hold.
 
-    Random points of several sizes; one outside the domain is moved towards it first. There may be
-    none.
+    Random points of several sizes; one outside the domain is moved towards it first.
+
+    Args:
+        field: Where the elements live.
+        elements: What should be defined.
+        drawn: How many points are drawn; there may be none inside the domain.
     """
     domain = Domain(field, tuple(elements))
-    for start in islice(_starts(field, domain.names), DRAWN):
+    for start in islice(_starts(field, domain.names), drawn):
         point = domain.moved_inside(start)
         if point is not None:
             yield point
