@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache, partial
 from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
@@ -260,14 +260,14 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         )
     if energy is not None:
         yield "the energy is conserved", "conserved", partial(drift, first, energy)
-    for casimir in spec.casimirs:
-        yield (
-            f"{casimir.in_one_line} is a Casimir",
-            "casimir",
-            partial(_casimir, first, casimir),
-        )
+    decisions = [(casimir, cache(partial(_casimir, first, casimir))) for casimir in spec.casimirs]
+    for casimir, decide in decisions:
+        yield f"{casimir.in_one_line} is a Casimir", "casimir", decide
     if tensor is not None:
-        yield from _about_completeness(first)
+        kept = [c for c, decide in decisions if decide().verdict is Verdict.PROVED]
+        yield from _about_completeness(
+            first, [part for casimir in kept for part in first.setting.components(casimir)]
+        )
     for claim in spec.conserved:
         yield _statement(claim), "conserved", partial(_integral, first, claim)
     yield from about_galilean(first)
@@ -294,10 +294,11 @@ def _drifts(first: Equations, parts: Sequence[Element]) -> list[Element]:
     return [rate for part in parts for rate in drift(first, part)]
 
 
-def _casimir(first: Equations, casimir: Formula) -> list[Element]:
-    """The brackets of all components of a claimed Casimir."""
+def _casimir(first: Equations, casimir: Formula) -> Decision:
+    """Whether all components of a claimed Casimir commute with the state."""
     parts = first.setting.components(casimir)
-    return [defect for part in parts for defect in casimir_defects(first, part)]
+    defects = [defect for part in parts for defect in casimir_defects(first, part)]
+    return decide_zero(defects, first.setting.field)
 
 
 def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision:
@@ -350,9 +351,9 @@ def _rates(first: Equations, formula: Formula) -> list[Element]:
     return _drifts(first, parts)
 
 
-def _about_completeness(first: Equations) -> Iterator[Examined]:
-    """Casimirs that the spec does not name, and whether these are all."""
-    known = completeness(first)
+def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator[Examined]:
+    """Casimirs beside those claimed and proved, and whether these are all."""
+    known = completeness(first, proved=proved)
     for casimir in known.found:
         yield (
             f"{described(first.setting.field, casimir)} is a Casimir",
