@@ -53,6 +53,7 @@ from coadjoint.prove.zero import (
     Decision,
     Discovery,
     Examined,
+    claimed_by,
     decide_zero,
     make_entry,
 )
@@ -100,9 +101,13 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from about_constraints(motion, routes[1:])
         yield from about_projection(first)
         yield from about_rolling(motion)
-        for claim in first.spec.conserved:
+        for place, claim in enumerate(first.spec.conserved):
             if _statement(claim) != "energy is conserved" or not keeps_energy(first):
-                yield _statement(claim), "conserved", partial(_constrained_integral, motion, claim)
+                examine = partial(_constrained_integral, motion, claim)
+                claimed = [(_statement(claim), "conserved", examine)]
+                yield from claimed_by(
+                    first.spec, ("claims", "conserved", place), claimed, motion.field
+                )
         yield from about_integrability(first)
         yield from about_reduced_bracket(motion)
         yield from about_momenta(motion)
@@ -250,7 +255,7 @@ def _same_rates(first: Equations, other: Equations) -> list[Element]:
 
 def _about_motion(first: Equations) -> Iterator[Examined]:
     """The emitted motion: Hamiltonian form, energy, and the claims of the spec."""
-    spec = first.spec
+    spec, field = first.spec, first.setting.field
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
@@ -260,17 +265,19 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         )
     if energy is not None:
         yield "the energy is conserved", "conserved", partial(drift, first, energy)
-    decisions = [(casimir, cache(partial(_casimir, first, casimir))) for casimir in spec.casimirs]
-    for casimir, decide in decisions:
-        yield f"{casimir.in_one_line} is a Casimir", "casimir", decide
+    proved = list[Element]()
+    for place, casimir in enumerate(spec.casimirs):
+        decide = cache(partial(_casimir, first, casimir))
+        examined = [(f"{casimir.in_one_line} is a Casimir", "casimir", decide)]
+        yield from claimed_by(spec, ("claims", "casimirs", place), examined, field)
+        if decide().verdict is Verdict.PROVED:
+            proved += first.setting.components(casimir)
     if tensor is not None:
-        kept = [c for c, decide in decisions if decide().verdict is Verdict.PROVED]
-        yield from _about_completeness(
-            first, [part for casimir in kept for part in first.setting.components(casimir)]
-        )
-    for claim in spec.conserved:
-        yield _statement(claim), "conserved", partial(_integral, first, claim)
-    yield from about_galilean(first)
+        yield from _about_completeness(first, proved)
+    for place, claim in enumerate(spec.conserved):
+        claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
+        yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)
+    yield from claimed_by(spec, ("claims", "galilean"), about_galilean(first), field)
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
         if seen.conserved:
