@@ -19,6 +19,7 @@ from time import perf_counter
 from typing import Any
 
 from coadjoint import limits
+from coadjoint.budget import allowed_seconds
 from coadjoint.build.cache import cache_folder, replace_file
 from coadjoint.build.compiler import find_compiler
 from coadjoint.errors import CoadjointError, CompilerError, DriftError, SpecError
@@ -32,7 +33,7 @@ from coadjoint.render.write import (
     tree_texts,
     write_systems,
 )
-from coadjoint.sandbox import report_progress, run_bounded
+from coadjoint.sandbox import Children, report_progress, run_bounded
 from coadjoint.spec.reader import read_file
 
 #: Called with system, stage, number of stages done, number of stages.
@@ -109,6 +110,7 @@ def regenerate(
     *,
     jobs: int = 1,
     complete: bool = False,
+    seconds: float | None = None,
     progress: Progress = lambda *_: None,
     on_wait: Callable[[], None] = lambda: None,
 ) -> Outcome:
@@ -119,6 +121,7 @@ def regenerate(
         output: The generated folder.
         jobs: How many systems are worked on at a time.
         complete: Whether these are all the systems of the folder; others are then removed.
+        seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
         progress: Told of every stage of every system.
         on_wait: Called if another run holds the lock of the folder.
 
@@ -129,10 +132,10 @@ def regenerate(
         SpecError: A file cannot be read.
         OutputError: The folder cannot be written; what stood there is untouched.
     """
-    sources = _sources(paths)
+    sources, allowed = _sources(paths), allowed_seconds(seconds)
     rows = {source.name: row for source in sources if (row := _unchanged(source, output))}
     pending = [source for source in sources if source.name not in rows]
-    records, failures = _build_all(pending, jobs, progress)
+    records, failures = _build_all(pending, jobs, allowed, progress)
     keep = {source.name for source in sources} if complete else None
     if records or not _is_current(output, keep):
         systems = {name: _generated_system(record) for name, record in records.items()}
@@ -150,6 +153,7 @@ def check(
     *,
     jobs: int = 1,
     complete: bool = False,
+    seconds: float | None = None,
     progress: Progress = lambda *_: None,
 ) -> Outcome:
     """Derive everything afresh and compare with what is checked in; nothing is written.
@@ -159,13 +163,14 @@ def check(
         output: The generated folder.
         jobs: How many systems are worked on at a time.
         complete: Whether these are all the systems of the folder, so that others are extra.
+        seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
         progress: Told of every stage of every system.
 
     Raises:
         DriftError: Files are missing, extra or changed; its ``differences`` list them.
     """
     sources = _sources(paths)
-    records, failures = _build_all(sources, jobs, progress)
+    records, failures = _build_all(sources, jobs, allowed_seconds(seconds), progress)
     systems = {name: _generated_system(record) for name, record in records.items()}
     entries = {name: system.record() for name, system in systems.items()}
     if not complete:
@@ -270,11 +275,12 @@ def _generated_system(record: Mapping[str, Any]) -> GeneratedSystem:
 
 
 def _build_all(
-    sources: Sequence[_Source], jobs: int, progress: Progress
+    sources: Sequence[_Source], jobs: int, seconds: int, progress: Progress
 ) -> tuple[dict[str, dict[str, Any]], dict[str, CoadjointError]]:
     """Records of the systems that passed, and errors of the others."""
     records: dict[str, dict[str, Any]] = {}
     failures: dict[str, CoadjointError] = {}
+    children = Children()
 
     def run(source: _Source) -> None:
         def report(stage: str, done: int, total: int) -> None:
@@ -284,16 +290,22 @@ def _build_all(
             records[source.name] = run_bounded(
                 "coadjoint.regenerate:build_record",
                 {"path": str(source.path)},
-                seconds=limits.WORKER_SECONDS,
+                seconds=seconds,
                 memory=limits.WORKER_BYTES,
                 on_progress=report,
+                children=children,
+                subject=str(source.path),
             )
         except CoadjointError as error:
             failures[source.name] = error
 
     # Threads only wait for children; a lost child is an error of its system, never a hang.
-    with ThreadPoolExecutor(max_workers=max(1, jobs)) as pool:
+    pool = ThreadPoolExecutor(max_workers=max(1, jobs))
+    try:
         list(pool.map(run, sources))
+    finally:  # Ctrl-C arrives here, in the main thread, while the others wait
+        children.stop()
+        pool.shutdown(cancel_futures=True)
     return records, failures
 
 

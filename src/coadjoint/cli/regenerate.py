@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from coadjoint.cli.arguments import seconds_option
 from coadjoint.cli.output import json_option, print_json, print_table, progress_bars
 from coadjoint.errors import CoadjointError, DriftError, SpecError
 from coadjoint.resources import derivations_folder, systems_folder
@@ -53,12 +54,14 @@ def with_folders(function: Any) -> Any:
     show_default="processors",
     help="Systems worked on at a time.",
 )
+@seconds_option
 @with_folders
 @json_option
 def command(
     names: tuple[str, ...],
     check: bool,
     jobs: int,
+    seconds: int | None,
     derivations: Path | None,
     output: Path | None,
     as_json: bool,
@@ -73,7 +76,12 @@ def command(
         with progress_bars() as progress:
             if check:
                 outcome = engine.check(
-                    paths, target, jobs=jobs, complete=complete, progress=progress
+                    paths,
+                    target,
+                    jobs=jobs,
+                    complete=complete,
+                    seconds=seconds,
+                    progress=progress,
                 )
             else:
                 outcome = engine.regenerate(
@@ -81,6 +89,7 @@ def command(
                     target,
                     jobs=jobs,
                     complete=complete,
+                    seconds=seconds,
                     progress=progress,
                     on_wait=lambda: click.echo(f"waiting for another run in {target}", err=True),
                 )

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coadjoint.cli.arguments import load_system, system_argument
+from coadjoint.cli.arguments import load_system, seconds_option, system_argument
 from coadjoint.cli.output import json_option, print_json, print_table, write_text
 
 if TYPE_CHECKING:
@@ -82,6 +82,7 @@ def _assignments(
     help="Picture of the path of (x, y) on the plane to write, e.g. trace.png.",
 )
 @click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
+@seconds_option
 @json_option
 def command(
     system: str,
@@ -95,10 +96,11 @@ def command(
     plot: Path | None,
     trace: Path | None,
     table: Path | None,
+    seconds: int | None,
     as_json: bool,
 ) -> int:
     """Integrate a trajectory; show the drift of invariants."""
-    loaded = load_system(system)
+    loaded = load_system(system, seconds)
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy
 
