@@ -12,7 +12,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
@@ -22,18 +22,20 @@ from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.build.cache import cache_folder, replace_file
 from coadjoint.build.compiler import find_compiler
-from coadjoint.errors import CoadjointError, CompilerError, DriftError, SpecError
+from coadjoint.errors import CoadjointError, CompilerError, DriftError, OutputError, SpecError
+from coadjoint.files import read_object, read_regular
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
+from coadjoint.render.ownership import PACKAGE, leftovers, make_plan, read_manifest
 from coadjoint.render.write import (
-    PACKAGE,
+    SYSTEM_FILES,
     GeneratedSystem,
     manifest_text,
-    read_manifest,
     tree_texts,
     write_systems,
 )
 from coadjoint.sandbox import Children, report_progress, run_bounded
+from coadjoint.spec.names import system_refusal
 from coadjoint.spec.reader import read_file
 
 #: Called with system, stage, number of stages done, number of stages.
@@ -135,8 +137,9 @@ def regenerate(
     sources, allowed = _sources(paths), allowed_seconds(seconds)
     rows = {source.name: row for source in sources if (row := _unchanged(source, output))}
     pending = [source for source in sources if source.name not in rows]
-    records, failures = _build_all(pending, jobs, allowed, progress)
     keep = {source.name for source in sources} if complete else None
+    _refuse_early(output, pending, keep)
+    records, failures = _build_all(pending, jobs, allowed, progress)
     if records or not _is_current(output, keep):
         systems = {name: _generated_system(record) for name, record in records.items()}
         write_systems(output, systems, template_hashes(), keep, on_wait)
@@ -199,6 +202,19 @@ def _row(record: Mapping[str, Any]) -> Row:
     return Row(**{**record, "routes": tuple(record["routes"]), "targets": tuple(record["targets"])})
 
 
+def _is_row(record: Any) -> bool:
+    """Whether JSON values make a row, of which the table is printed."""
+    if not isinstance(record, dict) or record.keys() != {each.name for each in fields(Row)}:
+        return False
+    texts = all(
+        isinstance(record[key], list) and all(isinstance(each, str) for each in record[key])
+        for key in ("routes", "targets")
+    )
+    counts = ("dimension", "proved", "claims", "operations", "k", "seconds")
+    numbers = all(isinstance(record[key], int | float) for key in counts)
+    return texts and numbers and isinstance(record["system"], str)
+
+
 def _concerns(path: str, records: Mapping[str, Any]) -> bool:
     """Whether a path belongs to the systems at hand or to the tree as a whole."""
     return "/" not in path or path.split("/")[0] in records
@@ -224,10 +240,30 @@ def _sources(paths: Sequence[Path]) -> list[_Source]:
 # -- what need not be done again -----------------------------------------------------
 
 
+def _refuse_early(output: Path, pending: Sequence[_Source], keep: set[str] | None) -> None:
+    """Refuse, before any work, a folder in which what is to be written may not stand.
+
+    Raises:
+        OutputError: Something that no run wrote is in the way, or the folder cannot be read.
+    """
+    names = [source.name for source in pending if system_refusal(source.name) is None]
+    try:
+        make_plan(output, dict.fromkeys(names, SYSTEM_FILES), keep)
+    except OSError as error:
+        raise OutputError(
+            f"{output}: cannot be read: {error.strerror or error}. Check permissions, or choose "
+            "another folder with --output.",
+            path=str(output),
+            found=error.strerror or str(error),
+        ) from error
+
+
 def _is_current(output: Path, names: set[str] | None) -> bool:
     """Whether the manifest speaks of these systems and of the templates as they are."""
     manifest = read_manifest(output)
     if any(not _holds(output / file, text) for file, text in PACKAGE.items()):
+        return False
+    if any(leftovers(output)):
         return False
     same = names is None or manifest["systems"].keys() == names
     return bool(same and manifest["templates"] == template_hashes())
@@ -236,7 +272,7 @@ def _is_current(output: Path, names: set[str] | None) -> bool:
 def _holds(path: Path, text: str) -> bool:
     """Whether a file has exactly this text."""
     with suppress(OSError):
-        return path.read_bytes() == text.encode()
+        return read_regular(path) == text.encode()
     return False
 
 
@@ -245,14 +281,14 @@ def _unchanged(source: _Source, output: Path) -> Row | None:
 
     What was verified is remembered in the private cache of this machine, by fingerprint.
     """
-    try:
-        found = json.loads(_stamp(source).read_text(encoding="ascii"))
-        entry = read_manifest(output)["systems"].get(source.name)
-        if found["entry"] == entry and is_intact(output, source.name):
-            return _row({**found["row"], "seconds": 0.0, "fresh": False})
-    except (OSError, ValueError, KeyError, TypeError):
-        pass  # a damaged stamp is no stamp
-    return None
+    found = read_object(_stamp(source))
+    entry = read_manifest(output)["systems"].get(source.name)
+    row: Any = found.get("row")
+    if not _is_row(row) or entry is None or found.get("entry") != entry:
+        return None  # a damaged stamp is no stamp
+    if not is_intact(output, source.name):
+        return None
+    return _row({**row, "seconds": 0.0, "fresh": False})
 
 
 def _remember(source: _Source, record: Mapping[str, Any]) -> None:
