@@ -35,6 +35,7 @@ from coadjoint.render.write import (
     write_systems,
 )
 from coadjoint.sandbox import Children, report_progress, run_bounded
+from coadjoint.spec.faults import listed
 from coadjoint.spec.names import system_refusal
 from coadjoint.spec.reader import read_file
 
@@ -185,10 +186,12 @@ def check(
         if complete or _concerns(difference.path, records)
     ]
     if differences:
+        extra = any(each.kind == "extra" for each in differences)
         raise DriftError(
             f"{output}: {len(differences)} of the generated files differ from a fresh run: "
-            + ", ".join(f"{each.path} ({each.kind})" for each in differences)
-            + ". Run `coadjoint regenerate` and commit what it writes.",
+            + listed((f"{each.path} ({each.kind})" for each in differences), 8)
+            + ". Run `coadjoint regenerate` and commit what it writes"
+            + ("; it leaves extra files that no run wrote." if extra else "."),
             path=str(output),
             differences=[asdict(each) for each in differences],
         )

@@ -18,7 +18,7 @@ import click
 from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import is_path, seconds_option, shipped_names, spec_path
-from coadjoint.cli.output import plural, write_text
+from coadjoint.cli.output import plural, say, write_text
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra
@@ -99,7 +99,7 @@ def command(
         ) from error
     text = _rendered(record, form)
     if output is None:
-        click.echo(text, nl=False)
+        say(text, end="")
     else:
         write_text(output, text)
 

@@ -16,7 +16,7 @@ import click
 from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import load_system, seconds_option, spec_path, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table
+from coadjoint.cli.output import json_option, print_json, print_table, say
 
 
 @click.command("crosscheck")
@@ -92,5 +92,5 @@ def _print(report: Mapping[str, Any]) -> None:
     columns = ("function", "target", ">k", ">ulp", ">points", ">same bits as NumPy at")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
     for rung, status in report["rungs"].items():
-        click.echo(f"rung {rung}: {status}")
-    click.echo(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
+        say(f"rung {rung}: {status}")
+    say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")

@@ -15,7 +15,7 @@ import click
 from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table
+from coadjoint.cli.output import json_option, print_json, print_table, say
 
 
 @click.command("prove")
@@ -42,7 +42,7 @@ def command(system: str, seconds: int | None, as_json: bool) -> int:
     else:
         _print(record)
     for claim in _refuted(record):
-        click.echo(f"error: refuted: {claim['statement']}. {_refutation(claim)}", err=True)
+        say(f"error: refuted: {claim['statement']}. {_refutation(claim)}", err=True)
     return 1 if _refuted(record) else 0
 
 

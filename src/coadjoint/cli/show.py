@@ -16,7 +16,7 @@ import click
 from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
-from coadjoint.cli.output import write_text
+from coadjoint.cli.output import say, write_text
 
 
 @click.command("show")
@@ -49,7 +49,7 @@ def command(
     )
     text = render_document(record, form)
     if output is None:
-        click.echo(text, nl=False)
+        say(text, end="")
     else:
         write_text(output, text)
 

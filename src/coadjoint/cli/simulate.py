@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coadjoint.cli.arguments import load_system, seconds_option, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table, write_text
+from coadjoint.cli.output import json_option, print_json, print_table, say, write_text
 
 if TYPE_CHECKING:
     from coadjoint.solve.quantities import Quantities
@@ -230,8 +230,8 @@ def _print(system: System, solution: Solution) -> None:
         ],
     )
     for name, drift in solution.attitude_drift.items():
-        click.echo(f"|{name}|^2 - 1 up to {drift:.1e}")
-    click.echo(": ".join(filter(None, ("status", solution.status, solution.message))))
+        say(f"|{name}|^2 - 1 up to {drift:.1e}")
+    say(": ".join(filter(None, ("status", solution.status, solution.message))))
 
 
 def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, float]]:
