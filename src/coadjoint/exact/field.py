@@ -433,6 +433,7 @@ class Field:
     def budget(self, work: int) -> AbstractContextManager[None]:
         """A block in which arithmetic ends after so much work: see `Factors.budget`."""
         return self._factors.budget(work)
+
     # -- parts, for signs and relations -------------------------------------------------
 
     @property
