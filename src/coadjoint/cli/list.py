@@ -6,7 +6,6 @@ derived and nothing generated is run: what was proved is read from the certifica
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -16,6 +15,7 @@ import click
 from coadjoint.cli.output import json_option, print_json, print_table
 from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
 from coadjoint.errors import CoadjointError
+from coadjoint.files import read_certificate
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def _entry(path: Path, output: Path) -> Entry:
     """What is known of one system."""
     from coadjoint.spec import read_spec
 
-    certificate = _certificate(output / path.stem / "certificate.json")
+    certificate = read_certificate(output / path.stem / "certificate.json")
     verdicts = [claim["verdict"] for claim in certificate.get("claims", [])]
     counts = verdicts.count("proved"), verdicts.count("numerically supported"), len(verdicts)
     try:
@@ -89,20 +89,12 @@ def _entry(path: Path, output: Path) -> Entry:
 def _state(path: Path, output: Path) -> str:
     """How the generated files stand to the spec and to the manifest."""
     from coadjoint.render.compare import is_intact
-    from coadjoint.render.write import read_manifest
+    from coadjoint.render.ownership import read_manifest
+    from coadjoint.spec.reader import read_file
 
     entry = read_manifest(output)["systems"].get(path.stem)
     if entry is None:
         return "not generated"
-    if entry["spec_sha256"] != sha256(path.read_bytes()).hexdigest():
+    if entry["spec_sha256"] != sha256(read_file(str(path))).hexdigest():
         return "spec changed"
     return "verified" if is_intact(output, path.stem) else "files changed"
-
-
-def _certificate(path: Path) -> dict[str, list[dict[str, str]]]:
-    """A certificate as it stands in its file; empty if it is missing or damaged."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}

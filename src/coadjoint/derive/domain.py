@@ -18,7 +18,7 @@ from types import MappingProxyType
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.kinematics import multiplier_name
 from coadjoint.derive.solver import pivot_name
-from coadjoint.exact import Element, Inequality, Region
+from coadjoint.exact import Condition, Element, Region
 
 
 @dataclass(frozen=True)
@@ -66,16 +66,16 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
         equations: By the emitted route.
         momenta: The momenta in terms of velocities, for what is written in these.
     """
-    found = [Inequality(each.label, each.element, each.strict) for each in bounds(equations)]
+    found = [Condition(each.element, each.strict) for each in bounds(equations)]
     return replace(
         equations.setting.field.region,
-        inequalities=(*found, *_arguments(equations)),
+        conditions=(*found, *_arguments(equations)),
         definitions=dict(equations.exact.definitions),
         momenta=momenta,
     )
 
 
-def _arguments(equations: Equations) -> list[Inequality]:
+def _arguments(equations: Equations) -> list[Condition]:
     """Arguments of square roots and logarithms in the energy and the rates: they are positive.
 
     A root has no slope where its argument is zero.
@@ -85,7 +85,7 @@ def _arguments(equations: Equations) -> list[Inequality]:
     written += [exact.energy] if exact.energy is not None else []
     called = {name for each in written for name in field.functions_in(each)}
     return [
-        Inequality(f"argument of {known.function}", known.argument, True)
+        Condition(known.argument, strict=True)
         for known in field.adjoined.values()
         if known.generator in called
         and known.function in ("sqrt", "log")

@@ -23,10 +23,11 @@ from itertools import islice
 from typing import Any
 
 from sympy.polys.groebnertools import groebner
-from sympy.polys.orderings import grevlex, lex
+from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.factors import factors_of
 from coadjoint.prove.points import Branch, Points, Values, real_function
 from coadjoint.prove.signs import Signs
 
@@ -34,8 +35,6 @@ from coadjoint.prove.signs import Signs
 BRANCHES = 32
 #: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
 SLOPE = 4
-#: Terms of a relation that is factored; larger ones may take minutes.
-FACTORED = 400
 
 Relations = tuple[Element, ...]
 _Numerators = dict[tuple[int, ...], PolyElement]
@@ -279,12 +278,9 @@ class Ideal:
 
     def _factors(self, relation: Element, nonzero: Sequence[Element] = ()) -> list[Element]:
         """The irreducible factors of a numerator that may vanish, each once."""
-        numerator = _numerator(relation)
-        if len(numerator) > FACTORED:
-            return [relation]
         found = list[Element]()
-        for names, factor in _irreducible(numerator):
-            element = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
+        for factor, _ in factors_of(_numerator(relation))[1]:
+            element = self.field.normal(self.field.from_polynomial(factor))
             if self._signs.is_nonzero(element, nonzero):
                 continue
             if self._signs.is_factor(element, self.nonzero):
@@ -353,18 +349,6 @@ def _numerator(element: Element) -> PolyElement:
     """The numerator of a nonzero element."""
     (quotient,) = element.combined().parts
     return quotient.numer
-
-
-def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
-    """The irreducible factors, with the names of their symbols: of those that occur alone."""
-    places = [n for n, degree in enumerate(polynomial.degrees()) if degree > 0]
-    symbols = [polynomial.ring.symbols[n] for n in places]
-    if not symbols:
-        return
-    small = PolyRing(symbols, polynomial.ring.domain, lex)
-    terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
-    for factor, _ in small.from_dict(terms).factor_list()[1]:
-        yield list(map(str, symbols)), factor
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:

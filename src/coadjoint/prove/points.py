@@ -1,9 +1,9 @@
 r"""Points of a domain: where the values of functions are looked at.
 
 Comes in: functions of the symbols of a field, and a `Branch` of a zero set on which they are looked
-at. Goes out: points of the branch at which every declared sign and every inequality of ``[domain]``
+at. Goes out: points of the branch at which every declared sign and every condition of ``[domain]``
 holds and no square root or logarithm leaves its domain. Where random points do not do, they are
-moved: by Newton's method onto the branch, and to where the inequalities that fail hold. Points
+moved: by Newton's method onto the branch, and to where the conditions that fail hold. Points
 where nothing has to be solved for are rational, all others have the working precision of mpmath.
 The sequence is the same in every run. Read next: `coadjoint.prove.zero`.
 """
@@ -21,7 +21,7 @@ from typing import Any
 
 import mpmath
 
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Condition, Element, Field
 
 #: Digits of values at points.
 DIGITS = 50
@@ -35,9 +35,9 @@ ON_ZERO_SET = 80
 STEPS = 400
 #: Steps after which those of Newton's method must have become small.
 PATIENCE, LARGE = 40, mpmath.mpf(10) ** -3
-#: Steps to where inequalities hold.
+#: Steps to where conditions hold.
 MOVES = 12
-#: What inequalities that fail are to become, in turn; the middle of the domain comes first.
+#: What conditions that fail are to become, in turn; the middle of the domain comes first.
 TARGETS = (Fraction(1), Fraction(1, 4), Fraction(4), Fraction(1, 32), Fraction(1, 1000))
 #: Sizes of the points that are moved.
 SCALES = (1, 1, 10, 100, 1000)
@@ -104,8 +104,13 @@ class Points:
         return (*self.branch.solved.values(), *self.branch.rest, *self.branch.nonzero)
 
     @cached_property
+    def _conditions(self) -> tuple[Condition, ...]:
+        """What is assumed of the symbols beside their signs."""
+        return (*self.ring.conditions, *self.ring.region.conditions)
+
+    @cached_property
     def definitions(self) -> dict[str, Element]:
-        """What the inequalities name beside symbols, in an order in which it can be computed."""
+        """What the conditions name beside symbols, in an order in which it can be computed."""
         region, found = self.ring.region, dict[str, Element]()
         own = (
             self._reached((*self.elements, *self._defined, *self._roots))
@@ -121,16 +126,16 @@ class Points:
                 visit(inner)
             found[name] = written[name]
 
-        for name in sorted(self._reached(each.value for each in region.inequalities)):
+        for name in sorted(self._reached(each.element for each in self._conditions)):
             visit(name)
         return found
 
     @cached_property
     def _involved(self) -> tuple[Element, ...]:
         """Everything that has a value at a point."""
-        inequalities = (each.value for each in self.ring.region.inequalities)
+        conditions = (each.element for each in self._conditions)
         own = (*self.elements, *self._defined, *self._roots)
-        return (*own, *self.definitions.values(), *inequalities)
+        return (*own, *self.definitions.values(), *conditions)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -154,7 +159,7 @@ class Points:
         solved = [
             (root, True) for name, root in self.branch.solved.items() if name in self.ring.positive
         ]
-        stated = [(each.value, each.strict) for each in self.ring.region.inequalities]
+        stated = [(each.element, each.strict) for each in self._conditions]
         return (*arguments, *signs, *solved, *stated)
 
     def _reached(self, elements: Iterable[Element]) -> frozenset[str]:

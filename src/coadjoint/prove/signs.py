@@ -63,8 +63,8 @@ class Signs:
     @cached_property
     def _positive(self) -> tuple[Element, ...]:
         """What is declared to be positive."""
-        region = self.field.region
-        return tuple(each.value for each in region.inequalities if each.strict)
+        known = (*self.field.conditions, *self.field.region.conditions)
+        return tuple(each.element for each in known if each.strict)
 
     @cached_property
     def _bounds(self) -> dict[str, tuple[int, Fraction]]:
@@ -77,7 +77,7 @@ class Signs:
         return found
 
     def _linear_bounds(self) -> Iterator[tuple[str, int, Fraction]]:
-        """``q > 3`` and ``q < 3`` among the strict inequalities."""
+        """``q > 3`` and ``q < 3`` among the strict conditions."""
         for value in self._positive:
             names = sorted(self.field.reach(value))
             if len(names) != 1 or not self.field.function_free(value):

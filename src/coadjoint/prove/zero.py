@@ -9,8 +9,8 @@ so that every run gives the same certificate.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
@@ -20,6 +20,7 @@ import mpmath
 
 from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import enclosure
 from coadjoint.prove.certificate import Claim, Finding, Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.points import (
@@ -317,7 +318,7 @@ def _certain_value(element: Element, ring: Field, point: Values) -> str | None:
     value, size = _with_size(element, ring, numbers)
     if abs(value) <= NEGLIGIBLE * size:
         return ""
-    return mpmath.nstr(value, 15) if is_certainly_nonzero(element, ring, point) else None
+    return mpmath.nstr(value, 15) if enclosure(ring, element, point).sign else None
 
 
 def _with_size(element: Element, ring: Field, numbers: Values) -> tuple[Any, Any]:
@@ -325,40 +326,6 @@ def _with_size(element: Element, ring: Field, numbers: Values) -> tuple[Any, Any
     value = ring.evaluate(element, numbers, real, real_function)
     addends = (ring.evaluate(part, numbers, real, real_function) for part in ring.terms(element))
     return value, max(map(abs, addends), default=mpmath.mpf(0))
-
-
-def is_certainly_nonzero(element: Element, ring: Field, point: Mapping[str, Fraction]) -> bool:
-    """Whether interval arithmetic keeps the value at a rational point from zero.
-
-    Raises:
-        ValueError: A function may not be defined there, or a denominator may be zero.
-    """
-    with _interval_digits(DIGITS):
-        numbers = {name: _interval(value) for name, value in point.items()}
-        value = ring.evaluate(element, numbers, _interval, _interval_function)
-        if not (value.a > -mpmath.inf and value.b < mpmath.inf):
-            raise ValueError("a denominator may be zero")
-        return bool(value.a > 0 or value.b < 0)
-
-
-def _interval(value: Fraction) -> Any:
-    return mpmath.iv.mpf(value.numerator) / value.denominator
-
-
-def _interval_function(function: str, argument: Any) -> Any:
-    if function in ("sqrt", "log") and not argument.a > 0:
-        raise ValueError(f"{function} of {argument}")
-    return getattr(mpmath.iv, function)(argument)
-
-
-@contextmanager
-def _interval_digits(digits: int) -> Iterator[None]:
-    """The working precision of intervals, for a while."""
-    before, mpmath.iv.dps = mpmath.iv.dps, digits
-    try:
-        yield
-    finally:
-        mpmath.iv.dps = before
 
 
 def _shown(points: Points, point: Values) -> dict[str, str]:
