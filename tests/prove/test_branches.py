@@ -161,7 +161,7 @@ def test_a_body_may_turn_about_either_axis(i, j, k):
         ("R*w1 == J*w2", "w1", REFUTED, ""),
         ("t2*w1 == t2*w2", "w1", REFUTED, "t2 not 0"),  # at t2 = 0 there is no constraint
         ("t2*w1 == t2*w2", "w1 - w2", PROVED, "t2 not 0"),
-        ("R*t1*w1 == R*t1*w2", "w1 - w2", PROVED, "t1 not 0, R not 0"),
+        ("R*t1*w1 == R*t1*w2", "w1 - w2", PROVED, "R not 0, t1 not 0"),
     ],
 )
 def test_parameters_are_not_solved_for(belt, integral, verdict, excluded):
@@ -335,7 +335,9 @@ def element(field, forms):
     return result
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize(
+    "seed", [*range(12), *(pytest.param(n, marks=pytest.mark.campaign) for n in range(12, 400))]
+)
 def test_arrangements_of_subspaces_agree_with_linear_algebra(seed):
     """Products of linear forms where others vanish: proved if and only if true, in any order."""
     source = random.Random(seed)

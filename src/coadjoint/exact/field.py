@@ -176,6 +176,9 @@ class Field:
 
         ``tan`` becomes ``sin / cos``, ``sin(-x)`` is ``-sin(x)``, and the square root of a square
         is its root where that has a declared sign.
+
+        Raises:
+            OverflowError: There are more functions than the field has room for.
         """
         from coadjoint.exact.values import known_value  # which needs fields
 
@@ -189,6 +192,8 @@ class Field:
                 return self[known.generator]
         if (value := known_value(self, function, argument)) is not None:
             return value
+        if len(self._free) < 2:
+            raise OverflowError(f"no room left for {function}")
         if function in ("sin", "cos"):  # always both: each is the derivative of the other
             cosine, sine = self._free[:2]
             self._adjoin("cos", argument, sine)
@@ -196,8 +201,12 @@ class Field:
             return self[sine if function == "sin" else cosine]
         return self._adjoin(function, argument)
 
+    @property
+    def room(self) -> int:
+        """How many generators are left for functions; sines and cosines take two."""
+        return len(self._free)
+
     def _adjoin(self, function: str, argument: Element, partner: str = "") -> Element:
-        assert self._free, f"no slot left for {function}"
         generator = self._free.pop(0)
         self.adjoined[generator] = Adjoined(generator, function, argument, partner)
         return self[generator]

@@ -23,11 +23,10 @@ from itertools import islice
 from typing import Any
 
 from sympy.polys.groebnertools import groebner
-from sympy.polys.orderings import grevlex
+from sympy.polys.orderings import grevlex, lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.exact.factors import factors_of
 from coadjoint.prove.points import Branch, Points, Values, real_function
 from coadjoint.prove.signs import Signs
 
@@ -36,7 +35,9 @@ BRANCHES = 32
 #: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
 SLOPE = 4
 
-Relations = tuple[Element, ...]
+#: Addends of a relation that is factored; larger ones may take minutes.
+FACTORED = 400
+
 _Numerators = dict[tuple[int, ...], PolyElement]
 
 
@@ -102,7 +103,7 @@ class Ideal:
     @property
     def scope(self) -> str:
         """The relations for people, and what is not zero beside them."""
-        shown = [element_text(self.field, each) for each in self.excluded]
+        shown = sorted(element_text(self.field, each) for each in self.excluded)
         return ", ".join([*filter(None, [self.text]), *(f"{each} not 0" for each in shown)])
 
     # -- the ideal ------------------------------------------------------------------------
@@ -241,7 +242,8 @@ class Ideal:
         field, relation = self.field, left[n]
         # An irreducible relation alone generates a prime ideal, on all of which vanishes what does
         # where the slope is not 0; with functions it need not be irreducible.
-        alone = len(left) == 1 and field.function_free(relation)
+        factored = len(_numerator(relation)) <= FACTORED
+        alone = len(left) == 1 and factored and field.function_free(relation)
         if divides and not alone and size > SLOPE:
             yield Branch(branch.solved, tuple(left), branch.nonzero)
             return
@@ -269,6 +271,8 @@ class Ideal:
             between_parameters = names <= self.field.region.parameters
             allowed = names if between_parameters else names & self._variables
             for name in sorted(allowed, key=self.field.names.index):
+                if not self._has_room(name):
+                    continue
                 slope = self.field.derivative(relation, name)
                 if slope == 0 or name in self.field.reach(slope):
                     continue
@@ -276,11 +280,18 @@ class Ideal:
                 size = len(self.field.terms(slope))
                 yield (divides, size, n, self.field.names.index(name)), n, name, slope
 
+    def _has_room(self, name: str) -> bool:
+        """Whether the functions of a symbol can be called with another argument."""
+        called = [a for a in self.field.adjoined.values() if name in self.field.reach(a.argument)]
+        return 2 * len(called) <= self.field.room
+
     def _factors(self, relation: Element, nonzero: Sequence[Element] = ()) -> list[Element]:
         """The irreducible factors of a numerator that may vanish, each once."""
-        found = list[Element]()
-        for factor, _ in factors_of(_numerator(relation))[1]:
-            element = self.field.normal(self.field.from_polynomial(factor))
+        numerator, found = _numerator(relation), list[Element]()
+        if len(numerator) > FACTORED:
+            return [relation]
+        for names, factor in _irreducible(numerator):
+            element = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
             if self._signs.is_nonzero(element, nonzero):
                 continue
             if self._signs.is_factor(element, self.nonzero):
@@ -349,6 +360,18 @@ def _numerator(element: Element) -> PolyElement:
     """The numerator of a nonzero element."""
     (quotient,) = element.combined().parts
     return quotient.numer
+
+
+def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
+    """The irreducible factors, with the names of their symbols: of those that occur alone."""
+    places = [n for n, degree in enumerate(polynomial.degrees()) if degree > 0]
+    symbols = [polynomial.ring.symbols[n] for n in places]
+    if not symbols:
+        return
+    small = PolyRing(symbols, polynomial.ring.domain, lex)
+    terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
+    for factor, _ in small.from_dict(terms).factor_list()[1]:
+        yield list(map(str, symbols)), factor
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:

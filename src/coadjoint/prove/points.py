@@ -30,7 +30,7 @@ PLAIN = 60
 #: Points that are tried in all; the others are moved.
 TRIES = 150
 #: Points that are moved onto a zero set.
-ON_ZERO_SET = 80
+ON_ZERO_SET = 50
 #: Steps of Newton's method; near a singular point it takes many.
 STEPS = 400
 #: Steps after which those of Newton's method must have become small.
@@ -295,7 +295,8 @@ class Points:
         """A rational point near another one, of small numbers if these do."""
         for digits in (1, 2, 4, 8, 16):
             near = {name: _fraction(x).limit_denominator(10**digits) for name, x in free.items()}
-            if not self._violated(near):
+            generic = all(bool(near[name]) or not x for name, x in free.items())
+            if generic and not self._violated(near):
                 return near
         return None
 

@@ -182,6 +182,25 @@ def _decide_where(
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
     if all(map(where.contains, elements)):
         return _proof(elements, where, defined, f"modulo the ideal of {where.scope}")
+    try:
+        return _decide_on_branches(elements, where, defined)
+    except OverflowError:  # no room for the functions of what is solved for
+        ring = where.field
+        left = [element for element in elements if not where.contains(element)]
+        whole, named = Branch(rest=where.relations), (*where.given, *defined)
+        found = _look(left, ring, whole, where.scope, named)
+        return found if isinstance(found, Decision) else _supported(found, where)
+
+
+def _supported(count: int, where: Ideal) -> Decision:
+    method = f"{DIGITS}-digit values at {count} points where {where.scope}"
+    return Decision(Verdict.SUPPORTED, method)
+
+
+def _decide_on_branches(
+    elements: Sequence[Element], where: Ideal, defined: Sequence[Element]
+) -> Decision:
+    """Whether every element is zero on each branch."""
     ring, counts, split = where.field, list[int](), 0
     for branch in where.branches:
         with suppress(ZeroDivisionError):  # a pole on all of the branch
@@ -199,8 +218,7 @@ def _decide_where(
     if not split:
         raise UndecidedError(f"it has no value anywhere where {where.scope}. {ADVICE}")
     if counts:
-        method = f"{DIGITS}-digit values at {sum(counts)} points where {where.scope}"
-        return Decision(Verdict.SUPPORTED, method)
+        return _supported(sum(counts), where)
     branches = f"each of {split} branches" if split > 1 else "the solutions"
     return _proof(elements, where, defined, f"on {branches} of {where.scope}")
 
@@ -284,7 +302,8 @@ def _look(
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
                 shown = _shown(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)
-            seen += value is not None
+            # without functions the element is not zero, and another point shows it
+            seen += value is not None and (bool(branch.rest) or not ring.function_free(element))
             if seen == POINTS:
                 break
         counts.append(seen)
