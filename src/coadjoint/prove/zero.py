@@ -333,18 +333,43 @@ def _near_value(element: Element, ring: Field, point: Values) -> str:
 
 def _certain_value(element: Element, ring: Field, point: Values) -> str | None:
     """The value at a rational point: not zero if an interval says so."""
-    numbers = {name: real(value) for name, value in point.items()}
-    value, size = _with_size(element, ring, numbers)
+    value, size = _with_size(element, ring, point)
     if abs(value) <= NEGLIGIBLE * size:
         return ""
     return mpmath.nstr(value, 15) if enclosure(ring, element, point).sign else None
 
 
-def _with_size(element: Element, ring: Field, numbers: Values) -> tuple[Any, Any]:
-    """The value of an element and that of its largest addend, beside which cancellation shows."""
-    value = ring.evaluate(element, numbers, real, real_function)
-    addends = (ring.evaluate(part, numbers, real, real_function) for part in ring.terms(element))
-    return value, max(map(abs, addends), default=mpmath.mpf(0))
+@dataclass(frozen=True, slots=True)
+class _Sized:
+    """A real value, and the size of the largest addend in it, beside which cancellation shows."""
+
+    value: Any
+    size: Any
+
+    def __add__(self, other: _Sized) -> _Sized:
+        return _Sized(self.value + other.value, max(self.size, other.size))
+
+    def __mul__(self, other: _Sized) -> _Sized:
+        return _Sized(self.value * other.value, self.size * other.size)
+
+    def __truediv__(self, other: _Sized) -> _Sized:
+        return _Sized(self.value / other.value, self.size / abs(other.value))
+
+    @staticmethod
+    def of(number: Any) -> _Sized:
+        exact = real(number)
+        return _Sized(exact, abs(exact))
+
+    @staticmethod
+    def call(function: str, argument: _Sized) -> _Sized:
+        return _Sized.of(real_function(function, argument.value))
+
+
+def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:
+    """The value of an element and the size of its largest addend."""
+    numbers = {name: _Sized.of(value) for name, value in point.items()}
+    found = ring.evaluate(element, numbers, _Sized.of, _Sized.call)
+    return found.value, found.size
 
 
 def _shown(points: Points, point: Values) -> dict[str, str]:
