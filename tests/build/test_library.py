@@ -52,7 +52,7 @@ def test_an_object_of_another_system_is_refused(cache):
     load()
     (path,) = cache.rglob("*.so")
     with pytest.raises(CompilerError, match=r"kernel of other cannot be loaded.*other_id"):
-        Library(path, "other", BODY.id)
+        Library(path, "other", BODY.id, "exact")
 
 
 def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
