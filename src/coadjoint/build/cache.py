@@ -21,7 +21,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-from coadjoint.build.upkeep import KERNELS, WORK, evict
+from coadjoint.build.upkeep import KERNELS, WORK, evict, find_problems
 from coadjoint.build.workplace import keep_folder, remove, sweep, work_file, work_folder
 from coadjoint.errors import OutputError
 
@@ -137,13 +137,7 @@ def check_private(folder: Path) -> None:
             "Set COADJOINT_CACHE to a folder of your own.",
             path=str(folder),
         ) from error
-    problem = ""
-    if not stat.S_ISDIR(found.st_mode):
-        problem = "it is not a real folder"
-    elif found.st_uid != os.getuid():
-        problem = f"it belongs to user {found.st_uid}"
-    elif found.st_mode & 0o022:
-        problem = f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})"
+    problem = _refusal(found)
     if problem:
         raise OutputError(
             f"the cache folder {folder} is refused: {problem}. "
@@ -151,6 +145,35 @@ def check_private(folder: Path) -> None:
             path=str(folder),
             found=problem,
         )
+
+
+def _refusal(found: os.stat_result) -> str:
+    """Why a folder is not private, or ""."""
+    if not stat.S_ISDIR(found.st_mode):
+        return "it is not a real folder"
+    if found.st_uid != os.getuid():
+        return f"it belongs to user {found.st_uid}"
+    if found.st_mode & 0o022:
+        return f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})"
+    return ""
+
+
+def cache_problems() -> list[str]:
+    """What is wrong with the cache, a sentence each; nothing is made, changed or removed.
+
+    What stands inside the folder heals by itself: damaged objects are compiled anew, and what
+    killed runs left is removed when the cache is used next.
+    """
+    folder = chosen_folder()
+    if folder is None:
+        return ["there is no home folder for the cache; set HOME or COADJOINT_CACHE"]
+    try:
+        refusal = _refusal(folder.lstat())
+    except FileNotFoundError:
+        return []  # it is made when it is needed
+    except OSError as error:
+        return [f"{folder} cannot be used: {error.strerror}"]
+    return [f"{folder} is refused: {refusal}"] if refusal else find_problems(folder)
 
 
 def fetch(key: str) -> Path | None:
