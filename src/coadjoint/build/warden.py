@@ -22,7 +22,7 @@ _FIRST, _LONGEST = 0.001, 0.05
 def main(memory: int, seconds: int, command: list[str]) -> int:
     """Run a command within limits; its exit status."""
     _limit(resource.RLIMIT_AS, memory)
-    _limit(resource.RLIMIT_CPU, seconds)
+    _limit(resource.RLIMIT_CPU, seconds, beyond=5)  # first a signal that says why, then the end
     _limit(resource.RLIMIT_CORE, 0)
     nothing = [(os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0)]
     try:
@@ -41,12 +41,13 @@ def main(memory: int, seconds: int, command: list[str]) -> int:
         pause = min(2 * pause, _LONGEST)
 
 
-def _limit(kind: int, value: int) -> None:
+def _limit(kind: int, value: int, beyond: int = 0) -> None:
     """Lower a limit of this process, never above what it has."""
     _, most = resource.getrlimit(kind)
+    last = value + beyond
     if most != resource.RLIM_INFINITY:
-        value = min(value, most)
-    resource.setrlimit(kind, (value, value))
+        value, last = min(value, most), min(last, most)
+    resource.setrlimit(kind, (value, last))
 
 
 if __name__ == "__main__":
