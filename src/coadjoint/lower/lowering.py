@@ -21,7 +21,7 @@ from coadjoint.derive.domain import bounds
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
 from coadjoint.lower.graph import Graph
-from coadjoint.lower.jacobian import jacobian, residual_slopes
+from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
@@ -265,7 +265,12 @@ def lower(equations: Equations) -> dict[str, Program]:
     rhs = _program(equations, "rhs", rates)
     slopes = residual_slopes(equations)
     labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
-    wide = _program(equations, "rhs", [*rates, *labelled]) if slopes else rhs
+    labelled += [
+        (f"factor {i} {k}", value)
+        for found in factors_of_solves(equations)
+        for (i, k), value in found.items()
+    ]
+    wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
     programs = {"rhs": rhs, "jacobian": jacobian(wide, equations, slopes)}
     if exact.energy is not None:
         programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
