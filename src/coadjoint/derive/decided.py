@@ -109,7 +109,10 @@ class Decided:
         """Points at which every name has a value, the parameters the same ones."""
         self._tries += 1
         return [
-            {name: _random(f"{self._tries} {name} {self._own(name, n)}") for name in self.field.names}
+            {
+                name: _random(f"{self._tries} {name} {self._own(name, n)}")
+                for name in self.field.names
+            }
             for n in range(POINTS)
         ]
 

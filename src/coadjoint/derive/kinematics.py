@@ -280,11 +280,6 @@ class Kinematics:
             for name in self.frame.positions
             if not self._is_velocity(name)
         ]
-        convected = [
-            (f"_c{n + 1}", self._convected[place])
-            for n, place in enumerate(self.solved)
-        ]
+        convected = [(f"_c{n + 1}", self._convected[place]) for n, place in enumerate(self.solved)]
         roots = self._rates_of_roots()
-        return self.computed(
-            [*entries, *self.velocities(), *positions, *roots, *moved, *convected]
-        )
+        return self.computed([*entries, *self.velocities(), *positions, *roots, *moved, *convected])

@@ -87,9 +87,7 @@ class Solve:
     names: Sequence[str]
 
 
-def solve_in_kernel(
-    field: Field, solve: Solve, decided: Decided | None = None
-) -> list[Definition]:
+def solve_in_kernel(field: Field, solve: Solve, decided: Decided | None = None) -> list[Definition]:
     """The definitions that solve ``A x = b``, in the order in which they can be computed.
 
     Where a pivot is zero at run time, the unknowns are infinite or not a number, as with any other

@@ -160,6 +160,7 @@ def _solved(
         factors: L below the diagonal, zeros left out, and one over D on it.
     """
     size = range(len(solve.names))
+
     def less(start: int, terms: Iterable[tuple[int, int]]) -> int:
         products = (graph.negate(graph.multiply(a, b)) for a, b in terms)
         return graph.sum([start, *(p for p in products if not graph.is_zero(p))])
