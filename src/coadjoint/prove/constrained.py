@@ -261,7 +261,7 @@ def _same_solves(first: Equations, other: Equations) -> list[Element]:
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
     """A and b of all solves in the state: entries by the names of row and column, "" for b."""
-    found = {}
+    found = dict[tuple[str, str], Element]()
     for solve in equations.exact.solves:
         for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
             entries = zip((*solve.names, ""), (*row, known), strict=True)
