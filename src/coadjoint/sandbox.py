@@ -344,7 +344,9 @@ def _is_want_of_memory(error: Exception) -> bool:
     """Whether memory was refused, to Python, by the system, or to a library that was to load."""
     if isinstance(error, ImportError):
         return "failed to map segment" in str(error) or "annot allocate memory" in str(error)
-    return isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM
+    # A SystemError comes from libraries in C that do not look what they were given.
+    refused = isinstance(error, MemoryError | SystemError)
+    return refused or getattr(error, "errno", None) == errno.ENOMEM
 
 
 def _function(target: str) -> Callable[[Any], Any]:
