@@ -43,6 +43,8 @@ POINTS = 20
 NEGLIGIBLE = mpmath.mpf(10) ** -(DIGITS - 20)
 #: Size below which a value counts as zero at points of a zero set found by iteration.
 ON_ZERO_SET = mpmath.mpf(10) ** -20
+#: Digits of the coordinates of a point that lies on a zero set up to rounding.
+SHOWN_DIGITS = 30
 #: Denominators that a method shows, and the length of each.
 SHOWN, SHOWN_TEXT = 3, 40
 NORMAL_FORM = "normal form in the field of rational functions"
@@ -384,4 +386,4 @@ def _shown(points: Points, point: Values) -> dict[str, str]:
 
 
 def _text(value: Any) -> str:
-    return str(value) if isinstance(value, Fraction) else str(mpmath.nstr(value, 15))
+    return str(value) if isinstance(value, Fraction) else str(mpmath.nstr(value, SHOWN_DIGITS))
