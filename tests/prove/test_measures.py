@@ -7,7 +7,8 @@ import pytest
 
 from coadjoint.exact import element_text
 from coadjoint.prove import Verdict
-from coadjoint.prove.measures import Measure, about_measure, factors
+from coadjoint.prove.invariant_factors import factors
+from coadjoint.prove.measures import Measure, about_measure
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import decide_zero
 from coadjoint.systems import chaplygin_ball
