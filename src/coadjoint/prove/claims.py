@@ -7,7 +7,7 @@ Read next: `coadjoint.prove.identities` for what must be zero, `coadjoint.prove.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache, partial
 from time import perf_counter
@@ -45,6 +45,7 @@ from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
 from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
+from coadjoint.prove.searches import within_budget
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
@@ -108,12 +109,8 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
                 yield from claimed_by(
                     first.spec, ("claims", "conserved", place), claimed, motion.field
                 )
-        yield from about_integrability(first)
-        yield from about_reduced_bracket(motion)
         yield from about_momenta(motion)
-        yield from about_reversal(motion)
-        yield from about_candidates(motion, known_integrals(motion, _emitted(first)))
-        yield from about_measure(motion)
+        yield from _searched(motion, _emitted(first))
         return
     yield from _about_bracket(first)
     pulled = LegendreMap(first) if first.spec.lagrangian is not None else None
@@ -124,6 +121,24 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from _about_equality(first, other, pulled)
     yield from _about_motion(first)
     yield from about_pairs(routes)
+
+
+def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
+    """What is found out about a constrained motion, each search with a budget of its own."""
+    searches: dict[tuple[str, str], Iterator[Examined]] = {
+        ("integrability", "the growth vector"): about_integrability(motion.equations),
+        ("bracket", "the bracket of the reduced momenta"): about_reduced_bracket(motion),
+        ("transformation", "the reversal of time"): about_reversal(motion),
+        ("integrals", "integrals"): _integrals(motion, emitted),
+        ("measure", "invariant measures"): about_measure(motion),
+    }
+    for (kind, subject), examined in searches.items():
+        yield from within_budget(motion.field, kind, subject, examined)
+
+
+def _integrals(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
+    """The search for integrals; what is known already is part of its work."""
+    yield from about_candidates(motion, known_integrals(motion, emitted))
 
 
 def _about_algebra(first: Equations) -> Iterator[Examined]:
@@ -273,7 +288,8 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         if decide().verdict is Verdict.PROVED:
             proved += first.setting.components(casimir)
     if tensor is not None:
-        yield from _about_completeness(first, proved)
+        search = _about_completeness(first, proved)
+        yield from within_budget(field, "casimir", "Casimirs", search)
     for place, claim in enumerate(spec.conserved):
         claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
         yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)

@@ -32,6 +32,8 @@ from coadjoint.prove.samples import leading
 #: Terms of a polynomial that is factored, and symbols of the state in it: more may take minutes.
 TERMS = 60
 SYMBOLS = 4
+#: Terms of a rate up to which its common divisor with the others is computed.
+LONGEST = 200
 #: Velocities up to which the determinant is taken.
 SIZE = 3
 
@@ -126,7 +128,7 @@ class InvariantFactors:
     def _shared(self, velocities: Sequence[Element]) -> list[Element]:
         """The factors of the greatest common divisor of the rates."""
         numerators = [_numerator(rate) for rate in self.rates if rate != 0]
-        if not numerators:
+        if not numerators or max(map(len, numerators)) > LONGEST:
             return []
         divisor = reduce(lambda p, q: p.gcd(q), numerators)
         whole = _polynomial(self.field, divisor)

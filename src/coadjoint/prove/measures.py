@@ -38,6 +38,7 @@ from coadjoint.exact import Element, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import LARGER, SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors, factors
 from coadjoint.prove.samples import AtNumbers, Point, Samples, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
@@ -55,8 +56,8 @@ POINTS = 6
 LONGEST = 240
 #: Among what densities are looked for that depend on velocities.
 SEARCHED = (
-    "products of powers of invariant factors among the velocities, the common divisor of their "
-    f"rates and, in up to {SYMBOLS} symbols of the state and {TERMS} terms, the factors of the "
+    "products of powers of invariant factors: velocities, the common divisor of rates of up to "
+    f"{COMMON} terms, and in up to {SYMBOLS} symbols of the state and {TERMS} terms the factors of "
     "rates and of det(eta, d eta/dt, ...)"
 )
 
