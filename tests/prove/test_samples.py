@@ -52,17 +52,3 @@ def test_leading_coefficients_have_a_sign():
     ring = motion("veselova").field
     x, y, m = (ring[name] for name in ("Omega1", "Omega2", "I1"))
     assert leading((y / 3 - 2 * x) / m) == -2
-
-
-def test_square_roots_of_parameters_alone_exist():
-    """Random parameters are drawn until sqrt(m) is a residue; 3 has no square root modulo it."""
-    along = motion("chaplygin_sleigh", ("m*(v^2", "sqrt(m)*(v^2"))
-    samples = Samples(along)
-    values = next(samples.points()).values
-    assert samples.obstacle == ""
-    assert pow(values["m"].value, (PRIME - 1) // 2, PRIME) == 1
-    numbers = {"m": Fraction(3), "I": Fraction(1), "a": Fraction(1)}
-    assert pow(3, (PRIME - 1) // 2, PRIME) == PRIME - 1
-    without = Samples(along, numbers)
-    assert without.obstacle == "no point has all square roots modulo a prime"
-    assert list(without.points()) == []

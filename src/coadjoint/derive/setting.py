@@ -155,6 +155,15 @@ class Setting:
             found[each.reaction] = shaped(parts, each.shape)
         return found
 
+    def conditions(self) -> tuple[Element, ...]:
+        """What the declared domain asks to be positive: the larger side minus the other."""
+        found = []
+        for condition in self.spec.domain:
+            sides = condition.left, condition.right
+            left, right = (self.formula(side, self.reactions) for side in sides)
+            found.append(left - right if condition.sign.startswith(">") else right - left)
+        return tuple(found)
+
     # -- elements -----------------------------------------------------------------------
 
     def elements(self, names: Sequence[str]) -> tuple[Element, ...]:
@@ -241,7 +250,10 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         values[quantity.name] = whole(quantity, values)
     for each in spec.reconstruction:
         values[each.name] = shaped([values[name] for name in each.components], each.shape)
-    return Setting(spec, field, values)
+    setting = Setting(spec, field, values)
+    if {name for each in spec.constraints for name in each.reactions} <= set(field.names):
+        field.conditions = setting.conditions
+    return setting
 
 
 def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
