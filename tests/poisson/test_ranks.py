@@ -51,7 +51,7 @@ def test_ranks_pass_over_poles():
 
 @pytest.mark.parametrize("number", [2, 3, 5, 6, 7, 11, 2**61])
 def test_every_square_root_of_a_number_has_its_place(number):
-    """Half of them do not exist modulo a prime; the rank of (r, 1; r^2, r) is one, of others two."""
+    """Modulo a prime half of them do not exist; (r, 1; r^2, r) has rank one, others have two."""
     field = Field(["x"], slots=1)
     r, x, one = field.call("sqrt", field.number(number)), field["x"], field.one
     assert generic_rank(field, [{0: r, 1: one}, {0: r * r, 1: r}]) == 1
@@ -68,7 +68,7 @@ def test_roots_have_the_sign_of_the_real_one():
 
 @pytest.mark.parametrize("factor", [PRIME, PRIME**2])
 def test_a_prime_among_the_numbers_does_not_count(factor):
-    """p x and x/p have rank one, and (1, 1; 1, 1 + p) has two, though p is the first prime."""
+    """The entries p x and x/p have rank one, and (1, 1; 1, 1 + p) has two, at the first prime p."""
     field = Field(["x"])
     x, one = field["x"], field.one
     assert generic_rank(field, [{0: factor * x}]) == 1

@@ -251,16 +251,20 @@ class CandidateSearch:
         return {exponents: value for exponents, value in terms.items() if value}
 
     def _degrees(self, function: Element) -> Degrees | None:
-        """The degrees of a polynomial; None for other functions."""
+        """The degrees of a polynomial, reduced by the relations; None for other functions."""
         state = set(self.samples.state)
         whole = self.field.normal(function).combined()
-        divisors = [d for q in self.field.quotients(whole) for d, _ in q.divisors]
-        terms = None if any(self.field.reach(d) & state for d in divisors) else self._terms(whole)
-        if terms is None:
+        if any(
+            self.field.reach(d) & state for q in self.field.quotients(whole) for d, _ in q.divisors
+        ):
             return None
-        count = len(self.velocities)
-        sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
-        return max(a for a, _ in sums), max(b for _, b in sums)
+        forms = [self._terms(whole), self._terms(self.samples.where.remainder(whole))]
+        count, found = len(self.velocities), list[Degrees]()
+        for terms in forms:
+            if terms is not None:
+                sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
+                found.append((max(a for a, _ in sums), max(b for _, b in sums)))
+        return min(found, default=None)
 
     def polynomials(self, degrees: Degrees) -> tuple[int, list[str]]:
         """How many polynomials in known integrals are independent, and in which of these.
@@ -410,12 +414,10 @@ def _counted(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     every = ", ".join(dict.fromkeys(each.text for each in search.known)) or "constants"
     share = f"{len(found) - others} of these are" if others else "they are"
     some = f"{certain} are certain, {listed}"
-    if bounded:
-        text = f"{scope}: a space of dimension {len(found)} at the most; {some}; {share} functions of {every}"
-        error = f"the bound and what is certain are exact; for the rest {LUCK}"
-    else:
-        text = f"{scope}: a space of dimension {len(found)}; {some}; {share} functions of {every}"
-        error = f"what is certain is exact; for the rest {LUCK}"
+    most = " at the most" if bounded else ""
+    text = f"{scope}: a space of dimension {len(found)}{most}; {some}; {share} functions of {every}"
+    sure = "the bound and what is certain are exact" if bounded else "what is certain is exact"
+    error = f"{sure}; for the rest {LUCK}"
     return text, "integrals", lambda: Discovery(points, where.removeprefix(", "), error)
 
 

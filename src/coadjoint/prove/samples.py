@@ -37,8 +37,9 @@ from coadjoint.spec import Variable
 NOWHERE = "no point has all square roots modulo a prime"
 #: Values by name.
 Values = dict[str, Residue]
-#: Primes that are tried, each with other parameters; nine square roots exist in one of 512.
-PRIMES = 2000
+#: Primes that are tried, each with other parameters: so many times 2^n for n square roots, which
+#: all exist in one of 2^n cases, and the most of them.
+PRIMES, MOST = 40, 4000
 #: How often a next point is tried.
 TRIES = 2000
 #: The derivatives of a function that are not zero, by the names of the state.
@@ -145,7 +146,8 @@ class Samples:
         if self.functions.obstacle:
             return self.functions.obstacle
         reached = False
-        for prime in islice(primes(), PRIMES):
+        count = min(PRIMES << len(self.functions.roots) + len(self.functions.surds), MOST)
+        for prime in islice(primes(), count):
             with suppress(ZeroDivisionError):
                 self.prime = prime
                 self._experiment = Experiment(self.functions, prime, self._source)
