@@ -94,8 +94,8 @@ def test_the_ball_off_centre_has_no_density_of_the_attitude():
     none, other, found = refused(motion("chaplygin_ball"))
     assert none == (
         "no measure rho dOmega dGamma with a smooth positive density rho(Gamma) is invariant on "
-        "any open set of states where dot(Gamma, Gamma) = 1, for almost all parameters: what it asks "
-        "for along Omega1, Omega2, Omega3 contradicts itself"
+        "any open set of states where dot(Gamma, Gamma) = 1, for almost all parameters: what it "
+        "asks for along Omega1, Omega2, Omega3 contradicts itself"
     )
     assert other == "no invariant measure was found with a density that depends on velocities"
     assert isinstance(found, Discovery)
@@ -164,7 +164,7 @@ SADDLE = [
 
 
 def test_invariant_lines_that_divide_no_rate_are_found():
-    """With rates u + v of u and 2 u of v: the determinant of velocities and rates has the invariant lines."""
+    """With du/dt = u + v, dv/dt = 2 u the determinant of both has the invariant lines."""
     along = small(PARTICLE, *SADDLE)
     search = InvariantFactors(along, {})
     u, v = along.field["u"], along.field["v"]
@@ -205,7 +205,7 @@ def test_a_contradiction_of_fields_that_could_have_a_larger_rank_is_found_not_pr
     (none, found), *_ = entries(along)
     assert none.startswith("no measure rho dOmega dGamma")
     assert isinstance(found, Discovery)
-    assert "probability" in found.error
+    assert "chance below" in found.error
 
 
 def test_what_is_not_looked_for_is_told(monkeypatch):

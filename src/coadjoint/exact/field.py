@@ -68,6 +68,8 @@ class Field:
         }
         self.adjoined: dict[str, Adjoined] = {}
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
+        #: What is positive where the elements are looked at, written out when it is asked for.
+        self.conditions: Callable[[], Sequence[Element]] = tuple
 
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]

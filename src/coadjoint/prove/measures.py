@@ -32,11 +32,12 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
-from coadjoint.algebra.linear import PRIME, echelon_modulo, rational_vector
+from coadjoint.algebra.linear import echelon_modulo, rational_vector
 from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, element_text
+from coadjoint.poisson.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.completeness import LARGER, SHOWN, described
+from coadjoint.prove.completeness import SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors, factors
@@ -193,10 +194,10 @@ class Measure:
             grown = False
             for condition in waiting:
                 row = [point.value(part) for part in condition.parts]
-                if _rank([*rows, row]) == len(rows):
+                if _rank([*rows, row], point.samples.prime) == len(rows):
                     continue
                 rows, kept, grown = [*rows, row], [*kept, condition], True
-                rank = _rank([known[:-1] for known in rows])
+                rank = _rank([known[:-1] for known in rows], point.samples.prime)
                 if rank < len(rows):
                     return (kept, rank) if any(row[:-1]) else (kept[-1:], 0)
             waiting = [self.bracket(a, b) for a, b in combinations(kept, 2)] if grown else []
@@ -222,7 +223,7 @@ class Measure:
         for point, condition in ((p, c) for p in points for c in self.conditions):
             slopes = [self._along(condition, factor) / factor for factor in factors]
             rows.append([point.value(x) for x in (*slopes, condition.parts[-1])])
-        return _powers(factors, rows)
+        return _powers(factors, rows, points[0].samples.prime)
 
     def powers_along(self, factors: Sequence[Element], samples: Samples) -> Powers | None:
         """``rho`` as before whose rate is right at points, where factors depend on velocities."""
@@ -230,9 +231,12 @@ class Measure:
         rows = list[list[int]]()
         for point in islice(samples.points(), len(factors) + POINTS):
             pairs = zip(factors, slopes, strict=True)
-            rates = [_ratio(point.moved(each), point.value(factor)) for factor, each in pairs]
-            rows.append([*rates, -point.value(self.divergence) % PRIME])
-        return _powers(factors, rows)
+            rates = [
+                point.moved(each) * pow(point.value(factor), -1, samples.prime)
+                for factor, each in pairs
+            ]
+            rows.append([*rates, -point.value(self.divergence)])
+        return _powers(factors, rows, samples.prime)
 
     def defect(self, powers: Powers) -> Element:
         """``d ln rho / dt + div X``, zero if the measure is invariant."""
@@ -240,18 +244,15 @@ class Measure:
         return self.field.sum([self.divergence, *growth])
 
 
-def _ratio(a: int, b: int) -> int:
-    """``a / b`` modulo the prime."""
-    return a * pow(b, -1, PRIME) % PRIME
-
-
-def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]]) -> Powers | None:
+def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]], prime: int) -> Powers | None:
     """Exponents with ``sum of row[n] exponent_n = row[-1]`` in each row; None if there are none."""
     last = len(factors)
-    solved = echelon_modulo({n: x for n, x in enumerate(row) if x} for row in rows)
+    reduced = ([x % prime for x in row] for row in rows)
+    solved = echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in reduced), prime)
     if last in solved:
         return None
-    numbers = rational_vector({pivot: row.get(last, 0) for pivot, row in solved.items()})
+    vector = {pivot: row.get(last, 0) for pivot, row in solved.items()}
+    numbers = rational_vector(vector, prime)
     if numbers is None or any(x.denominator > DENOMINATOR for x in numbers.values()):
         return None
     return [(factors[n], x) for n, x in sorted(numbers.items()) if x]
@@ -270,9 +271,10 @@ def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
         yield f"an invariant measure was not looked for: {obstacle}", "measure", lambda: skipped
         return
     points = list(islice(samples.points(), POINTS))
+    assert points, "a motion without an obstacle has points"
     refusal = _refusal(motion, measure, samples, points[0])
     if refusal is None:
-        yield _of_positions(motion, measure, points)
+        yield _of_positions(motion, measure, samples, points)
         return
     yield refusal
     yield _of_velocities(motion, measure, samples)
@@ -291,18 +293,18 @@ def _refusal(
         f"{_where(samples)}, for almost all parameters"
     )
     if any(point.value(second) for second in measure.curved):
-        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {PRIME}")
+        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
         return f"{none}: div X is not affine in the velocities", "measure", lambda: decision
     contradiction = measure.contradiction(point)
     if contradiction is None:
         return None
     found, rank = contradiction
     text = f"what it asks for along {', '.join(each.name for each in found)} contradicts itself"
-    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {PRIME}"
+    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {samples.prime}"
     if _is_certain(motion, measure, samples, found, rank):
         proof = Decision(Verdict.PROVED, method)
         return f"{none}: {text}", "measure", lambda: proof
-    guess = Discovery(method, "for almost all parameters", LARGER)
+    guess = Discovery(method, "for almost all parameters", CHANCE)
     return f"{none}: {text}", "measure", lambda: guess
 
 
@@ -324,16 +326,18 @@ def _is_certain(
     return last is not None and all(map(motion.field.is_zero, last.parts[:-1]))
 
 
-def _of_positions(motion: ConstrainedRates, measure: Measure, points: Sequence[Point]) -> Examined:
+def _of_positions(
+    motion: ConstrainedRates, measure: Measure, samples: Samples, points: Sequence[Point]
+) -> Examined:
     """A density of the positions alone, as a formula if there is one."""
     powers = measure.exponents(_factors_of_minors(motion, measure), points)
     found = None if powers is None else _stated(motion, powers)
     if found is not None:
         return found
     search = Discovery(
-        f"ranks of brackets at a random point modulo {PRIME}",
+        f"ranks of brackets at a random point modulo {samples.prime}",
         "near almost every point, for almost all parameters",
-        LARGER,
+        CHANCE,
     )
     statement = (
         f"an invariant measure rho {_form(motion)} exists, rho a function of the positions; no "
@@ -452,6 +456,6 @@ def _name(motion: ConstrainedRates, factor: Element) -> str:
     return ""
 
 
-def _rank(rows: Sequence[Sequence[int]]) -> int:
+def _rank(rows: Sequence[Sequence[int]], prime: int) -> int:
     """The rank of lists of residues."""
-    return len(echelon_modulo({n: x for n, x in enumerate(row) if x} for row in rows))
+    return len(echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in rows), prime))
