@@ -22,6 +22,7 @@ from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.poisson.summands import restricted_algebra
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.findings import is_entire
 from coadjoint.prove.identities import casimir_defects
 from coadjoint.prove.zero import Decision, Discovery, decide_zero
 
@@ -176,13 +177,7 @@ def scope_of(structure: PoissonStructure, functions: Sequence[Element]) -> str:
     entries = {id(entry): entry for row in structure.tensor for entry in row if entry}
     field, present = structure.field, (*entries.values(), *functions)
     free = frozenset[str]().union(*map(field.reach, present)) <= {*structure.names}
-    called = frozenset[str]().union(*map(field.functions_in, present))
-    entire = all(
-        known.function in ("sin", "cos", "exp")
-        and not any(quotient.divisors for quotient in field.quotients(known.argument))
-        for known in map(field.adjoined.__getitem__, called)
-    )
-    where = ALMOST if entire else IN_PART
+    where = ALMOST if is_entire(field, present) else IN_PART
     return where if free else f"{where}, for almost all parameters"
 
 
