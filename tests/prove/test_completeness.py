@@ -196,7 +196,7 @@ def test_a_casimir_of_a_higher_degree_is_missing_and_told():
     assert (found.found, found.known, found.expected) == ((), 0, 1)
     assert found.statement == (
         "0 of 1 independent Casimirs are known: 1 not found among all polynomials of degree <= 1 "
-        "and quotients of semi-invariants of degree <= 1; every polynomial Casimir "
+        "and products of powers of semi-invariants of degree <= 1; every polynomial Casimir "
         "of degree <= 1 is constant"
     )
     assert isinstance(found.decision, Discovery)
