@@ -32,7 +32,8 @@ DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
 #: What decides the number of independent Casimirs.
-RANKS = "rank of the gradients and of the bracket"
+RANKS = "ranks of the gradients and of the bracket"
+MEET = f"{RANKS} that add up to the dimension,"
 #: Where a count of independent functions holds.
 ALMOST = "near almost every point"
 #: Where it holds if roots or logarithms occur, which one analytic function is in such a part alone.
@@ -74,10 +75,9 @@ class Completeness:
         the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
         missing, a rank may be larger than at the points where it was taken, so that it is found.
         """
-        method = f"{RANKS} {self.source}"
         if self.error:
-            return Discovery(method, self.scope, self.error)
-        return Decision(Verdict.PROVED, method)
+            return Discovery(f"{RANKS} {self.source}", self.scope, self.error)
+        return Decision(Verdict.PROVED, f"{MEET} {self.source}")
 
     @property
     def statement(self) -> str:

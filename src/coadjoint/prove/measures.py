@@ -290,7 +290,7 @@ def _refusal(
     density = f"a smooth positive density rho({', '.join(moved)})" if moved else "a constant rho"
     none = (
         f"no measure rho {_form(motion)} with {density} is invariant on any open set of states"
-        f"{_where(samples)}, for almost all parameters"
+        f"{_where(samples)}{_generic(motion)}"
     )
     if any(point.value(second) for second in measure.curved):
         decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
@@ -304,7 +304,7 @@ def _refusal(
     if _is_certain(motion, measure, samples, found, rank):
         proof = Decision(Verdict.PROVED, method)
         return f"{none}: {text}", "measure", lambda: proof
-    guess = Discovery(method, "for almost all parameters", CHANCE)
+    guess = Discovery(method, _generic(motion).lstrip(", "), CHANCE)
     return f"{none}: {text}", "measure", lambda: guess
 
 
@@ -336,7 +336,7 @@ def _of_positions(
         return found
     search = Discovery(
         f"ranks of brackets at a random point modulo {samples.prime}",
-        "near almost every point, for almost all parameters",
+        f"near almost every point{_generic(motion)}",
         CHANCE,
     )
     statement = (
@@ -361,7 +361,7 @@ def _of_velocities(motion: ConstrainedRates, measure: Measure, samples: Samples)
                 return found
     names = ", ".join(described(motion.field, factor) for factor in tried)
     text = f" that is a product of powers of {names}" if names else " that depends on velocities"
-    ended = Discovery(SEARCHED, "for almost all parameters")
+    ended = Discovery(SEARCHED, _generic(motion).lstrip(", "))
     return f"no invariant measure was found with a density{text}", "measure", lambda: ended
 
 
@@ -381,6 +381,11 @@ def _stated(motion: ConstrainedRates, powers: Powers) -> Examined | None:
         return statement, "measure", lambda: proof
     seen = Discovery(proof.method, error="numbers at some points, no proof")
     return statement, "measure", lambda: seen
+
+
+def _generic(motion: ConstrainedRates) -> str:
+    """The scope of what was found at random parameters."""
+    return ", for almost all parameters" if motion.equations.setting.parameters else ""
 
 
 def _where(samples: Samples) -> str:
