@@ -145,8 +145,10 @@ class Samples:
     @cached_property
     def _long_numbers(self) -> set[int]:
         """Numerators and denominators that a prime might divide."""
-        quotients = (q for e in self._evaluated for q in self.field.quotients(e))
-        numbers = {m.number for quotient in quotients for m in quotient.monomials}
+        written = [q for e in self._evaluated for q in self.field.quotients(e)]
+        divisors = [d for quotient in written for d, _ in quotient.divisors]
+        written += [q for divisor in divisors for q in self.field.quotients(divisor)]
+        numbers = {m.number for quotient in written for m in quotient.monomials}
         numbers |= {*(self._given or {}).values()}
         parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
         return {part for part in parts if part >= SMALL}
