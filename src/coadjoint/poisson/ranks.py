@@ -154,10 +154,15 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
         return []
     if not is_exact(field, _entries(rows)):
         return max(islice(_bounded(field, rows), POINTS), key=len)
+    sampled = islice(_sampled(field, rows), POINTS)
+    return max((_chosen(numbers, prime) for prime, numbers in sampled), key=len)
+
+
+def _chosen(rows: Sequence[dict[int, int]], prime: int) -> list[int]:
+    """Places of rows of numbers that do not depend on those before them modulo a prime."""
     chosen: list[int] = []
-    prime, numbers = next(_sampled(field, rows))
-    for place, row in enumerate(numbers):
-        if rank_modulo([*(numbers[n] for n in chosen), row], prime) > len(chosen):
+    for place, row in enumerate(rows):
+        if rank_modulo([*(rows[n] for n in chosen), row], prime) > len(chosen):
             chosen.append(place)
     return chosen
 
