@@ -42,6 +42,7 @@ from coadjoint.poisson.ranks import residue
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
@@ -231,8 +232,14 @@ class CandidateSearch:
             for known in self.samples.functions.known
             if known.function == "sin" and known.generator in self.positions
         ]
-        found = [self._terms(each) for each in (*self.samples.where.relations, *circles)]
-        return [terms for terms in found if terms]
+        zero = [*self.samples.where.relations, *self._solved, *circles]
+        return [terms for terms in map(self._terms, zero) if terms]
+
+    @property
+    def _solved(self) -> list[Element]:
+        """The kept constraints solved for velocities: what is a common factor of them is gone."""
+        kept = Ideal(self.field, self.motion.where.relations, "", self.velocities)
+        return [self.field.normal(self.field[n] - root) for n, root in kept.solved.items()]
 
     def _terms(self, element: Element) -> Terms | None:
         """The numerator as a polynomial in the generators; None where it is none."""
