@@ -311,10 +311,11 @@ def test_a_long_casimir_is_described_by_its_size():
 
 
 @pytest.mark.parametrize(
-    ("function", "where"), [("exp", ALMOST), ("log", IN_PART), ("sqrt", IN_PART)]
+    ("function", "where"),
+    [("exp(x)", ALMOST), ("log(x)", IN_PART), ("sqrt(3)*x", IN_PART), ("sqrt(x^2 + 7)", IN_PART)],
 )
-def test_ranks_with_functions_are_proved_at_one_point(function, where):
-    """A mass that is not constant: bounds at a point exclude zero; roots have connected domains."""
+def test_ranks_with_functions_are_proved_by_bounds(function, where):
+    """A mass that is a function of the place leaves the plane of x and p without a Casimir."""
     text = f"""
 title = "a mass that depends on the place"
 routes = ["euler-lagrange"]
@@ -322,9 +323,31 @@ routes = ["euler-lagrange"]
 x = {{ role = "coordinate" }}
 v = {{ role = "velocity", of = "x" }}
 [lagrangian]
-l = "{function}(x)*v^2/2"
+l = "{function}*v^2/2"
 """
     claims = {claim.statement: claim for claim in prove(spec(text)).claims}
     none = claims[f"there are no Casimirs but constants, {where}"]
+    assert none.verdict.value == "proved"
+
+
+@pytest.mark.parametrize("entry", ["log(x - 2)", "sqrt(x - 2)*sqrt(3)", "log(x - 2)*exp(-x)"])
+def test_ranks_are_taken_inside_the_domain(entry):
+    """{x, y} = log(x - 2) with x > 3 is defined far from the numbers near 1, and has rank two."""
+    text = f"""
+title = "a bracket that is defined beyond a wall"
+routes = ["poisson"]
+[poisson.brackets]
+"{{x, y}}" = "{entry}"
+[variables]
+x = {{ role = "coordinate", default = 4 }}
+y = {{ role = "coordinate" }}
+[domain]
+beyond = "x > 3"
+[hamiltonian]
+h = "x + y"
+"""
+    certificate = prove(spec(text))
+    start = "there are no Casimirs but constants"
+    (none,) = (claim for claim in certificate.claims if claim.statement.startswith(start))
     assert none.verdict.value == "proved"
     assert none.method.endswith("at a real point, with bounds that exclude zero")

@@ -5,7 +5,7 @@ Comes in: sparse rows of elements. Goes out: the rank that was found, a certain 
 Rational entries are taken at a random point modulo a prime. Where no denominator is zero there,
 this is a homomorphism of rings: a minor with a nonzero value is a nonzero function. Entries with
 elementary functions are taken at a real point where they are defined, with bounds of all values
-(`coadjoint.exact.points`): a minor whose bounds exclude zero is not zero there, hence at almost
+(`coadjoint.exact.witness`): a minor whose bounds exclude zero is not zero there, hence at almost
 every point of the connected set around it on which the entries are analytic.
 
 From above nothing is certain. Rational minors of degree d that are not zero vanish at a random
@@ -19,18 +19,18 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from fractions import Fraction
-from functools import cmp_to_key, partial
+from functools import partial
 from itertools import islice
 from typing import Any
 
-from mpmath import libmp
+import mpmath
 
 from coadjoint.algebra.linear import PRIME, primes, rank_modulo
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.exact.points import Enclosure, enclosed, real_points
+from coadjoint.exact.witness import PRECISION, UNDEFINED, Enclosure, enclosure, points_inside
 
 #: Points at which a rank is taken; the largest counts.
 POINTS = 2
@@ -39,7 +39,6 @@ TRIES = 50
 #: How ranks are known, in words.
 MODULO = "at random points modulo a prime"
 ENCLOSED = "at a real point, with bounds that exclude zero"
-BY_VALUES = "by values"  # proves nothing; no rank is known so
 #: How likely it is that a rank is larger than the one found, in words.
 CHANCE = "the ranks are certain from below; that one is larger has a chance below 1e-12"
 NO_CHANCE = (
@@ -122,10 +121,6 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
     return largest
 
 
-#: The rank as far as it is certain; both names mean the same.
-certain_rank = generic_rank
-
-
 def source_of_ranks(field: Field, *ranks: tuple[Sequence[Mapping[int, Element]], int]) -> str:
     """How the ranks of some matrices are known from below: `MODULO` or `ENCLOSED`.
 
@@ -159,10 +154,15 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
         return []
     if not is_exact(field, _entries(rows)):
         return max(islice(_bounded(field, rows), POINTS), key=len)
+    sampled = islice(_sampled(field, rows), POINTS)
+    return max((_chosen(numbers, prime) for prime, numbers in sampled), key=len)
+
+
+def _chosen(rows: Sequence[dict[int, int]], prime: int) -> list[int]:
+    """Places of rows of numbers that do not depend on those before them modulo a prime."""
     chosen: list[int] = []
-    prime, numbers = next(_sampled(field, rows))
-    for place, row in enumerate(numbers):
-        if rank_modulo([*(numbers[n] for n in chosen), row], prime) > len(chosen):
+    for place, row in enumerate(rows):
+        if rank_modulo([*(rows[n] for n in chosen), row], prime) > len(chosen):
             chosen.append(place)
     return chosen
 
@@ -232,11 +232,13 @@ def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
         AlgebraError: No real point was found.
     """
     found = False
-    for point in real_points(field, list(_entries(rows))):
-        with suppress(ZeroDivisionError, ValueError):
-            values = [{j: enclosed(field, e, point) for j, e in row.items()} for row in rows]
+    for point in points_inside(field, list(_entries(rows))):
+        with suppress(*UNDEFINED):
+            values = [{j: enclosure(field, e, point) for j, e in row.items()} for row in rows]
             found = True
-            yield _independent(values)
+            with _precision():
+                places = _independent(values)
+            yield places
     if not found:
         entry = next(e for e in _entries(rows) if not field.function_free(e))
         text = element_text(field, entry)
@@ -255,7 +257,7 @@ def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
     not zero, so that every row that has one raises the rank.
     """
     pivots: list[tuple[int, dict[int, Enclosure]]] = []
-    places = []
+    places, minus = [], Enclosure.of(-1)
     for place, row in enumerate(rows):
         rest = dict(row)
         for column, pivot in pivots:
@@ -263,8 +265,8 @@ def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
                 factor = rest.pop(column) / pivot[column]
                 for other, value in pivot.items():
                     if other != column:
-                        taken = factor * value
-                        rest[other] = rest.get(other, Enclosure.of(Fraction(0))) - taken
+                        taken = minus * factor * value
+                        rest[other] = rest[other] + taken if other in rest else taken
         largest = _largest(rest)
         if largest is not None:
             pivots.append((largest, rest))
@@ -274,9 +276,18 @@ def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
 
 def _largest(row: Mapping[int, Enclosure]) -> int | None:
     """The place of the entry that is farthest from zero; None if all may be zero."""
-    certain = {column: value.least() for column, value in row.items() if value.excludes_zero()}
-    by_size = cmp_to_key(libmp.mpf_cmp)
-    return max(certain, key=lambda column: by_size(certain[column]), default=None)
+    certain = {column: abs(value.bounds.mid) for column, value in row.items() if value.sign}
+    return max(certain, key=lambda column: mpmath.mpf(certain[column].a), default=None)
+
+
+@contextmanager
+def _precision() -> Iterator[None]:
+    """The precision of bounds."""
+    before, mpmath.iv.prec = mpmath.iv.prec, PRECISION
+    try:
+        yield
+    finally:
+        mpmath.iv.prec = before
 
 
 def _count(places: Sequence[int]) -> int:

@@ -42,6 +42,7 @@ from coadjoint.poisson.ranks import residue
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
@@ -231,8 +232,14 @@ class CandidateSearch:
             for known in self.samples.functions.known
             if known.function == "sin" and known.generator in self.positions
         ]
-        found = [self._terms(each) for each in (*self.samples.where.relations, *circles)]
-        return [terms for terms in found if terms]
+        zero = [*self.samples.where.relations, *self._solved, *circles]
+        return [terms for terms in map(self._terms, zero) if terms]
+
+    @property
+    def _solved(self) -> list[Element]:
+        """The kept constraints solved for velocities: what is a common factor of them is gone."""
+        kept = Ideal(self.field, self.motion.where.relations, "", self.velocities)
+        return [self.field.normal(self.field[n] - root) for n, root in kept.solved.items()]
 
     def _terms(self, element: Element) -> Terms | None:
         """The numerator as a polynomial in the generators; None where it is none."""
@@ -395,7 +402,7 @@ def about_candidates(motion: ConstrainedRates, known: Sequence[Known]) -> Iterat
         if not at_numbers.samples.obstacle:
             search, where = at_numbers, _at_defaults(motion)
             for element in search.new(degrees):
-                text = f"{described(motion.field, element)} is conserved{where}"
+                text = f"{described(motion.field, element)} is conserved{where.lstrip(',')}"
                 yield text, "integrals", partial(search.drift, element)
     yield _counted(search, degrees, where)
 
@@ -406,19 +413,20 @@ def _counted(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     (certain, names), bounded = search.polynomials(degrees), search.bounded(degrees)
     points = f"ranks at {len(search.values_at)} random points modulo {search.samples.prime}"
     listed = f"polynomials in {', '.join(names)}" if names else "constants"
+    size = f"a space of dimension {len(found)} with constants"
     if bounded and certain == len(found):
         decision = Decision(Verdict.PROVED, f"{points}, from above and from below")
-        size = f"a space of dimension {certain}, all of it {listed}" if names else "constants alone"
-        return f"{scope}: {size}", "integrals", lambda: decision
+        text = f"{size}, all {listed}" if names else "none but constants"
+        return f"{scope}: {text}", "integrals", lambda: decision
     others = len(search.independent(found))
+    share = f"{len(found) - others} are" if others else "all are"
     every = ", ".join(dict.fromkeys(each.text for each in search.known)) or "constants"
-    share = f"{len(found) - others} of these are" if others else "they are"
-    some = f"{certain} are certain, {listed}"
-    most = " at the most" if bounded else ""
-    text = f"{scope}: a space of dimension {len(found)}{most}; {some}; {share} functions of {every}"
-    sure = "the bound and what is certain are exact" if bounded else "what is certain is exact"
-    error = f"{sure}; for the rest {LUCK}"
-    return text, "integrals", lambda: Discovery(points, where.removeprefix(", "), error)
+    most, sure = "", "that there are so many polynomials is exact"
+    if bounded:
+        most, sure = " at the most", "the bound, and that there are so many polynomials, are exact"
+    text = f"{size}{most}, {certain} of it {listed}; {share} functions of {every}"
+    discovery = Discovery(points, where.strip(", "), f"{sure}; for the rest {LUCK}")
+    return f"{scope}: {text}", "integrals", lambda: discovery
 
 
 def _almost_all(motion: ConstrainedRates) -> str:
@@ -430,7 +438,7 @@ def _at_defaults(motion: ConstrainedRates) -> str:
     if not motion.equations.setting.parameters:
         return ""
     whole = all(each.default is not None for each in motion.equations.spec.parameters)
-    return " at the default parameters" + ("" if whole else ", 1 where there is none")
+    return ", at the default parameters" + ("" if whole else " and 1 where there is none")
 
 
 def _passed_over(search: CandidateSearch) -> Examined:

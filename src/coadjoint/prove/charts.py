@@ -213,7 +213,7 @@ class ChartMap:
             if a + b and a - b:
                 turn = (b - a) / (a + b)
                 point = corner | {name: corner[name] + turn * x for name, x in along.items()}
-                found += [point] if self._is_on(point) else []
+                found += [point] if self._is_on(point) and self._is_regular(point) else []
             if len(found) == POINTS:
                 break
         return found
@@ -226,6 +226,11 @@ class ChartMap:
             for chosen in combinations(names, count):
                 for signs in product((1, -1), repeat=count):
                     yield flat | dict(zip(chosen, map(Fraction, signs), strict=True))
+
+    def _is_regular(self, point: Mapping[str, Fraction]) -> bool:
+        """Whether the derivative of the relation is not zero, so that its zero set is smooth."""
+        (row,) = self._derivatives[0]
+        return any(self.field.evaluate(e, point, Fraction, _no_call) for e in row.values())
 
     def _residual(self, point: Mapping[str, Fraction]) -> Fraction:
         return self.field.evaluate(self.domain.relations[0], point, Fraction, _no_call)

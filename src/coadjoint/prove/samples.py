@@ -40,6 +40,8 @@ Values = dict[str, Residue]
 #: Primes that are tried, each with other parameters: so many times 2^n for n square roots, which
 #: all exist in one of 2^n cases, and the most of them.
 PRIMES, MOST = 40, 4000
+#: Numbers below which none of the primes divides any.
+SMALL = 10**12
 #: How often a next point is tried.
 TRIES = 2000
 #: The derivatives of a function that are not zero, by the names of the state.
@@ -123,9 +125,15 @@ class Samples:
     @cached_property
     def functions(self) -> Functions:
         """The elementary functions of the motion, with what is known of relations between them."""
+        parameters = self.motion.equations.setting.parameters
+        return Functions(self.field, self._evaluated, self.state, parameters, self._given or {})
+
+    @cached_property
+    def _evaluated(self) -> list[Element]:
+        """All that points are made for."""
         equations = self.motion.equations
         solved = [e for s in equations.exact.solves for row in (*s.matrix, s.known) for e in row]
-        needed = [
+        return [
             *equations.exact.rates,
             *(value for _, value in self._needed),
             *(entry for row in self._kept for entry in row),
@@ -133,8 +141,17 @@ class Samples:
             *solved,
             *self._others,
         ]
-        parameters = equations.setting.parameters
-        return Functions(self.field, needed, self.state, parameters, self._given or {})
+
+    @cached_property
+    def _long_numbers(self) -> set[int]:
+        """Numerators and denominators that a prime might divide."""
+        written = [q for e in self._evaluated for q in self.field.quotients(e)]
+        divisors = [d for quotient in written for d, _ in quotient.divisors]
+        written += [q for divisor in divisors for q in self.field.quotients(divisor)]
+        numbers = {m.number for quotient in written for m in quotient.monomials}
+        numbers |= {*(self._given or {}).values()}
+        parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
+        return {part for part in parts if part >= SMALL}
 
     @cached_property
     def obstacle(self) -> str:
@@ -148,6 +165,8 @@ class Samples:
         reached = False
         count = min(PRIMES << len(self.functions.roots) + len(self.functions.surds), MOST)
         for prime in islice(primes(), count):
+            if any(number % prime == 0 for number in self._long_numbers):
+                continue
             with suppress(ZeroDivisionError):
                 self.prime = prime
                 self._experiment = Experiment(self.functions, prime, self._source)
