@@ -263,24 +263,21 @@ class Relations:
         return reduce(mul, signs, self.ring.number((-1) ** number))
 
     def _sign_generator(self, factor: Factor) -> Element:
-        """The sign of a factor; a sign is its own."""
-        for known in self._signs.values():
-            if factor == _numerator(known):
-                return known
+        """The sign of a factor."""
         if factor not in self._signs:
             self._signs[factor] = self._new(square=self.ring.one)
         return self._signs[factor]
 
     def _plain_signs(self, factors: frozenset[Factor]) -> tuple[frozenset[Factor], int]:
         """The factors without a sign of their own, and how many others are negative."""
-        left, number = set[Factor](), 0
+        left, number = frozenset[Factor](), 0
+        signs = {_numerator(sign): factor for factor, sign in self._signs.items()}
         for factor in factors:
             found = self._own_sign(factor)
-            if found:
-                number += found < 0
-            else:
-                left.add(factor)
-        return frozenset(left), number % 2
+            number += found < 0
+            if not found:
+                left ^= {signs.get(factor, factor)}  # a sign has that of its factor
+        return left, number % 2
 
     def _own_sign(self, factor: Factor) -> int:
         """The sign of a factor that its terms show; of one that may be 0, its other values'."""

@@ -26,13 +26,14 @@ from coadjoint.exact.field import Field
 #: A value for each symbol.
 Point = dict[str, Fraction]
 
-#: Binary digits of interval bounds.
-PRECISION = 200
+#: Interval arithmetic with 200 binary digits, apart from mpmath's own, whose precision others set.
+INTERVALS = mpmath.ctx_iv.MPIntervalContext()
+INTERVALS.prec = 200
 #: Points at which a value is tried, and how many are drawn to find each.
 TRIES = 12
 DRAWN = 12
 #: Steps from a point outside a domain towards it.
-STEPS = 40
+STEPS = 20
 #: Largest argument of exp, sin and cos; of more, numbers would have millions of digits.
 LARGEST = 10**6
 #: Where a value is undefined: poles, roots and logarithms of what is not positive, huge numbers.
@@ -53,7 +54,12 @@ class Enclosure:
     def of(number: Fraction | int) -> Enclosure:
         """The smallest interval around a rational number."""
         exact = Fraction(number)
-        return Enclosure(mpmath.iv.mpf(exact.numerator) / mpmath.iv.mpf(exact.denominator))
+        return Enclosure(INTERVALS.mpf(exact.numerator) / INTERVALS.mpf(exact.denominator))
+
+    @property
+    def size(self) -> Any:
+        """The largest absolute value in the interval."""
+        return abs(self.bounds).b
 
     @property
     def sign(self) -> int:
@@ -84,7 +90,7 @@ def enclosed_function(function: str, argument: Enclosure) -> Enclosure:
         raise ValueError(f"{function} of {argument.bounds}, which may not be positive")
     if function in ("exp", "sin", "cos") and not abs(argument.bounds) < LARGEST:
         raise ValueError(f"{function} of {argument.bounds}")
-    return Enclosure(getattr(mpmath.iv, function)(argument.bounds))
+    return Enclosure(getattr(INTERVALS, function)(argument.bounds))
 
 
 def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> Enclosure:
@@ -94,12 +100,18 @@ def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> 
         ZeroDivisionError: It may have a pole there.
         ValueError: A function in it may be undefined there.
     """
-    before, mpmath.iv.prec = mpmath.iv.prec, PRECISION
-    try:
-        numbers = {name: Enclosure.of(value) for name, value in point.items()}
-        return field.evaluate(element, numbers, Enclosure.of, enclosed_function)
-    finally:
-        mpmath.iv.prec = before
+    return enclosures(field, [element], point)[0]
+
+
+def enclosures(
+    field: Field, elements: Iterable[Element], point: Mapping[str, Fraction]
+) -> list[Enclosure]:
+    """Bounds of several elements at a point; errors as for one."""
+    numbers = {name: Enclosure.of(value) for name, value in point.items()}
+    factors: dict[int, Enclosure] = {}
+    return [
+        field.evaluate(each, numbers, Enclosure.of, enclosed_function, factors) for each in elements
+    ]
 
 
 def witness_nonzero(
