@@ -26,11 +26,11 @@ from coadjoint.exact.witness import (
 Matrix = Sequence[Sequence[Element]]
 
 
-def witness_regular(field: Field, matrix: Matrix) -> Point | None:
-    """A point of the domain at which the determinant of a matrix is certainly not zero.
+def witness_regular(field: Field, *matrices: Matrix) -> Point | None:
+    """A point of the domain at which the determinants of matrices are certainly not zero.
 
     Returns:
-        Values of the symbols in the matrix; None where no point was found, which proves nothing.
+        Values of the symbols in the matrices; None where no point was found, which proves nothing.
 
     >>> field = Field(["x"], slots=1)
     >>> exp = field.call("exp", field["x"])
@@ -38,8 +38,8 @@ def witness_regular(field: Field, matrix: Matrix) -> Point | None:
     >>> witness_regular(field, [[exp, field.one], [field.one, exp]])
     {'x': Fraction(-3, 5)}
     """
-    for point, rows in _values(field, matrix):
-        if _pivots(rows, choose=True) == len(matrix):
+    for point, found in _values(field, matrices):
+        if all(_pivots(rows, choose=True) == len(rows) for rows in found):
             return point
     return None
 
@@ -54,23 +54,24 @@ def certain_minors(field: Field, matrix: Matrix) -> int:
     0
     """
     found = 0
-    for _, rows in _values(field, matrix):
+    for _, (rows,) in _values(field, [matrix]):
         found = max(found, _pivots(rows, choose=False))
         if found == len(matrix):
             break
     return found
 
 
-def _values(field: Field, matrix: Matrix) -> Iterator[tuple[Point, list[list[Enclosure]]]]:
-    """Points of the domain with bounds of the entries."""
-    entries = [entry for row in matrix for entry in row]
+def _values(
+    field: Field, matrices: Sequence[Matrix]
+) -> Iterator[tuple[Point, list[list[list[Enclosure]]]]]:
+    """Points of the domain with bounds of the entries of matrices."""
+    entries = [entry for matrix in matrices for row in matrix for entry in row]
     names = frozenset[str]().union(*map(field.reach, entries))
-    size = len(matrix)
     for point in islice(points_inside(field, entries), TRIES):
         with suppress(*UNDEFINED):
-            values = enclosures(field, entries, point)
+            values = iter(enclosures(field, entries, point))
             shown = {name: value for name, value in point.items() if name in names}
-            yield shown, [values[n * size : (n + 1) * size] for n in range(size)]
+            yield shown, [[[next(values) for _ in row] for row in matrix] for matrix in matrices]
 
 
 def _pivots(rows: list[list[Enclosure]], *, choose: bool) -> int:

@@ -284,7 +284,7 @@ class Relations:
         if isinstance(factor, int):
             return 1 if factor > 0 else -1
         generators = self.ring.generators
-        return sign_of_sum(factor, lambda n: int(generators[n] in self._positive), strict=False)
+        return sign_of_sum(factor, lambda n: 2 * (generators[n] in self._positive), strict=False)
 
     def _note_positive(self, vector: Powers) -> None:
         """Remember that a product of powers of factors is positive."""

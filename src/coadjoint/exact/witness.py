@@ -153,6 +153,25 @@ def is_nonzero(field: Field, element: Element) -> bool:
     return field.function_free(element) or witness_nonzero(field, element) is not None
 
 
+def is_entire(field: Field, elements: Iterable[Element]) -> bool:
+    """Whether elements are quotients of functions that are analytic at all real points.
+
+    Then a numerator that is not zero at one point is not zero at almost every point. Roots and
+    logarithms are analytic on each connected part of their domain alone.
+    """
+    called = frozenset[str]().union(*map(field.functions_in, elements))
+    return all(
+        known.function in ("sin", "cos", "exp")
+        and not any(quotient.divisors for quotient in field.quotients(known.argument))
+        for known in map(field.adjoined.__getitem__, called)
+    )
+
+
+def point_text(point: Mapping[str, Fraction]) -> str:
+    """A point for people: ``m = 1, q = -3/5``."""
+    return ", ".join(f"{name} = {value}" for name, value in point.items())
+
+
 def points_inside(
     field: Field, elements: Iterable[Element], drawn: int = TRIES * DRAWN
 ) -> Iterator[Point]:
@@ -196,9 +215,9 @@ class Domain:
 
     @cached_property
     def positive(self) -> tuple[Element, ...]:
-        """What must be positive: arguments of roots and logarithms, inner ones first; conditions.
+        """What must be positive: symbols, arguments of roots and logarithms, and conditions.
 
-        A condition that allows 0 is asked for more, so that points lie inside.
+        Inner arguments come first. A condition that allows 0 is asked for more: points lie inside.
         """
         conditions = [condition.element for condition in self.field.conditions]
         reached = (*self.elements, *conditions)
@@ -208,7 +227,11 @@ class Domain:
             for name, known in self.field.adjoined.items()
             if name in called and known.function in ("sqrt", "log")
         ]
-        return (*inner, *conditions)
+        names = frozenset[str]().union(*map(self.field.reach, (*reached, *inner)))
+        signed = [
+            self.field[name] for name in self.field.names if name in names & self.field.positive
+        ]
+        return (*signed, *inner, *conditions)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -239,8 +262,7 @@ class Domain:
                     break
                 place = {name: place[name] + step[name] for name in self.names}
             point = {name: Fraction(x).limit_denominator(1000) for name, x in place.items()}
-            signed = all(x > 0 for name, x in point.items() if name in self.field.positive)
-            return point if signed and self.contains(point) else None
+            return point if self.contains(point) else None
         return None
 
     def _step(self, place: Mapping[str, float]) -> dict[str, float] | None:
