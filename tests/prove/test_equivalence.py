@@ -96,6 +96,29 @@ def test_the_sign_needs_the_declared_domain():
     assert found.statement.endswith("almost everywhere")
 
 
+@pytest.mark.parametrize(
+    ("potential", "verdict"),
+    [
+        ("-m*cos(q)", Verdict.PROVED),
+        ("m*sin(q/2)^2", Verdict.PROVED),
+        ("exp(2*q) + exp(-q)^2", Verdict.PROVED),
+        ("sqrt(1 + sin(q)^2) + cos(q)*cos(2*q)", Verdict.PROVED),
+        ("m*sin(q)", Verdict.REFUTED),
+        ("exp(2*q) + exp(-q)", Verdict.REFUTED),
+    ],
+)
+def test_even_potentials_have_a_mirror_symmetry(potential, verdict):
+    """The pendulum is its own mirror image, and not where the potential is not even."""
+    motion = spec(
+        MOTION.split("[lagrangian]", maxsplit=1)[0]
+        + f'[hamiltonian]\nh = "p^2/(2*m) + s^2/2 + {potential}"\n'
+        + '[transformations.mirror]\nmap = { q = "-q", p = "-p" }\n'
+        + '[claims]\nconserved = ["energy"]\n'
+    )
+    (found,) = [c for c in prove(motion).claims if c.kind == "transformation"]
+    assert found.verdict == verdict
+
+
 def test_roots_bind_the_proof_to_a_part_of_the_domain():
     """sqrt(q^2) + q is zero for q < 0 and 2 q for q > 0: the statement names the part."""
     found = invertible("m*(v^2 + (sqrt(q^2) + q)*w^2)/2")
