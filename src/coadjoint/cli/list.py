@@ -6,7 +6,6 @@ derived and nothing generated is run: what was proved is read from the certifica
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -14,8 +13,9 @@ from pathlib import Path
 import click
 
 from coadjoint.cli.output import json_option, print_json, print_table
-from coadjoint.cli.regenerate import folders, spec_paths, with_folders
+from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
 from coadjoint.errors import CoadjointError
+from coadjoint.files import read_certificate
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,7 @@ class Entry:
         routes: Its routes, the emitted one first.
         title: Free text of the spec.
         proved: Claims proved.
+        supported: Claims that are numerically supported and not proved.
         claims: Claims in all.
         state: ``verified``, ``spec changed``, ``files changed``, ``not generated`` or ``spec
             unreadable``.
@@ -38,6 +39,7 @@ class Entry:
     routes: tuple[str, ...]
     title: str
     proved: int
+    supported: int
     claims: int
     state: str
 
@@ -60,7 +62,7 @@ def command(derivations: Path | None, output: Path | None, as_json: bool) -> Non
                 str(entry.dimension or "?"),
                 ", ".join(entry.routes),
                 entry.title,
-                f"{entry.proved}/{entry.claims}",
+                proved_cell(entry.proved, entry.supported, entry.claims),
                 entry.state,
             )
             for entry in entries
@@ -72,35 +74,27 @@ def _entry(path: Path, output: Path) -> Entry:
     """What is known of one system."""
     from coadjoint.spec import read_spec
 
-    certificate = _certificate(output / path.stem / "certificate.json")
+    certificate = read_certificate(output / path.stem / "certificate.json")
     verdicts = [claim["verdict"] for claim in certificate.get("claims", [])]
-    proved = verdicts.count("proved")
+    counts = verdicts.count("proved"), verdicts.count("numerically supported"), len(verdicts)
     try:
         spec = read_spec(path)
     except CoadjointError:
-        return Entry(path.stem, 0, (), "", proved, len(verdicts), "spec unreadable")
+        return Entry(path.stem, 0, (), "", *counts, "spec unreadable")
     dimension = sum(len(variable.components) for variable in spec.state)
     state = _state(path, output)
-    return Entry(spec.name, dimension, spec.routes, spec.title, proved, len(verdicts), state)
+    return Entry(spec.name, dimension, spec.routes, spec.title, *counts, state)
 
 
 def _state(path: Path, output: Path) -> str:
     """How the generated files stand to the spec and to the manifest."""
     from coadjoint.render.compare import is_intact
-    from coadjoint.render.write import read_manifest
+    from coadjoint.render.ownership import read_manifest
+    from coadjoint.spec.reader import read_file
 
     entry = read_manifest(output)["systems"].get(path.stem)
     if entry is None:
         return "not generated"
-    if entry["spec_sha256"] != sha256(path.read_bytes()).hexdigest():
+    if entry["spec_sha256"] != sha256(read_file(str(path))).hexdigest():
         return "spec changed"
     return "verified" if is_intact(output, path.stem) else "files changed"
-
-
-def _certificate(path: Path) -> dict[str, list[dict[str, str]]]:
-    """A certificate as it stands in its file; empty if it is missing or damaged."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}

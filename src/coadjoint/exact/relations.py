@@ -52,6 +52,10 @@ EXPANDED = 64
 SPARE = 3
 
 
+#: What a term costs to rewrite, in products of two terms.
+WORK = 20
+
+
 class Relations:
     """Some functions of a field in independent ones.
 
@@ -376,7 +380,11 @@ def relations_of(field: Field, names: frozenset[str]) -> Relations | None:
     for asked in (frozenset(field.adjoined), names):
         if asked not in field.relations:
             field.relations[asked] = None  # for what the arguments themselves ask
-            field.relations[asked] = _found_relations(field, asked)
+            try:
+                field.relations[asked] = _found_relations(field, asked)
+            except BaseException:  # a budget that is spent says nothing of relations
+                del field.relations[asked]
+                raise
         if field.relations[asked] is None:
             return None
     known = field.relations[names]
@@ -402,6 +410,8 @@ def vanish_by_relations(field: Field, element: Element, called: frozenset[str]) 
             defined, its radicand is not negative.
     """
     known = relations_of(field, called)
+    if known is not None:
+        element.factors.spend(WORK * len(field.terms(element)))
     defined = [field[name] for name in sorted(called)]
     if known is None or witness_nonzero(field, element, defined, tries=1) is not None:
         return False
