@@ -182,13 +182,19 @@ def points_inside(
     Args:
         field: Where the elements live.
         elements: What should be defined.
-        drawn: How many points are drawn; there may be none inside the domain.
+        drawn: How many points are drawn; there may be none inside the domain. Elements that are
+            analytic everywhere are then looked at outside: what is not zero there is not zero at
+            almost every point.
     """
     domain = Domain(field, tuple(elements))
+    found = False
     for start in islice(_starts(field, domain.names), drawn):
         point = domain.moved_inside(start)
         if point is not None:
+            found = True
             yield point
+    if not found and is_entire(field, domain.elements):
+        yield from islice(_starts(field, domain.names), TRIES)
 
 
 def _starts(field: Field, names: Iterable[str]) -> Iterator[Point]:
