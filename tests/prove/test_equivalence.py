@@ -72,6 +72,7 @@ def test_what_may_be_zero_is_refused():
         "m*(v^2 + r*w^2)/2",
         "m*(v^2 + (r - 1)*w^2)/2",
         "m*(v^2 + w^2/sqrt(q))/2",
+        "m*(v^2 + (1 + q^2 + r^2 - 2*q*r*cos(q))*w^2)/2",
     ],
 )
 def test_a_determinant_with_a_sign_is_invertible_everywhere(lagrangian):

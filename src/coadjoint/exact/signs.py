@@ -16,27 +16,55 @@ from coadjoint.exact.element import Element
 from coadjoint.exact.factors import factors_of
 from coadjoint.exact.field import Field
 
+#: Terms of the largest sum in which terms are paired.
+LARGEST_SUM = 100
 #: What is known of a generator, by its place in the ring: 2 if it is positive, 1 if it is not
 #: negative, 0 otherwise.
 KnownSign = Callable[[int], int]
 
 
 def sign_of_sum(p: PolyElement, known: KnownSign, *, strict: bool) -> int:
-    """The common sign of the terms of a polynomial; 0 if there is none.
+    """The sign of a sum of positive or of negative terms; 0 if it is none.
+
+    A term without a sign of its own is made up for by two that have one, ``2*a*b`` by
+    ``a^2 + b^2``: a mean of positive numbers is not less than their geometric one.
 
     Args:
         p: Not zero.
         known: Signs of generators; of one that has none, even powers are not negative.
         strict: Whether the sum may nowhere be 0: one term at least is a product of positive ones.
     """
-    signs, certain = set[int](), False
-    for exponents, coefficient in p.terms():
-        odd = [n for n, e in enumerate(exponents) if e % 2]
-        if not all(known(n) for n in odd):
-            return 0
-        signs.add(1 if coefficient > 0 else -1)
-        certain = certain or all(known(n) == 2 for n, e in enumerate(exponents) if e)
-    return signs.pop() if len(signs) == 1 and (certain or not strict) else 0
+    for side in (1, -1):
+        left = _unpaired({e: side * c for e, c in p.terms()}, known)
+        if left is None:
+            continue
+        if not strict or any(
+            all(known(n) == 2 for n, e in enumerate(exponents) if e) for exponents in left
+        ):
+            return side
+    return 0
+
+
+def _unpaired(terms: dict[tuple[int, ...], Any], known: KnownSign) -> set[tuple[int, ...]] | None:
+    """The positive terms that are left when each of the others has its pair; None without one."""
+    positive = {
+        e: c
+        for e, c in terms.items()
+        if c > 0 and all(known(n) for n, power in enumerate(e) if power % 2)
+    }
+    others = {e: c for e, c in terms.items() if e not in positive}
+    if others and len(terms) > LARGEST_SUM:
+        return None
+    for mean, number in others.items():
+        for first in list(positive):
+            second = tuple(2 * m - e for m, e in zip(mean, first, strict=True))
+            pair = positive.get(first, 0) * positive.get(second, 0)
+            if first != second and 4 * pair >= number**2:
+                del positive[first], positive[second]
+                break
+        else:
+            return None
+    return set(positive)
 
 
 def sign(field: Field, element: Element, *, strict: bool = True) -> int:
