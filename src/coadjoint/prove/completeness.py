@@ -19,7 +19,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, independent, search_summands
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import BY_VALUES, MODULO, source_of_ranks
+from coadjoint.poisson.ranks import MODULO, NO_CHANCE, source_of_ranks
 from coadjoint.poisson.summands import restricted_algebra
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import casimir_defects
@@ -72,11 +72,9 @@ class Completeness:
         missing, a rank may be larger than at the points where it was taken, so that it is found.
         """
         method = f"{RANKS} {self.source}"
-        if self.source == BY_VALUES:
-            return Discovery(method, self.scope, "ranks of rounded values, not bounded")
         if self.known == self.expected:
             return Decision(Verdict.PROVED, method)
-        return Discovery(method, self.scope, LARGER)
+        return Discovery(method, self.scope, LARGER if self.source == MODULO else NO_CHANCE)
 
     @property
     def statement(self) -> str:

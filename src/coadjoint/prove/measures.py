@@ -36,7 +36,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
-from coadjoint.algebra.linear import PRIME, echelon_modulo, rational_vector
+from coadjoint.algebra.linear import echelon_modulo, rational_vector
 from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, Field
 from coadjoint.exact.element import remove_factor
@@ -182,10 +182,10 @@ class Measure:
             grown = False
             for condition in waiting:
                 row = [point.value(part) for part in condition.parts]
-                if _rank([*rows, row]) == len(rows):
+                if _rank([*rows, row], point.samples.prime) == len(rows):
                     continue
                 rows, kept, grown = [*rows, row], [*kept, condition], True
-                rank = _rank([known[:-1] for known in rows])
+                rank = _rank([known[:-1] for known in rows], point.samples.prime)
                 if rank < len(rows):
                     return kept[-1:] if not any(row[:-1]) else kept, rank
             waiting = [self.bracket(a, b) for a, b in combinations(kept, 2)] if grown else []
@@ -212,10 +212,12 @@ class Measure:
             slopes = [self._along(condition, factor) / factor for factor in factors]
             entries = [point.value(x) for x in (*slopes, condition.parts[-1])]
             rows.append({n: x for n, x in enumerate(entries) if x})
-        solved = echelon_modulo(rows)
+        prime = points[0].samples.prime
+        solved = echelon_modulo(rows, prime)
         if last in solved:
             return None
-        numbers = rational_vector({pivot: row.get(last, 0) for pivot, row in solved.items()})
+        vector = {pivot: row.get(last, 0) for pivot, row in solved.items()}
+        numbers = rational_vector(vector, prime)
         if numbers is None or any(x.denominator > DENOMINATOR for x in numbers.values()):
             return None
         return [(factors[n], x) for n, x in sorted(numbers.items()) if x]
@@ -275,7 +277,7 @@ def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
         return
     form, points = _form(motion), list(islice(samples.points(), POINTS))
     if any(points[0].value(second) for second in measure.curved):
-        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {PRIME}")
+        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
         yield (
             f"no invariant measure rho {form}: div X is not affine in the velocities",
             "measure",
@@ -293,7 +295,7 @@ def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
             statement = f"an invariant measure: {_written(motion, powers)}{form}"
             yield statement, "measure", lambda: proof
             return
-    ranks = f"ranks of brackets at a random point modulo {PRIME}"
+    ranks = f"ranks of brackets at a random point modulo {samples.prime}"
     yield (
         f"an invariant measure rho {form} exists near almost every point, its density no product "
         "of powers of minors of the mass matrix and their factors",
@@ -319,7 +321,7 @@ def _none(
     """That conditions contradict each other: certain where their fields can have no larger rank."""
     resting = not any(found[-1].parts[:-1])
     certain = resting or rank == len(measure.positions) - len(samples.unit)
-    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {PRIME}"
+    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {samples.prime}"
     decision = Decision(Verdict.PROVED if certain else Verdict.SUPPORTED, method)
     statement = (
         f"no invariant measure rho {form} for almost all parameters: what it asks for along "
@@ -381,6 +383,6 @@ def _name(motion: ConstrainedRates, factor: Element) -> str:
     return ""
 
 
-def _rank(rows: Sequence[Sequence[int]]) -> int:
+def _rank(rows: Sequence[Sequence[int]], prime: int) -> int:
     """The rank of lists of residues."""
-    return len(echelon_modulo({n: x for n, x in enumerate(row) if x} for row in rows))
+    return len(echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in rows), prime))
