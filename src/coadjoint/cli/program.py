@@ -138,11 +138,9 @@ def _flush() -> None:
 
 def _refused(error: OSError) -> OutputError | None:
     """What the operating system has refused, as an error that is none of ours; else None."""
-    try:
-        _flush()
-    except OutputError as refused:  # the help of a command, which click prints
-        return refused
-    return system_error(error)
+    refused = system_error(error)
+    # Files that are written have names; what has none is the output, e.g. of --help, by click.
+    return unwritten(error) if refused is not None and error.filename is None else refused
 
 
 def _open_closed_streams() -> None:
