@@ -52,6 +52,7 @@ class Row:
         dimension: Number of state components.
         routes: Routes followed, the emitted one first.
         proved: Claims proved.
+        supported: Claims that are numerically supported and not proved, as the spec accepts.
         claims: Claims in all.
         operations: Floating-point operations of ``rhs`` for one member.
         k: Largest error against 50 digits, in units of 2^-53 times the envelope.
@@ -64,6 +65,7 @@ class Row:
     dimension: int
     routes: tuple[str, ...]
     proved: int
+    supported: int
     claims: int
     operations: int
     k: float
@@ -213,7 +215,7 @@ def _is_row(record: Any) -> bool:
         isinstance(record[key], list) and all(isinstance(each, str) for each in record[key])
         for key in ("routes", "targets")
     )
-    counts = ("dimension", "proved", "claims", "operations", "k", "seconds")
+    counts = record.keys() - {"system", "routes", "targets"}
     numbers = all(isinstance(record[key], int | float) for key in counts)
     return texts and numbers and isinstance(record["system"], str)
 
@@ -370,6 +372,7 @@ def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
         dimension=len(rendered.programs["rhs"].state),
         routes=spec.routes,
         proved=rendered.certificate.count(Verdict.PROVED),
+        supported=rendered.certificate.count(Verdict.SUPPORTED),
         claims=len(rendered.certificate.claims),
         operations=sum(rendered.programs["rhs"].operation_counts().values()),
         k=report.k,

@@ -35,8 +35,11 @@ Keys of --format json:
   center                    its basis
   derived_series            dimensions of g, [g, g], ... until they repeat
   rank                      of the Lie-Poisson tensor, generic
-  casimirs                  {expected, found, missing}; missing says why, or ""
+  casimirs                  {expected, found, missing}; missing says what was
+                            searched, or ""
   claims                    [{statement, kind, verdict, method}]
+  findings                  [{statement, kind, method, scope, error}]: what was
+                            found without a proof; error says how likely it is wrong
 """
 
 
@@ -55,7 +58,7 @@ Keys of --format json:
     type=click.IntRange(1, 12),
     default=4,
     show_default=True,
-    help="Look for polynomial Casimirs up to this degree.",
+    help="Look for polynomial Casimirs up to this degree, or as far as can be searched.",
 )
 @click.option(
     "--generators",

@@ -16,7 +16,7 @@ import click
 
 from coadjoint.cli.arguments import seconds_option
 from coadjoint.cli.output import json_option, print_json, print_table
-from coadjoint.cli.regenerate import folders, spec_paths, with_folders
+from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
 from coadjoint.errors import CoadjointError
 from coadjoint.files import read_certificate
 
@@ -31,6 +31,7 @@ class Entry:
         routes: Its routes, the emitted one first.
         title: Free text of the spec.
         proved: Claims proved.
+        supported: Claims that are numerically supported and not proved.
         claims: Claims in all.
         state: ``verified``, ``spec changed``, ``files changed``, ``not generated`` or ``spec
             unreadable``.
@@ -41,6 +42,7 @@ class Entry:
     routes: tuple[str, ...]
     title: str
     proved: int
+    supported: int
     claims: int
     state: str
 
@@ -70,7 +72,7 @@ def command(
                 str(entry.dimension or "?"),
                 ", ".join(entry.routes),
                 entry.title,
-                f"{entry.proved}/{entry.claims}",
+                proved_cell(entry.proved, entry.supported, entry.claims),
                 entry.state,
             )
             for entry in entries
@@ -82,16 +84,15 @@ def _entry(path: Path, output: Path, declared: Mapping[str, Any] | CoadjointErro
     """What is known of one system."""
     certificate = read_certificate(output / path.stem / "certificate.json")
     verdicts = [claim["verdict"] for claim in certificate.get("claims", [])]
-    proved = verdicts.count("proved")
+    counts = verdicts.count("proved"), verdicts.count("numerically supported"), len(verdicts)
     if isinstance(declared, CoadjointError):
-        return Entry(path.stem, 0, (), "", proved, len(verdicts), "spec unreadable")
+        return Entry(path.stem, 0, (), "", *counts, "spec unreadable")
     return Entry(
         declared["name"],
         len(declared["state"]),
         tuple(declared["routes"]),
         declared["title"],
-        proved,
-        len(verdicts),
+        *counts,
         _state(path, output, declared["sha256"]),
     )
 

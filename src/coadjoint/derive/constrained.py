@@ -52,15 +52,16 @@ class ConstrainedMotion(Kinematics):
         """The linear equations of accelerations and multipliers, block by block.
 
         ``[[mass, A^T], [A, 0]] (eta', u) = (known, k)``, symmetric, with u minus the multipliers.
+        Entries that are identically zero are zero, so that every route finds the same blocks.
         """
-        field, found = self.frame.setting.field, self.distribution
+        field, found, value = self.frame.setting.field, self.distribution, self.decided.value
         rows, carried = self.of_kept()
         none = [field.zero] * len(rows)
         whole = [
-            *((*row, *(a[i] for a in rows)) for i, row in enumerate(mass)),
+            *((*map(value, row), *(a[i] for a in rows)) for i, row in enumerate(mass)),
             *((*row, *none) for row in rows),
         ]
-        sides = [*known, *carried]
+        sides = [*map(value, known), *map(value, carried)]
         names = [
             *map(rate_name, found.independent),
             *map(multiplier_name, range(len(rows))),
@@ -141,7 +142,7 @@ def emission(
     solves = motion.solves(mass, known)
     for solve in solves:
         _check_regular(motion, solve, definitions)
-    solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    solved = [line for solve in solves for line in solve_in_kernel(field, solve, motion.decided)]
     moving = dict(zip(motion.distribution.independent, motion.accelerations, strict=True))
     moving |= motion.position_rates
     rates = tuple(moving[name] for name in setting.state)
@@ -154,7 +155,7 @@ def emission(
         *section_momenta(motion.distribution, lagrangian),
     ]
     return Exact(
-        (*definitions, *solved, *reactions),
+        (*definitions, *solved, *motion.computed(reactions)),
         rates,
         energy,
         observables(setting, energy, along),
