@@ -20,8 +20,8 @@ from typing import Any
 
 from coadjoint import limits
 from coadjoint.build.cache import cache_folder, replace_file
-from coadjoint.build.compiler import find_compiler
-from coadjoint.errors import CoadjointError, CompilerError, DriftError, SpecError
+from coadjoint.build.compiler import compiler_version
+from coadjoint.errors import CoadjointError, DriftError, SpecError
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
 from coadjoint.render.write import (
@@ -94,11 +94,12 @@ class _Source:
 
     @property
     def fingerprint(self) -> str:
-        """Hash of all that the verified output depends on, the compiler included."""
-        try:
-            compiler = find_compiler().version
-        except CompilerError:
-            compiler = "none"
+        """Hash of all that the verified output depends on, the compiler included.
+
+        Raises:
+            CompilerError: It does not work, which is said once, before any system is worked on.
+        """
+        compiler = compiler_version()
         engine = engine_fingerprint()
         return digest({"engine": engine, "compiler": compiler, "spec": [self.name, self.sha256]})
 
@@ -275,6 +276,7 @@ def _build_all(
     """Records of the systems that passed, and errors of the others."""
     records: dict[str, dict[str, Any]] = {}
     failures: dict[str, CoadjointError] = {}
+    compiler_version()  # one that hangs is found out here, not in every child
 
     def run(source: _Source) -> None:
         def report(stage: str, done: int, total: int) -> None:
