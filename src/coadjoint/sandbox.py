@@ -34,7 +34,7 @@ from coadjoint.errors import (
     from_record,
     system_error,
 )
-from coadjoint.limits import WALL_FACTOR
+from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
 
 #: Called with stage, number of stages done, number of stages.
 Progress = Callable[[str, int, int], None]
@@ -100,7 +100,8 @@ def run_bounded(
         memory: Limit of address space, bytes.
         on_progress: Told what the function reports through `report_progress`.
         children: Where to note the child while it runs.
-        wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``.
+        wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``, and what a
+            compiler may take.
         subject: What it is about, for messages: the path of a spec. By default the function.
 
     Returns:
@@ -118,7 +119,7 @@ def run_bounded(
     task = _Task(
         subject,
         _processor_limit(seconds),
-        WALL_FACTOR * seconds if wall is None else wall,
+        WALL_FACTOR * seconds + COMPILE_WALL_SECONDS if wall is None else wall,
         memory,
     )
 
