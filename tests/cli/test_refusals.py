@@ -192,12 +192,11 @@ def test_a_damaged_file_is_no_fault_of_ours_and_heals(folder, run):
     assert run("regenerate").exit_code == 0
     paths = [folder / "generated" / name for name in ("body/certificate.json", "manifest.json")]
     good = [path.read_bytes() for path in paths]
-    for damage in DAMAGES[:3]:
-        for path in paths:
+    for damages in (("pipe", "folder"), (DAMAGES[2], DAMAGES[2])):
+        for path, damage in zip(paths, damages, strict=True):
             spoil(path, damage)
         (entry,) = json.loads(run("list", "--json").stdout)
         assert entry["state"] == "not generated"
-        assert run("doctor").exit_code == 1
         assert run("regenerate").exit_code == 0
         assert [path.read_bytes() for path in paths] == good
     for damage in DAMAGES[3:]:

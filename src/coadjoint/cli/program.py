@@ -16,6 +16,7 @@ that ``coadjoint --help`` loads click and nothing else. Read next: `coadjoint.cl
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
@@ -140,7 +141,8 @@ def _refused(error: OSError) -> OutputError | None:
     """What the operating system has refused, as an error that is none of ours; else None."""
     refused = system_error(error)
     # Files that are written have names; what has none is the output, e.g. of --help, by click.
-    return unwritten(error) if refused is not None and error.filename is None else refused
+    nameless = error.filename is None and error.errno != errno.ENOENT
+    return unwritten(error) if refused is not None and nameless else refused
 
 
 def _open_closed_streams() -> None:
