@@ -245,18 +245,20 @@ def _solved(first: Equations) -> list[Element]:
 
 
 def _same_solves(first: Equations, other: Equations) -> list[Element]:
-    """Differences of the linear equations of two routes, and of the rates they do not solve for.
+    """Differences of the linear equations of two routes, and of the rates.
 
     The equations are compared entry by entry, whatever blocks each route has found in them.
     """
     one, two = _linear_equations(first), _linear_equations(other)
-    zero = first.setting.field.zero
+    field = first.setting.field
+    defects = [one.get(at, field.zero) - two.get(at, field.zero) for at in {**one, **two}]
     solved = {name for solve in first.exact.solves for name in solve.names}
-    rates = zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True)
-    return [
-        *(one.get(place, zero) - two.get(place, zero) for place in {**one, **two}),
-        *(first.closed(a) - other.closed(b) for x, a, b in rates if rate_name(x) not in solved),
-    ]
+    for x, a, b in zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True):
+        if rate_name(x) in solved:  # each is what its own equations are solved for
+            defects += [a - field[rate_name(x)], b - field[rate_name(x)]]
+        else:
+            defects.append(first.closed(a) - other.closed(b))
+    return defects
 
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
