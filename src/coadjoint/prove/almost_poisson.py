@@ -38,13 +38,13 @@ from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import for_parameters, is_entire, nonzero_at
 from coadjoint.prove.identities import antisymmetry_defects
 from coadjoint.prove.integrability import Basis
+from coadjoint.prove.points import Points
 from coadjoint.prove.zero import (
     DIGITS,
     NORMAL_FORM,
     Decision,
     Examined,
     decide_zero,
-    random_points,
 )
 
 Pair = tuple[int, int]
@@ -154,11 +154,9 @@ class ReducedBracket:
     def defect_somewhere(self) -> tuple[Triple, Decision] | None:
         """A triple whose Jacobi defect is not zero at some point; None if none is found."""
         entries = [e for row in (*self.tensor, *self.turn) for e in row]
-        present = frozenset[str]().union(*map(self.field.reach, entries))
-        names = [name for name in self.field.names if name in present]
         plain = all(map(self.field.function_free, entries))
-        for point in islice(random_points(names, self.field.positive), TRIED):
-            with suppress(ZeroDivisionError, ValueError):
+        for point in islice(Points(self.field, entries), TRIED):
+            with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):
                 for triple, value in self._defects_at(point, plain).items():
                     if value:
                         text = str(value) if plain else mpmath.nstr(mpmath.mpf(value.mid), 15)
