@@ -22,7 +22,7 @@ from coadjoint.derive.structure import momentum_algebra
 from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, Region
-from coadjoint.prove.almost_poisson import about_reduced_bracket
+from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
 from coadjoint.prove.candidates import about_candidates, known_integrals
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
@@ -138,6 +138,7 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
                     first.spec, ("claims", "conserved", place), claimed, motion.field
                 )
         yield from about_momenta(motion)
+        yield from about_reduced_bracket(motion)
         yield from _searched(motion, _emitted(first))
         return
     yield from _about_bracket(first)
@@ -155,7 +156,7 @@ def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iter
     """What is found out about a constrained motion, each search with a budget of its own."""
     searches: dict[tuple[str, str], Iterator[Examined]] = {
         ("integrability", "the growth vector"): about_integrability(motion.equations),
-        ("bracket", "the bracket of the reduced momenta"): about_reduced_bracket(motion),
+        ("jacobi", "the Jacobi identity of the reduced bracket"): about_reduced_jacobi(motion),
         ("transformation", "the reversal of time"): about_reversal(motion),
         ("integrals", "integrals"): _integrals(motion, emitted),
         ("measure", "invariant measures"): about_measure(motion),
