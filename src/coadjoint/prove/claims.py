@@ -288,8 +288,8 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         if decide().verdict is Verdict.PROVED:
             proved += first.setting.components(casimir)
     if tensor is not None:
-        searched = _about_completeness(first, proved)
-        yield from within_budget(field, "casimir", "Casimirs", searched)
+        search = _about_completeness(first, proved)
+        yield from within_budget(field, "casimir", "Casimirs", search)
     for place, claim in enumerate(spec.conserved):
         claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
         yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)

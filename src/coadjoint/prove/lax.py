@@ -25,7 +25,9 @@ from coadjoint.derive.pairs import LaxPair, lax_equations, text_of_entry
 from coadjoint.exact import Element
 from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.completeness import ALMOST
 from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.findings import for_parameters
 from coadjoint.prove.identities import drift
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
@@ -112,7 +114,7 @@ def _about_integrals(
 
 
 def _rank(first: Equations, functions: Sequence[Element]) -> int:
-    """How many of some functions are certainly independent at almost every point."""
+    """How many of some functions are independent at almost every point."""
     rows = [slope_row(first.setting, function) for function in functions]
     return generic_rank(first.setting.field, rows)
 
@@ -120,19 +122,21 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
 def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Discovery:
     """Every coefficient depends on what is emitted, and nothing of that is there in vain.
 
-    That what is emitted is independent is certain. A rank from above is not.
+    That the emitted ones are independent is certain, that the others depend on them is not.
     """
     emitted = dict(first.exact.observables)
     known = known_integrals(first.setting)
     before = _rank(first, known)
     known += [emitted[name] for name, _ in found.named]
     own = _rank(first, known)
-    everything = [*known, *(each.value for each in found.coefficients)]
-    together = _rank(first, everything)
+    values = [each.value for each in found.coefficients]
+    together = _rank(first, [*known, *values])
     if own == together == before + len(found.named):
-        rows, field = [slope_row(first.setting, each) for each in everything], first.setting.field
-        source = source_of_ranks(field, (rows, together))
-        return Discovery(f"rank of the gradients {source}", "", error_of_ranks(field, rows))
+        gradients = [slope_row(first.setting, f) for f in (*known, *values)]
+        source = source_of_ranks(first.setting.field, (gradients, own))
+        error = error_of_ranks(first.setting.field, gradients)
+        scope = ALMOST + for_parameters(first.setting, [*known, *values])
+        return Discovery(f"rank of the gradients {source}", scope, error)
     return Decision(
         Verdict.REFUTED,
         f"gradients of rank {own}, with all coefficients of rank {together}",
