@@ -242,7 +242,7 @@ class CandidateSearch:
         return [self.field.normal(self.field[name] - root) for name, root in allowed]
 
     def _holds(self, relation: Element) -> bool:
-        """Whether a relation holds at points, as all of these do unless a solution has lost some."""
+        """Whether a relation holds at points; what does not is certainly none."""
         return not any(point.value(relation) for point in self.points(SPARE))
 
     def _terms(self, element: Element) -> Terms | None:
