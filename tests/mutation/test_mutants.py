@@ -104,7 +104,9 @@ def mutate(folder, mutant):
 
 
 def judges_of(mutant):
-    """The tests that judge a mutant; the book alone those of every run."""
+    """The tests that judge a mutant: its own, else the book alone in every run."""
+    if mutant.tests:
+        return mutant.tests
     if mutant.always:
         return (EQUATIONS,)
     return next(tests for start, tests in JUDGES.items() if mutant.file.startswith(start))

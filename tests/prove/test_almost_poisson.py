@@ -3,11 +3,16 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
 
 import pytest
 
 from coadjoint.prove import Verdict
-from coadjoint.prove.almost_poisson import ReducedBracket, about_reduced_bracket
+from coadjoint.prove.almost_poisson import (
+    ReducedBracket,
+    about_reduced_bracket,
+    about_reduced_jacobi,
+)
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Decision, decide_zero
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
@@ -16,7 +21,9 @@ from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived,
 def examined(rates):
     """Every claim about the bracket with its decision."""
     found = {}
-    for statement, kind, examine in about_reduced_bracket(rates):
+    for statement, kind, examine in chain(
+        about_reduced_bracket(rates), about_reduced_jacobi(rates)
+    ):
         result = examine()
         decided = result if isinstance(result, Decision) else decide_zero(result, rates.field)
         found[statement] = (kind, decided.verdict)

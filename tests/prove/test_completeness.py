@@ -330,6 +330,24 @@ l = "{function}(x)*v^2/2"
     assert none.method.endswith("at a real point, with bounds that exclude zero")
 
 
+@pytest.mark.parametrize("function", ["exp(x)", "log(x)", "sqrt(3)*x", "sqrt(x^2 + 7)"])
+def test_ranks_with_functions_are_proved_by_bounds(function):
+    """A mass that is a function of the place leaves the plane of x and p without a Casimir."""
+    text = f"""
+title = "a mass that depends on the place"
+routes = ["euler-lagrange"]
+[variables]
+x = {{ role = "coordinate" }}
+v = {{ role = "velocity", of = "x" }}
+[lagrangian]
+l = "{function}*v^2/2"
+"""
+    certificate = prove(spec(text))
+    start = "there are no Casimirs but constants"
+    (none,) = (claim for claim in certificate.claims if claim.statement.startswith(start))
+    assert none.verdict.value == "proved"
+
+
 @pytest.mark.parametrize("entry", ["log(x - 2)", "sqrt(x - 2)*sqrt(3)", "log(x - 2)*exp(-x)"])
 def test_ranks_are_taken_inside_the_domain(entry):
     """{x, y} = log(x - 2) with x > 3 is defined far from the numbers near 1, and has rank two."""

@@ -19,7 +19,7 @@ from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Condition, Element, Field
+from coadjoint.exact import Condition, Element, Field, Region
 from coadjoint.spec import Formula, Spec, tree
 from coadjoint.spec.components import FORMS
 from coadjoint.spec.constrained import Condition as Inequality
@@ -240,6 +240,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         more += 2
     room = _function_calls(spec) * (1 + more)
     field = Field([*names, *symbols], room, positive)
+    parameters = frozenset(name for p in spec.parameters for name in p.components)
+    field.region = Region(parameters, _defaults(quantities))
     values: dict[str, Quantity] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = whole(quantity, values)
@@ -273,6 +275,15 @@ def _conditions(setting: Setting) -> tuple[Condition, ...]:
         value = left - right if each.sign.startswith(">") else right - left
         found.append(Condition(value, strict=not each.sign.endswith("=")))
     return tuple(found)
+
+
+def _defaults(quantities: Sequence[Variable | Parameter]) -> dict[str, Fraction]:
+    """The default of each component that has one."""
+    return {
+        name: value
+        for each in quantities
+        for name, value in zip(each.components, each.default or (), strict=False)
+    }
 
 
 def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from fractions import Fraction
 from functools import partial
 from itertools import islice
@@ -30,7 +30,7 @@ import mpmath
 from coadjoint.algebra.linear import PRIME, primes, rank_modulo
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.exact.witness import PRECISION, UNDEFINED, Enclosure, enclosure, points_inside
+from coadjoint.exact.witness import UNDEFINED, Enclosure, enclosure, points_inside
 
 #: Points at which a rank is taken; the largest counts.
 POINTS = 2
@@ -236,9 +236,7 @@ def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
         with suppress(*UNDEFINED):
             values = [{j: enclosure(field, e, point) for j, e in row.items()} for row in rows]
             found = True
-            with _precision():
-                places = _independent(values)
-            yield places
+            yield _independent(values)
     if not found:
         entry = next(e for e in _entries(rows) if not field.function_free(e))
         text = element_text(field, entry)
@@ -278,16 +276,6 @@ def _largest(row: Mapping[int, Enclosure]) -> int | None:
     """The place of the entry that is farthest from zero; None if all may be zero."""
     certain = {column: abs(value.bounds.mid) for column, value in row.items() if value.sign}
     return max(certain, key=lambda column: mpmath.mpf(certain[column].a), default=None)
-
-
-@contextmanager
-def _precision() -> Iterator[None]:
-    """The precision of bounds."""
-    before, mpmath.iv.prec = mpmath.iv.prec, PRECISION
-    try:
-        yield
-    finally:
-        mpmath.iv.prec = before
 
 
 def _count(places: Sequence[int]) -> int:

@@ -21,6 +21,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, Field
+from coadjoint.exact.witness import is_nonzero
 from coadjoint.poisson.ranks import independent_rows
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST, IN_PART
@@ -56,7 +57,7 @@ class Basis:
         for _, residual in self.found.kept:
             value = field.substitute(self._linear(residual), known)
             name = next(
-                n for n in self.found.independent if not field.is_zero(field.derivative(value, n))
+                n for n in self.found.independent if is_nonzero(field, field.derivative(value, n))
             )
             rest = field.substitute(value, {name: field.zero})
             root = -rest / field.derivative(value, name)

@@ -201,12 +201,22 @@ class Samples:
 
     @cached_property
     def where(self) -> Ideal:
-        """The relations that hold at the points: kept constraints and the lengths of vectors."""
+        """The relations that hold at the points: kept constraints and the lengths of vectors.
+
+        With the numbers of the parameters, where these are given.
+        """
         kept = self.motion.where
         lengths = [self.squared(each) - 1 for each in self.unit]
         texts = [f"dot({each.name}, {each.name}) = 1" for each in self.unit]
         text = ", ".join(filter(None, (kept.text, *texts)))
-        return Ideal(self.field, [*kept.relations, *lengths], text)
+        if not self._given:
+            return kept.also(lengths, text)
+        numbers = {name: self.field.number(value) for name, value in self._given.items()}
+        relations, nonzero = (
+            [self.field.substitute(each, numbers) for each in elements]
+            for elements in (kept.relations, kept.nonzero)
+        )
+        return Ideal(self.field, [*relations, *lengths], text, nonzero=nonzero)
 
     def slopes(self, function: Element) -> Slopes:
         """The derivatives of a function by the state."""
