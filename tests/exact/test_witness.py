@@ -1,12 +1,20 @@
 """Witness points: what is called nonzero is nonzero at a point, with bounds that exclude zero."""
 
+import random
 from fractions import Fraction
 
 import mpmath
 import pytest
 
 from coadjoint.exact import Condition, Field
-from coadjoint.exact.witness import Enclosure, enclosure, is_nonzero, points_inside, witness_nonzero
+from coadjoint.exact.witness import (
+    Enclosure,
+    enclosed_function,
+    enclosure,
+    is_nonzero,
+    points_inside,
+    witness_nonzero,
+)
 
 
 def hidden_zero(field):
@@ -48,6 +56,21 @@ def test_intervals_enclose_the_value():
         value = mpmath.sqrt(at) * mpmath.log(to) / (mpmath.sin(at) + to) - at**3
         assert mpmath.mpf(found.a) <= value <= mpmath.mpf(found.b)
         assert found.delta < 1e-50
+
+
+@pytest.mark.parametrize("function", ["sqrt", "sin", "cos", "exp", "log"])
+def test_bounds_of_functions_contain_their_values(function):
+    """At random rationals, and near multiples of pi/2, as mpmath says with 120 digits."""
+    source = random.Random(6)
+    with mpmath.workdps(120):
+        for n in range(60):
+            near = Fraction(int(n * mpmath.pi * 10**30 / 2), 10**30)
+            x = abs(source.choice([near, Fraction(source.randint(-900, 900), 77)]))
+            if not x:
+                continue
+            value = getattr(mpmath, function)(mpmath.mpf(x.numerator) / x.denominator)
+            low, high = enclosed_function(function, Enclosure.of(x)).bounds._mpi_
+            assert mpmath.make_mpf(low) <= value <= mpmath.make_mpf(high)
 
 
 def test_a_pole_is_no_value():
