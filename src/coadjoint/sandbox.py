@@ -329,7 +329,7 @@ def child() -> None:
 
 def _described(error: Exception, request: dict[str, Any]) -> CoadjointError:
     """An exception that is none of ours, as one; called where it is handled."""
-    if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+    if _is_want_of_memory(error):
         memory: int = request["memory"]
         message = f"more than {memory // 2**20} MiB of memory were needed. Simplify the spec."
         return ResourceError(f"{request['subject']}: {message}", limit=memory)
@@ -338,6 +338,15 @@ def _described(error: Exception, request: dict[str, Any]) -> CoadjointError:
         return refused
     message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."
     return InternalError(message, traceback=traceback.format_exc())
+
+
+def _is_want_of_memory(error: Exception) -> bool:
+    """Whether memory was refused, to Python, by the system, or to a library that was to load."""
+    if isinstance(error, ImportError):
+        return "failed to map segment" in str(error) or "annot allocate memory" in str(error)
+    # A SystemError comes from libraries in C that do not look what they were given.
+    refused = isinstance(error, MemoryError | SystemError)
+    return refused or getattr(error, "errno", None) == errno.ENOMEM
 
 
 def _function(target: str) -> Callable[[Any], Any]:
