@@ -6,7 +6,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from coadjoint.exact import Condition, Field
+from coadjoint.exact import Condition, Field, Region
 from coadjoint.exact.witness import (
     Enclosure,
     enclosed_function,
@@ -145,3 +145,20 @@ def test_an_empty_domain_hides_no_analytic_function():
     assert witness_nonzero(field, x - 1)["x"] != 1
     assert witness_nonzero(field, field.call("exp", x) - 1)
     assert witness_nonzero(field, field.call("sqrt", x) - 1) is None
+
+
+def test_defaults_lead_into_a_domain_that_is_hard_to_find():
+    """sin(50 x) > 0.9999 for x near 10^4: a default lies inside, and no step leads there."""
+    field = Field(["x", "y"], slots=3)
+    x = field["x"]
+    narrow = field.call("sin", 50 * x) - Fraction(9999, 10000)
+    inside = (narrow, 1 - (x - 10**4) ** 2)
+    element = field.sum(field.call("sqrt", each) for each in inside) * field["y"]
+    assert witness_nonzero(field, element) is None
+    default = next(
+        Fraction(10**7 + n, 1000)
+        for n in range(1000)
+        if mpmath.sin(50 * (mpmath.mpf(10**7 + n) / 1000)) > 0.99995
+    )
+    field.region = Region(defaults={"x": default})
+    assert abs(witness_nonzero(field, element)["x"] - 10**4) < 1
