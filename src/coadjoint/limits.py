@@ -92,10 +92,14 @@ WORKER_SECONDS = 60
 WALL_FACTOR = 20
 #: Bytes of memory that the derivation of one system may take.
 WORKER_BYTES = 2 * 1024**3
-#: Seconds that compiling one kernel may take.
+#: Seconds of processor time that compiling one kernel may take.
 COMPILE_SECONDS = 60
+#: Seconds of wall time after which a compiler hangs; a busy machine needs more than the processor.
+COMPILE_WALL_SECONDS = 240
 #: Bytes of memory that compiling one kernel may take.
 COMPILE_BYTES = 2 * 1024**3
+#: Bytes of the cache, beyond which what was not used for longest is removed.
+CACHE_BYTES = 256 * 1024**2
 
 # -- messages -------------------------------------------------------------------------------------
 

@@ -34,6 +34,10 @@ JUDGES = {
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",
     ),
+    "src/coadjoint/poisson/casimirs": (
+        "tests/poisson/test_casimirs.py",
+        "tests/prove/test_completeness.py",
+    ),
     "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
     "src/coadjoint/prove/charts": ("tests/prove/test_charts.py",),

@@ -12,8 +12,6 @@ from typing import Any
 
 import click
 
-from coadjoint import limits
-from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
 from coadjoint.cli.output import json_option, print_json, print_table, say
 
@@ -28,16 +26,9 @@ def command(system: str, seconds: int | None, as_json: bool) -> int:
     Jacobi identity, Casimirs, conserved quantities, and equality of the routes. The exit status is
     1 if a claim is refuted, or numerically supported where the spec does not accept that.
     """
-    from coadjoint.sandbox import run_bounded
+    from coadjoint.bounded import prove_bounded
 
-    path = str(spec_path(system))
-    record = run_bounded(
-        "coadjoint.cli.prove:certificate_record",
-        {"path": path},
-        seconds=allowed_seconds(seconds),
-        memory=limits.WORKER_BYTES,
-        subject=path,
-    )
+    record = prove_bounded(spec_path(system), seconds=seconds)
     if as_json:
         print_json(record)
     else:

@@ -13,8 +13,6 @@ from typing import Any
 
 import click
 
-from coadjoint import limits
-from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
 from coadjoint.cli.output import say, write_text
 
@@ -36,18 +34,10 @@ def command(
     system: str, route: str | None, form: str, output: Path | None, seconds: int | None
 ) -> None:
     """Show a derivation, step by step."""
+    from coadjoint.bounded import derive_bounded
     from coadjoint.render.document import render_document
-    from coadjoint.sandbox import run_bounded
 
-    path = str(spec_path(system))
-    record = run_bounded(
-        "coadjoint.cli.show:document_record",
-        {"path": path, "route": route},
-        seconds=allowed_seconds(seconds),
-        memory=limits.WORKER_BYTES,
-        subject=path,
-    )
-    text = render_document(record, form)
+    text = render_document(derive_bounded(spec_path(system), route, seconds=seconds), form)
     if output is None:
         say(text, end="")
     else:
