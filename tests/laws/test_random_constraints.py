@@ -24,6 +24,7 @@ a = { positive = true, default = 2 }
 b = { default = 3 }
 m = { positive = true, default = 4 }
 """
+FACTORS = ("1", "2", "-3", "a", "G1", "G2", "G3", "0")
 BODIES = ("dot(v, v)/2", "(a*v1^2 + a*v2^2 + m*v3^2)/2", "a*dot(v, v)/2 - b*G3")
 
 
