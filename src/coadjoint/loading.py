@@ -10,7 +10,7 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-from coadjoint.build.cache import cache_folder
+from coadjoint.build.cache import cache_folder, note_use
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, regenerate
 from coadjoint.solve.system import System, load_folder
@@ -35,4 +35,5 @@ def load(path: str | PathLike[str], *, progress: Progress = lambda *_: None) -> 
     outcome = regenerate([source], folder, progress=progress)
     for error in outcome.failures.values():
         raise error
+    note_use(folder)
     return load_folder(folder / source.stem)
