@@ -74,6 +74,10 @@ INVARIANT_TERMS = 25_000
 #: Velocities coupled by a kinetic energy that the kernel solves for: unrolled, twelve take 90
 #: intermediates, whose derivatives are most of a Jacobian.
 COUPLED_VELOCITIES = 12
+#: Work of one search whose result nobody claims, in operations of exact arithmetic, of which each
+#: takes 1 to 15 microseconds; the largest one of a shipped system, the Casimirs of so(8), takes
+#: 410 000. See `coadjoint.prove.searches`.
+SEARCH_WORK = 2_000_000
 #: Operations of one function after lowering.
 OPERATIONS = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
@@ -81,8 +85,11 @@ C_STATEMENTS = 1000
 
 # -- children -------------------------------------------------------------------------------------
 
-#: Seconds that the derivation of one system may take.
+#: Seconds of processor time that the derivation of one system may take, unless more are asked for.
 WORKER_SECONDS = 60
+#: Times as long that it may take by the clock: a machine that is busy with twenty tasks is no fault
+#: of a spec, and what waits for ever is ended.
+WALL_FACTOR = 20
 #: Bytes of memory that the derivation of one system may take.
 WORKER_BYTES = 2 * 1024**3
 #: Seconds of processor time that compiling one kernel may take.
@@ -93,3 +100,8 @@ COMPILE_WALL_SECONDS = 240
 COMPILE_BYTES = 2 * 1024**3
 #: Bytes of the cache, beyond which what was not used for longest is removed.
 CACHE_BYTES = 256 * 1024**2
+
+# -- messages -------------------------------------------------------------------------------------
+
+#: Rows of 80 columns that a message fills at the most: a screen.
+MESSAGE_ROWS = 24

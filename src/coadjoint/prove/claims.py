@@ -7,9 +7,9 @@ Read next: `coadjoint.prove.identities` for what must be zero, `coadjoint.prove.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache, partial
 from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
@@ -23,7 +23,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.prove.almost_poisson import about_reduced_bracket
 from coadjoint.prove.candidates import about_candidates, known_integrals
-from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints, keeps_energy
@@ -45,14 +45,18 @@ from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
 from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
+from coadjoint.prove.searches import within_budget
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
     NORMAL_FORM,
     NORMAL_FORM_WITH_FUNCTIONS,
     Decision,
+    Discovery,
     Examined,
+    claimed_by,
     decide_zero,
+    make_entry,
 )
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.model import Integral, SpatialMomentum
@@ -75,23 +79,18 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         setting = make_setting(spec)
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
     field = routes[0].setting.field
-    claims, start = [], perf_counter()
+    claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
         found = examine()
-        decision = found if isinstance(found, Decision) else decide_zero(found, field)
+        if not isinstance(found, Decision | Discovery):
+            found = decide_zero(found, field)
         seconds, start = perf_counter() - start, perf_counter()
-        claims.append(
-            Claim(
-                statement,
-                kind,
-                decision.verdict,
-                decision.method,
-                seconds,
-                decision.point,
-                decision.defect,
-            )
-        )
-    return Certificate(spec.name, tuple(claims))
+        entry = make_entry(statement, kind, found, seconds)
+        if isinstance(entry, Claim):
+            claims.append(entry)
+        else:
+            findings.append(entry)
+    return Certificate(spec.name, tuple(claims), tuple(findings))
 
 
 def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
@@ -103,15 +102,15 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from about_constraints(motion, routes[1:])
         yield from about_projection(first)
         yield from about_rolling(motion)
-        for claim in first.spec.conserved:
+        for place, claim in enumerate(first.spec.conserved):
             if _statement(claim) != "energy is conserved" or not keeps_energy(first):
-                yield _statement(claim), "conserved", partial(_constrained_integral, motion, claim)
-        yield from about_integrability(first)
-        yield from about_reduced_bracket(motion)
+                examine = partial(_constrained_integral, motion, claim)
+                claimed = [(_statement(claim), "conserved", examine)]
+                yield from claimed_by(
+                    first.spec, ("claims", "conserved", place), claimed, motion.field
+                )
         yield from about_momenta(motion)
-        yield from about_reversal(motion)
-        yield from about_candidates(motion, known_integrals(motion, _emitted(first)))
-        yield from about_measure(motion)
+        yield from _searched(motion, _emitted(first))
         return
     yield from _about_bracket(first)
     pulled = LegendreMap(first) if first.spec.lagrangian is not None else None
@@ -122,6 +121,24 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from _about_equality(first, other, pulled)
     yield from _about_motion(first)
     yield from about_pairs(routes)
+
+
+def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
+    """What is found out about a constrained motion, each search with a budget of its own."""
+    searches: dict[tuple[str, str], Iterator[Examined]] = {
+        ("integrability", "the growth vector"): about_integrability(motion.equations),
+        ("bracket", "the bracket of the reduced momenta"): about_reduced_bracket(motion),
+        ("transformation", "the reversal of time"): about_reversal(motion),
+        ("integrals", "integrals"): _integrals(motion, emitted),
+        ("measure", "invariant measures"): about_measure(motion),
+    }
+    for (kind, subject), examined in searches.items():
+        yield from within_budget(motion.field, kind, subject, examined)
+
+
+def _integrals(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
+    """The search for integrals; what is known already is part of its work."""
+    yield from about_candidates(motion, known_integrals(motion, emitted))
 
 
 def _about_algebra(first: Equations) -> Iterator[Examined]:
@@ -253,7 +270,7 @@ def _same_rates(first: Equations, other: Equations) -> list[Element]:
 
 def _about_motion(first: Equations) -> Iterator[Examined]:
     """The emitted motion: Hamiltonian form, energy, and the claims of the spec."""
-    spec = first.spec
+    spec, field = first.spec, first.setting.field
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
@@ -263,17 +280,20 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         )
     if energy is not None:
         yield "the energy is conserved", "conserved", partial(drift, first, energy)
-    for casimir in spec.casimirs:
-        yield (
-            f"{casimir.in_one_line} is a Casimir",
-            "casimir",
-            partial(_casimir, first, casimir),
-        )
+    proved = list[Element]()
+    for place, casimir in enumerate(spec.casimirs):
+        decide = cache(partial(_casimir, first, casimir))
+        examined = [(f"{casimir.in_one_line} is a Casimir", "casimir", decide)]
+        yield from claimed_by(spec, ("claims", "casimirs", place), examined, field)
+        if decide().verdict is Verdict.PROVED:
+            proved += first.setting.components(casimir)
     if tensor is not None:
-        yield from _about_completeness(first)
-    for claim in spec.conserved:
-        yield _statement(claim), "conserved", partial(_integral, first, claim)
-    yield from about_galilean(first)
+        searched = _about_completeness(first, proved)
+        yield from within_budget(field, "casimir", "Casimirs", searched)
+    for place, claim in enumerate(spec.conserved):
+        claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
+        yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)
+    yield from claimed_by(spec, ("claims", "galilean"), about_galilean(first), field)
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
         if seen.conserved:
@@ -297,10 +317,11 @@ def _drifts(first: Equations, parts: Sequence[Element]) -> list[Element]:
     return [rate for part in parts for rate in drift(first, part)]
 
 
-def _casimir(first: Equations, casimir: Formula) -> list[Element]:
-    """The brackets of all components of a claimed Casimir."""
+def _casimir(first: Equations, casimir: Formula) -> Decision:
+    """Whether all components of a claimed Casimir commute with the state."""
     parts = first.setting.components(casimir)
-    return [defect for part in parts for defect in casimir_defects(first, part)]
+    defects = [defect for part in parts for defect in casimir_defects(first, part)]
+    return decide_zero(defects, first.setting.field)
 
 
 def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision:
@@ -353,9 +374,9 @@ def _rates(first: Equations, formula: Formula) -> list[Element]:
     return _drifts(first, parts)
 
 
-def _about_completeness(first: Equations) -> Iterator[Examined]:
-    """Casimirs that the spec does not name, and whether these are all."""
-    known = completeness(first)
+def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator[Examined]:
+    """Casimirs beside those claimed and proved, and whether these are all."""
+    known = completeness(first, proved=proved)
     for casimir in known.found:
         yield (
             f"{described(first.setting.field, casimir)} is a Casimir",

@@ -9,7 +9,6 @@ computes.
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
@@ -20,6 +19,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 from coadjoint.errors import OutputError
+from coadjoint.files import read_certificate
 from coadjoint.solve.quantities import Bound, Quantities, Quantity
 
 if TYPE_CHECKING:
@@ -362,10 +362,11 @@ class System:
 
     @cached_property
     def certificate(self) -> Mapping[str, Any]:
-        """What was proved: ``certificate.json``, with title, source and docs of the spec."""
-        path = self.folder / "certificate.json"
-        found: dict[str, Any] = json.loads(path.read_text()) if path.is_file() else {}
-        return MappingProxyType(found)
+        """What was proved: ``certificate.json``, with title, source and docs of the spec.
+
+        Empty if the file is missing or damaged; `coadjoint doctor` and `coadjoint list` say so.
+        """
+        return MappingProxyType(read_certificate(self.folder / "certificate.json"))
 
     @property
     def title(self) -> str:
