@@ -22,6 +22,7 @@ from coadjoint.derive.observables import observables
 from coadjoint.derive.solver import Definition, Solve, solve_in_kernel
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.roots import lifted
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.poisson.ranks import generic_rank
 from coadjoint.spec.model import Section
@@ -149,6 +150,9 @@ def emission(
     xi = setting.elements(frame.velocities)
     momenta = field.gradient(lagrangian, frame.velocities)
     energy = field.sum(p * x for p, x in zip(momenta, xi, strict=True)) - lagrangian
+    closed = field.substitute(energy, motion.distribution.solved)
+    short = lifted(field, closed)  # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
     along = [
         *reduced_momenta(motion.distribution, lagrangian),

@@ -61,7 +61,7 @@ class Decided:
         self._definitions[name] = value
         if self.field.as_number(value) is not None:
             self.numbers[name] = value
-        if self._moves(value):
+        if self.moves(value):
             self._members.add(name)
         self._extend(name, value)
         return value
@@ -72,7 +72,7 @@ class Decided:
         if self.field.as_number(element) is not None:
             return element
         values = self._values(element)
-        moves = self._moves(element)
+        moves = self.moves(element)
         if not values or (any(x.value for x in values) and not (moves and len({*values}) == 1)):
             return element
         closed = self.closed(element)
@@ -99,7 +99,8 @@ class Decided:
             return None
         return self.field.normal(self.field.substitute(element, inner))
 
-    def _moves(self, element: Element) -> bool:
+    def moves(self, element: Element) -> bool:
+        """Whether an element depends on the member, through definitions too."""
         return bool(self.field.reach(element) & self._members)
 
     # -- points modulo a prime --------------------------------------------------------------

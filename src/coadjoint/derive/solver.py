@@ -146,43 +146,73 @@ class _Elimination:
         return self.lines
 
     def _eliminate(self, j: int) -> None:
-        """``d_j`` and ``y_j``, then what is divided by ``d_j``: column j of W, and ``y_j``."""
+        """``d_j``, then what is divided by it: column j of W, and ``y_j = b_j - w_jk z_k``."""
         place, before = self.solve.block[j], [k for k in range(j) if (j, k) in self._l]
         pivot = self._define(pivot_name(place), self._rest(j, j, before))
-        self._forward(j, before)
         for i in self._size[j + 1 :]:
+            name = column_name(self.solve.block[i], place)
             value = self.decided.value(self._rest(i, j, before))
             if value != 0:
-                name = column_name(self.solve.block[i], place)
                 leaf = _is_leaf(self.field, value)
-                self._w[i, j] = value if leaf else self._define(name, value)
+                self._w[i, j] = value if leaf else self._entry(name, value)
         below = [i for i in self._size[j + 1 :] if (i, j) in self._w]
+        taken = self.field.sum(self._w[j, k] * self._z[k] for k in before if k in self._z)
+        y = self.decided.value(self.solve.known[j] - taken)
+        whole = self._cancelled(y, place)
+        if whole is None and not _is_product(self.field, y):
+            y = self._define(forward_name(place), y)
         share = 1 / pivot
-        if len(below) + (j in self._y) > 1:
+        if len(below) + (whole is None) > 1:
             share = self._define(reciprocal_name(place), share)
         for i in below:
             name = factor_name(self.solve.block[i], place)
-            self._l[i, j] = self._define(name, self._w[i, j] * share)
-        if j in self._y:
-            self._z[j] = self._define(scaled_name(place), self._y[j] * share)
+            self._l[i, j] = self._entry(name, self._w[i, j] * share)
+        if y != 0:
+            self._z[j] = self._define(scaled_name(place), y * share if whole is None else whole)
+
+    def _cancelled(self, y: Element, place: int) -> Element | None:
+        """``y/d`` where that leaves no quotient, as of a mass that forces are multiples of."""
+        found = y / dict(self.lines)[pivot_name(place)]
+        return None if any(each.divisors for each in self.field.quotients(found)) else found
+
+    def _entry(self, name: str, value: Element) -> Element:
+        """An entry of W or L by its name, or by that of an entry it is up to its sign."""
+        value = self.decided.value(value)
+        if _is_leaf(self.field, value):
+            return self._define(name, value)
+        for known, other in self.lines:
+            if value in (other, -other):
+                same = self.field[known] if value == other else -self.field[known]
+                self._define(name, same)
+                return same
+        return self._define(name, value)
 
     def _rest(self, i: int, j: int, before: Sequence[int]) -> Element:
         """``a_ij`` without what the columns before j take: ``a_ij - w_ik l_jk``."""
         shared = (self._w[i, k] * self._l[j, k] for k in before if (i, k) in self._w)
         return self.solve.matrix[i][j] - self.field.sum(shared)
 
-    def _forward(self, j: int, before: Sequence[int]) -> None:
-        """``y_j = b_j - l_jk y_k``, unless it is zero."""
-        taken = self.field.sum(self._l[j, k] * self._y[k] for k in before if k in self._y)
-        value = self.decided.value(self.solve.known[j] - taken)
-        if value != 0:
-            self._y[j] = self._define(forward_name(self.solve.block[j]), value)
-
     def _define(self, name: str, value: Element) -> Element:
         """Write a line, and return what later lines read: a number, or the name."""
         value = self.decided.define(name, value)
         self.lines.append((name, value))
         return self.decided.numbers.get(name, self.field[name])
+
+
+def factors(
+    field: Field, solve: Solve, definitions: Mapping[str, Element]
+) -> dict[tuple[int, int], Element]:
+    """L below the diagonal, zeros left out, and one over D on it, as the definitions name them."""
+    found = {}
+    for i, row in enumerate(solve.block):
+        pivot, one = definitions[pivot_name(row)], reciprocal_name(row)
+        found[i, i] = field[one] if one in definitions else 1 / pivot
+        for k, column in enumerate(solve.block[:i]):
+            name = factor_name(row, column)
+            if name in definitions:
+                value = definitions[name]
+                found[i, k] = value if _is_leaf(field, value) else field[name]
+    return found
 
 
 def _is_leaf(field: Field, value: Element) -> bool:
@@ -193,10 +223,16 @@ def _is_leaf(field: Field, value: Element) -> bool:
     return len(names) == 1 and any(value in (field[name], -field[name]) for name in names)
 
 
+def _is_product(field: Field, value: Element) -> bool:
+    """Whether a value has no sum in it."""
+    divisors = [divisor for each in field.quotients(value) for divisor, _ in each.divisors]
+    return all(len(field.terms(part)) < 2 for part in (value, *divisors))
+
+
 def solution_defects(
     field: Field, solve: Solve, definitions: Mapping[str, Element]
 ) -> list[Element]:
-    """Entries of ``W - L D``, ``W L^T - A``, ``L y - b``, ``D z - y``, ``L^T x - z``.
+    """Entries of ``W - L D``, ``W L^T - A``, ``W z - b``, ``D z - y``, ``L^T x - z``.
 
     All are 0 for a solution. In each entry the name that is defined last is replaced by its
     definition, and reciprocals of pivots are: that is enough for a proof, and no closed form is
@@ -211,6 +247,9 @@ class _Defects:
     def __init__(self, field: Field, solve: Solve, definitions: Mapping[str, Element]) -> None:
         self.field, self.solve, self.definitions = field, solve, definitions
         self._size = range(len(solve.block))
+        own = {name for name in solver_names(solve.block) if name in definitions}
+        # entries that are others up to their sign, and pivots that are parameters
+        self._same = {name: v for name in own if _is_leaf(field, v := definitions[name])}
         ones = map(reciprocal_name, solve.block)
         self._ones = {name: definitions[name] for name in ones if name in definitions}
         self._d = [self._value(pivot_name(place)) for place in solve.block]
@@ -237,9 +276,7 @@ class _Defects:
     def entries(self) -> list[Element]:
         """All defects, row by row."""
         field, block, size = self.field, self.solve.block, self._size
-        y, z = (
-            [self._value(make(place)) for place in block] for make in (forward_name, scaled_name)
-        )
+        z = [self._value(scaled_name(place)) for place in block]
         x = [field[name] for name in self.solve.names]
         found = []
         for i in size:
@@ -250,17 +287,25 @@ class _Defects:
                 total = field.sum(self._w(i, k) * self._l(j, k) for k in size[: j + 1])
                 own = pivot_name(block[i]) if i == j else column_name(block[i], block[j])
                 found.append((own, total - self.solve.matrix[i][j]))
-            total = field.sum(self._l(i, k) * y[k] for k in size[: i + 1])
-            found.append((forward_name(block[i]), total - self.solve.known[i]))
-            found.append((scaled_name(block[i]), self._d[i] * z[i] - y[i]))
+            y, own = self._d[i] * z[i], scaled_name(block[i])
+            if forward_name(block[i]) in self.definitions:
+                y = field[forward_name(block[i])]
+                found.append((own, self._d[i] * z[i] - y))
+                own = forward_name(block[i])
+            before = field.sum(self._w(i, k) * z[k] for k in size[:i])
+            found.append((own, before + y - self.solve.known[i]))
             total = field.sum(self._l(k, i) * x[k] for k in size[i:])
             found.append((self.solve.names[i], total - z[i]))
         return [self._decided(last, defect) for last, defect in found]
 
     def _reduced(self, last: str, element: Element) -> Element:
         """An element with one name and the reciprocals replaced by their definitions."""
+        if last in self._same:
+            element = self.field.substitute(element, {last: self._same[last]})
+            last = next(iter(self.field.reach(self._same[last])), "")
         own = {last: self.definitions[last]} if last in self.definitions else {}
-        return self.field.substitute(self.field.substitute(element, own), self._ones)
+        put = self.field.substitute(self.field.substitute(element, own), self._ones)
+        return self.field.substitute(put, self._same)
 
     def _decided(self, last: str, defect: Element) -> Element:
         """Zero where the last definition shows it, or all of them do."""
