@@ -50,7 +50,7 @@ def rank_of(rows):
 
 def judge_count(motion, entry, claims, source):
     """Faults of a statement that counts; None if it counts nothing."""
-    text = entry["statement"]
+    text = " ".join((entry["statement"], entry.get("scope", ""), entry["method"]))
     if _ALL.search(text) or _SOME.search(text) or _NONE.search(text):
         return _casimirs(motion, text, claims, source) if motion.has_bracket else None
     found = _SPACE.search(text)

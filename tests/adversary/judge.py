@@ -19,7 +19,7 @@ from fractions import Fraction
 from itertools import islice
 
 from tests.adversary.counts import judge_count
-from tests.adversary.motion import Canonical, Motion, Restricted, Values, _PAIR, motion_of
+from tests.adversary.motion import PAIR, STEP, Motion, Restricted, Values, motion_of
 from tests.adversary.reader import Undefined, entries, mpf, number, read, subtract, value
 
 #: Points at which a claim that was not refuted is tried.
@@ -121,7 +121,7 @@ def statements(motion):
         statement = f"{_line(text)} is conserved" + (f" where {vanishing}" if where else "")
         found[statement] = conserved(motion, text, where)
     for pair, text in claims.get("brackets", {}).items():
-        one, two = _PAIR.fullmatch(pair.strip()).groups() if "(" not in pair else _halves(pair)
+        one, two = PAIR.fullmatch(pair.strip()).groups() if "(" not in pair else _halves(pair)
         statement = f"{{{_line(one)}, {_line(two)}}} = {_line(_text(text))}"
         found[statement] = bracket(motion, one, two, _text(text))
     for name, part in motion.table.get("transformations", {}).items():
@@ -381,10 +381,19 @@ class _Case:
         return found
 
     def worst(self, stated, point):
-        """The largest difference at a point; 0 if all are rounding."""
-        found = max(stated.differences(point), key=abs, default=mpf(0))
+        """The largest difference at a point; 0 if all are rounding.
+
+        Rounding depends on the step of the differences, a true difference does not.
+        """
+        motion, found = self._set(stated.where), stated.differences(point)
         size = 1 + max(map(abs, point.values()), default=mpf(0))
-        return found if abs(found) > stated.nothing * size**4 else mpf(0)
+        place = max(range(len(found)), key=lambda n: abs(found[n]), default=None)
+        if place is None or abs(found[place]) <= stated.nothing * size**4:
+            return mpf(0)
+        motion.with_step(STEP * 7)
+        again = stated.differences(point)[place]
+        motion.with_step(STEP)
+        return found[place] if abs(again - found[place]) <= abs(again) / 1000 else mpf(0)
 
     def refuted(self, stated, claim):
         """Judge a refutation by its point."""

@@ -35,7 +35,7 @@ STEP = mpf(10) ** -16
 ON_SET = mpf(10) ** -40
 #: Steps of Newton's method; it converges within ten where the set is smooth.
 STEPS = 16
-_PAIR = re.compile(r"\{(.*),(.*)\}")
+PAIR = re.compile(r"\{(.*),(.*)\}")
 _RELATION = re.compile(r"(.*?)(==|>=|<=|>|<)(.*)", re.DOTALL)
 
 
@@ -68,7 +68,7 @@ class Motion:
     has_bracket = False
 
     def __init__(self, table):
-        self.table, self._last = table, (None, None)
+        self.table, self.step, self._last = table, STEP, (None, None)
         self.variables = table["variables"]
         self.parameters = {
             name: component_names(name, part.get("shape", []))
@@ -197,17 +197,21 @@ class Motion:
 
     # -- derivatives ----------------------------------------------------------------------
 
-    def along(self, function, point, direction, step=STEP):
+    def along(self, function, point, direction, step=None):
         """Derivatives of the entries of a function of the point along a direction, by name."""
         size = max((abs(x) for x in direction.values()), default=0)
         if not size:
             return [mpf(0)] * len(function(point))
-        step = step / max(size, mpf(1))
+        step = (step or self.step) / max(size, mpf(1))
         ends = [
             function({**point, **{n: point[n] + s * x for n, x in direction.items()}})
             for s in (step, -step)
         ]
         return [(a - b) / (2 * step) for a, b in zip(*ends, strict=True)]
+
+    def with_step(self, step):
+        """Take differences over another step from now on, which forgets what was computed."""
+        self.step, self._last = step, (None, None)
 
     def gradient(self, function, point, names):
         """Derivatives of one number by names."""
@@ -425,7 +429,7 @@ class Declared(Motion):
             found[j][i] -= x
 
         for key, text in {**part.get("brackets", {}), **part.get("magnetic", {})}.items():
-            one, two = (each.strip() for each in _PAIR.fullmatch(key.strip()).groups())
+            one, two = (each.strip() for each in PAIR.fullmatch(key.strip()).groups())
             put(one, two, self.at(text, point)[0])
         for one, two in part.get("canonical", []):
             for a, b in zip(self._parts(one), self._parts(two), strict=True):
