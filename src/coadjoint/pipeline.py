@@ -31,7 +31,7 @@ from coadjoint.exact import Element
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
-from coadjoint.prove import Certificate, prove
+from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Parameter, Spec, Variable
@@ -81,7 +81,8 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
         check_inverse(first, program)
     progress("render")
     extra = {"certificate.json": certificate_json(spec, certificate)}
-    texts = render_system(kernel_context(first, programs), extra)
+    supported = certificate.count(Verdict.SUPPORTED)
+    texts = render_system(kernel_context(first, programs, supported), extra)
     return Rendered(first, certificate, programs, texts)
 
 
@@ -105,8 +106,16 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Repor
         return crosscheck(rendered.programs, rendered.texts, reference, system)
 
 
-def kernel_context(equations: Equations, programs: dict[str, Program]) -> KernelContext:
-    """What the generated files of a system say; of a spec's free text, nothing."""
+def kernel_context(
+    equations: Equations, programs: dict[str, Program], supported: int = 0
+) -> KernelContext:
+    """What the generated files of a system say; of a spec's free text, nothing.
+
+    Args:
+        equations: The emitted route.
+        programs: Its functions.
+        supported: How many claims are numerically supported and not proved.
+    """
     spec = equations.spec
     first, *others = spec.routes
     proved = [f"Proved equal to the route {route}." for route in others]
@@ -121,6 +130,7 @@ def kernel_context(equations: Equations, programs: dict[str, Program]) -> Kernel
         parameters=tuple(map(_quantity, spec.parameters)),
         observables=_observables(equations),
         programs=tuple(programs.values()),
+        supported=supported,
         reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
         domain=tuple(
             Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
@@ -286,6 +296,7 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         "casimirs": [formula.in_one_line for formula in spec.casimirs],
         "routes": list(spec.routes),
         "claims": certificate.as_record()["claims"],
+        "findings": certificate.as_record()["findings"],
     }
     if spec.definitions:  # the texts of casimirs and claims may hold them
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}

@@ -48,6 +48,7 @@ class Row:
         dimension: Number of state components.
         routes: Routes followed, the emitted one first.
         proved: Claims proved.
+        supported: Claims that are numerically supported and not proved, as the spec accepts.
         claims: Claims in all.
         operations: Floating-point operations of ``rhs`` for one member.
         k: Largest error against 50 digits, in units of 2^-53 times the envelope.
@@ -60,6 +61,7 @@ class Row:
     dimension: int
     routes: tuple[str, ...]
     proved: int
+    supported: int
     claims: int
     operations: int
     k: float
@@ -319,6 +321,7 @@ def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
         dimension=len(rendered.programs["rhs"].state),
         routes=spec.routes,
         proved=rendered.certificate.count(Verdict.PROVED),
+        supported=rendered.certificate.count(Verdict.SUPPORTED),
         claims=len(rendered.certificate.claims),
         operations=sum(rendered.programs["rhs"].operation_counts().values()),
         k=report.k,

@@ -13,7 +13,7 @@ from tests.specs import RIGID_BODY, spec
 SHAPED = RIGID_BODY.replace(
     'casimirs = ["dot(Pi, Pi)"]',
     'casimirs = ["rows(Pi, Pi)*Pi"]\n'
-    'conserved = ["twice", { integral = "spin", where = ["Pi1", "Pi2"] }]\n'
+    'conserved = ["twice", { claim = "spin", where = ["Pi1", "Pi2"] }]\n'
     "[definitions]\n"
     '"square(a)" = "dot(a, a)"\n'
     "[observables]\n"

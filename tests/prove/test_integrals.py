@@ -25,7 +25,7 @@ cubic = "Pi3*(Pi1^2 + Pi2^2) - 4*k*c*Pi1*Gamma3"
 [hamiltonian]
 h = "(Pi1^2 + Pi2^2)/(8*k) + Pi3^2/(2*k) + c*Gamma1"
 [claims]
-conserved = [{ integral = "cubic", where = ["dot(Pi, Gamma)"] }]
+conserved = [{ claim = "cubic", where = ["dot(Pi, Gamma)"] }]
 """
 
 
@@ -66,7 +66,7 @@ def test_a_spoiled_integral_is_refuted_at_a_point_of_the_level_set(change):
 
 def test_without_the_level_set_the_same_integral_is_refuted():
     """Chaplygin's integral is none of all motions."""
-    where = '{ integral = "cubic", where = ["dot(Pi, Gamma)"] }'
+    where = '{ claim = "cubic", where = ["dot(Pi, Gamma)"] }'
     (claim,) = verdicts(CHAPLYGIN, (where, '"cubic"'))
     assert claim.verdict is Verdict.REFUTED
     point = {name: Fraction(value) for name, value in claim.counterexample.items()}
@@ -83,7 +83,7 @@ def test_without_the_level_set_the_same_integral_is_refuted():
 )
 def test_the_motion_must_stay_on_the_level_set(where, holds):
     """Pi3 stands still where Pi1 = Pi2 = 0; where only Pi1 = 0, the motion goes elsewhere."""
-    claim = f'conserved = [{{ integral = "Pi3", where = {where} }}]'
+    claim = f'conserved = [{{ claim = "Pi3", where = {where} }}]'
     (found,) = verdicts(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
     assert found.verdict is (Verdict.PROVED if holds else Verdict.REFUTED)
     assert " = 0" in found.statement
@@ -91,7 +91,7 @@ def test_the_motion_must_stay_on_the_level_set(where, holds):
 
 def test_on_an_empty_level_set_nothing_is_proved():
     """Functions that never vanish together would let every claim pass."""
-    claim = 'conserved = [{ integral = "Pi3", where = ["Pi1", "Pi1 - 1"] }]'
+    claim = 'conserved = [{ claim = "Pi3", where = ["Pi1", "Pi1 - 1"] }]'
     (found,) = verdicts(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
     assert found.verdict is Verdict.REFUTED
     assert "Pi1 = 0, Pi1 - 1 = 0 holds nowhere" in found.method
@@ -99,7 +99,7 @@ def test_on_an_empty_level_set_nothing_is_proved():
 
 def test_a_level_set_that_is_linear_in_nothing_has_points_too():
     """Pi3 moves on the sphere Pi . Pi = 1, and the point that shows it lies there."""
-    claim = 'conserved = [{ integral = "Pi3", where = ["dot(Pi, Pi) - 1"] }]'
+    claim = 'conserved = [{ claim = "Pi3", where = ["dot(Pi, Pi) - 1"] }]'
     declared = spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
     (found,) = prove(declared).refuted
     length = sum(float(found.counterexample[f"Pi{n}"]) ** 2 for n in (1, 2, 3))
@@ -110,7 +110,7 @@ def test_a_level_set_that_is_linear_in_nothing_has_points_too():
 
 def test_what_no_point_refutes_is_refuted_by_its_remainder():
     """A level set without real points: the message has the remainder in a point's place."""
-    claim = 'conserved = [{ integral = "Pi3", where = ["dot(Pi, Pi) + 1"] }]'
+    claim = 'conserved = [{ claim = "Pi3", where = ["dot(Pi, Pi) + 1"] }]'
     declared = spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
     (found,) = prove(declared).refuted
     assert found.counterexample == {}
@@ -143,16 +143,16 @@ def test_a_vector_of_casimirs_is_one_claim_of_all():
 @pytest.mark.parametrize(
     ("claim", "key", "found", "said"),
     [
-        ('{ integral = "Pi9" }', "claims.conserved[1].integral", "Pi9", "not declared"),
+        ('{ claim = "Pi9" }', "claims.conserved[1].claim", "Pi9", "not declared"),
         (
-            '{ integral = "Pi3", where = ["Pi9"] }',
+            '{ claim = "Pi3", where = ["Pi9"] }',
             "claims.conserved[1].where[1]",
             "Pi9",
             "not declared",
         ),
-        ('{ integral = "Pi3", where = [] }', "claims.conserved[1].where", None, "at least 1 item"),
-        ('{ where = ["Pi1"] }', "claims.conserved[1]", "integral", "'integral' is missing"),
-        ('{ integral = "Pi3", when = ["Pi1"] }', "claims.conserved[1].when", "when", "'where'?"),
+        ('{ claim = "Pi3", where = [] }', "claims.conserved[1].where", None, "at least 1 item"),
+        ('{ where = ["Pi1"] }', "claims.conserved[1]", "claim", "'claim' is missing"),
+        ('{ claim = "Pi3", when = ["Pi1"] }', "claims.conserved[1].when", "when", "'where'?"),
         ("3", "claims.conserved[1]", 3, "a table"),
     ],
 )

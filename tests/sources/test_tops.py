@@ -356,7 +356,7 @@ SPOILED = {
     ),
     "Goryachev's integral everywhere": (
         "heavy_top_goryachev_chaplygin",
-        ('{ integral = "G", where = ["dot(Pi, Gamma)"] }', '"G"'),
+        ('{ claim = "G", where = ["dot(Pi, Gamma)"] }', '"G"'),
     ),
     "a top without symmetry": ("heavy_top_lagrange", ("I1*(Omega1^2 +", "I1*(2*Omega1^2 +")),
 }

@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 
 from coadjoint.cli.output import json_option, print_json, print_table
-from coadjoint.cli.regenerate import folders, spec_paths, with_folders
+from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
 from coadjoint.errors import CoadjointError
 
 
@@ -28,6 +28,7 @@ class Entry:
         routes: Its routes, the emitted one first.
         title: Free text of the spec.
         proved: Claims proved.
+        supported: Claims that are numerically supported and not proved.
         claims: Claims in all.
         state: ``verified``, ``spec changed``, ``files changed``, ``not generated`` or ``spec
             unreadable``.
@@ -38,6 +39,7 @@ class Entry:
     routes: tuple[str, ...]
     title: str
     proved: int
+    supported: int
     claims: int
     state: str
 
@@ -60,7 +62,7 @@ def command(derivations: Path | None, output: Path | None, as_json: bool) -> Non
                 str(entry.dimension or "?"),
                 ", ".join(entry.routes),
                 entry.title,
-                f"{entry.proved}/{entry.claims}",
+                proved_cell(entry.proved, entry.supported, entry.claims),
                 entry.state,
             )
             for entry in entries
@@ -74,14 +76,14 @@ def _entry(path: Path, output: Path) -> Entry:
 
     certificate = _certificate(output / path.stem / "certificate.json")
     verdicts = [claim["verdict"] for claim in certificate.get("claims", [])]
-    proved = verdicts.count("proved")
+    counts = verdicts.count("proved"), verdicts.count("numerically supported"), len(verdicts)
     try:
         spec = read_spec(path)
     except CoadjointError:
-        return Entry(path.stem, 0, (), "", proved, len(verdicts), "spec unreadable")
+        return Entry(path.stem, 0, (), "", *counts, "spec unreadable")
     dimension = sum(len(variable.components) for variable in spec.state)
     state = _state(path, output)
-    return Entry(spec.name, dimension, spec.routes, spec.title, proved, len(verdicts), state)
+    return Entry(spec.name, dimension, spec.routes, spec.title, *counts, state)
 
 
 def _state(path: Path, output: Path) -> str:

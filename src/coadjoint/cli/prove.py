@@ -1,4 +1,4 @@
-"""Command ``prove``: every claim about a system, proved or refuted.
+"""Command ``prove``: the verdict on every claim about a system, and what was found out about it.
 
 Comes in: a spec. Goes out: its certificate, with the time that each proof took, and a
 counter-example for what is false. Read next: `coadjoint.prove.claims`.
@@ -23,7 +23,8 @@ from coadjoint.cli.output import json_option, print_json, print_table
 def command(system: str, as_json: bool) -> int:
     """Prove every claim about a system, or refute it.
 
-    Jacobi identity, Casimirs, conserved quantities, and equality of the routes.
+    Jacobi identity, Casimirs, conserved quantities, and equality of the routes. The exit status is
+    1 if a claim is refuted, or numerically supported where the spec does not accept that.
     """
     from coadjoint.sandbox import run_bounded
 
@@ -37,44 +38,51 @@ def command(system: str, as_json: bool) -> int:
         print_json(record)
     else:
         _print(record)
-    for claim in _refuted(record):
-        click.echo(f"error: refuted: {claim['statement']}. {_refutation(claim)}", err=True)
-    return 1 if _refuted(record) else 0
+    for failure in record["failures"]:
+        click.echo(f"error: {failure}", err=True)
+    return 0 if record["holds"] else 1
 
 
 def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
     """The certificate of a spec as JSON values, times included; runs in a bounded child."""
     from coadjoint.prove import prove
+    from coadjoint.prove.certificate import failure_text
     from coadjoint.spec import read_spec
 
     certificate = prove(read_spec(Path(argument["path"])))
-    claims = [claim.as_record() | {"seconds": claim.seconds} for claim in certificate.claims]
-    return {"system": certificate.system, "holds": certificate.holds, "claims": claims}
+    entries = {
+        name: [entry.as_record() | {"seconds": entry.seconds} for entry in found]
+        for name, found in (("claims", certificate.claims), ("findings", certificate.findings))
+    }
+    return {
+        "system": certificate.system,
+        "holds": certificate.holds,
+        "failures": [failure_text(claim) for claim in certificate.failures],
+        **entries,
+    }
 
 
 def _print(record: Mapping[str, Any]) -> None:
-    """The certificate as a table."""
-    print_table(
-        ("verdict", "statement", "method", ">time"),
-        [
-            (
-                claim["verdict"],
-                claim["statement"],
-                claim["method"],
-                f"{claim['seconds'] * 1e3:.1f} ms",
-            )
-            for claim in record["claims"]
-        ],
-        title=f"Certificate of {record['system']}",
-    )
+    """The certificate as two tables: claims and findings."""
+    claims = [
+        (_verdict(claim), claim["statement"], claim["method"], _time(claim))
+        for claim in record["claims"]
+    ]
+    title = f"Certificate of {record['system']}"
+    print_table(("verdict", "statement", "method", ">time"), claims, title=title)
+    findings = [
+        (each["statement"], each["method"], each["scope"], each["error"] or "exact", _time(each))
+        for each in record["findings"]
+    ]
+    if findings:
+        print_table(("found", "method", "scope", "error", ">time"), findings)
 
 
-def _refuted(record: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """The claims that are false."""
-    return [claim for claim in record["claims"] if claim["verdict"] == "refuted"]
+def _verdict(claim: Mapping[str, Any]) -> str:
+    """The verdict, with the word of the spec on numerical support."""
+    accepted = {True: " (accepted)", False: " (not accepted)", None: ""}[claim.get("accepted")]
+    return str(claim["verdict"]) + accepted
 
 
-def _refutation(claim: Mapping[str, Any]) -> str:
-    """Where a claim fails, and by how much."""
-    point = ", ".join(f"{name} = {value}" for name, value in claim["counterexample"].items())
-    return f"At {point} the difference is {claim['defect']}; expected 0."
+def _time(entry: Mapping[str, Any]) -> str:
+    return f"{entry['seconds'] * 1e3:.1f} ms"

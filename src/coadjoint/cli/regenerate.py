@@ -152,12 +152,21 @@ def _cells(row: Row) -> tuple[str, ...]:
         row.system,
         str(row.dimension),
         ", ".join(row.routes),
-        f"{row.proved}/{row.claims}",
+        proved_cell(row.proved, row.supported, row.claims),
         str(row.operations),
         f"{row.k:.2f}",
         ", ".join(row.targets),
         f"{row.seconds:.1f} s" if row.fresh else "unchanged",
     )
+
+
+def proved_cell(proved: int, supported: int, claims: int) -> str:
+    """How many claims are proved of all, and how many are only supported.
+
+    >>> proved_cell(13, 1, 14)
+    '13/14 (1 supported)'
+    """
+    return f"{proved}/{claims}" + (f" ({supported} supported)" if supported else "")
 
 
 def _record(outcome: Outcome) -> dict[str, Any]:

@@ -4,9 +4,9 @@ SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
 `coadjoint.exact.element`, then `coadjoint.exact.field`.
 """
 
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import BudgetSpent, Element
 from coadjoint.exact.field import Field
 from coadjoint.exact.jets import JetField
 from coadjoint.exact.text import element_text
 
-__all__ = ["Element", "Field", "JetField", "element_text"]
+__all__ = ["BudgetSpent", "Element", "Field", "JetField", "element_text"]

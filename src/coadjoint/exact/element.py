@@ -12,6 +12,7 @@ Read next: `coadjoint.exact.field`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -20,6 +21,10 @@ from typing import Any
 
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement, PolyRing
+
+
+class BudgetSpent(Exception):  # noqa: N818 (no error: a search ends early)
+    """A computation inside `Factors.budget` took more work than it was given."""
 
 
 class Factors:
@@ -39,6 +44,37 @@ class Factors:
         self.monomial: list[bool] = []
         self._numbers: dict[PolyElement, int] = {}
         self._slopes: dict[tuple[int, int], PolyElement] = {}
+        self._left: int | None = None
+
+    @contextmanager
+    def budget(self, work: int) -> Iterator[None]:
+        """A block in which arithmetic ends after so much work.
+
+        Work is counted in products of two terms and in terms that are evaluated, about a
+        microsecond each, and not in seconds: a search ends at the same place on every machine.
+
+        Raises:
+            BudgetSpent: In the block, when the work is done.
+        """
+        outer = self._left
+        self._left = work if outer is None else min(work, outer)
+        given = self._left
+        try:
+            yield
+        finally:
+            self._left = None if outer is None else outer - (given - self._left)
+
+    def spend(self, work: int) -> None:
+        """Count work that is about to be done.
+
+        Raises:
+            BudgetSpent: There is a budget, and this is more than is left of it.
+        """
+        if self._left is not None:
+            if work > self._left:
+                self._left = 0
+                raise BudgetSpent
+            self._left -= work
 
     def split(self, p: PolyElement) -> tuple[Any, dict[int, int]]:
         """``p = constant * product of known factors``, registering what is new.
@@ -139,7 +175,11 @@ class Quotient:
             return self.numer
         missing = {n: e - self.powers.get(n, 0) for n, e in common.items()}
         missing = {n: e for n, e in missing.items() if e}
-        return self.numer * factors.product(missing) if missing else self.numer
+        if not missing:
+            return self.numer
+        product = factors.product(missing)
+        factors.spend(len(self.numer) * len(product))
+        return self.numer * product
 
     def order(self) -> tuple[Any, ...]:
         """Where it stands in a sum: by its leading monomial, the greatest first."""
@@ -225,6 +265,10 @@ class Element:
     def _pairs(self) -> list[tuple[PolyElement, Mapping[int, int]]]:
         return [(quotient.numer, quotient.powers) for quotient in self._parts.values()]
 
+    def _terms(self) -> int:
+        """How many terms its numerators have."""
+        return sum(len(quotient.numer) for quotient in self._parts.values())
+
     def __add__(self, other: object) -> Element:
         right = self._coerce(other)
         if right is None:
@@ -243,6 +287,7 @@ class Element:
         right = self._coerce(other)
         if right is None:
             return NotImplemented
+        self.factors.spend(self._terms() * right._terms())
         return Element(
             self.factors,
             [
@@ -346,6 +391,7 @@ class Element:
         """Partial derivative by the generator at a place, by the quotient rule on the factors."""
         quotients: list[tuple[PolyElement, Mapping[int, int]]] = []
         for numer, powers in self._pairs():
+            self.factors.spend(len(numer) * (1 + len(powers)))
             if any(monomial[place] for monomial in numer):
                 quotients.append((numer.diff(place), powers))
             for number, exponent in powers.items():

@@ -9,6 +9,7 @@ Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from fractions import Fraction
 from functools import reduce
 from math import isqrt
@@ -360,6 +361,7 @@ class Field:
     ) -> Value:
         """Sum of coefficient times powers, in the order of the ring."""
         terms: list[Any] = []
+        self._factors.spend(len(p))
         for monomial in self._written(p):
             factors = [values[name] for name, power in monomial.powers for _ in range(power)]
             if monomial.number != 1 or not factors:
@@ -392,6 +394,10 @@ class Field:
         for generator in self._needed(element):
             names |= self.reach(self.adjoined[generator].argument)
         return names
+
+    def budget(self, work: int) -> AbstractContextManager[None]:
+        """A block in which arithmetic ends after so much work: see `Factors.budget`."""
+        return self._factors.budget(work)
 
     # -- parts, for lowering ------------------------------------------------------------
 

@@ -18,7 +18,11 @@ from coadjoint.errors import ClaimError
 
 
 class Verdict(StrEnum):
-    """What became of a claim."""
+    """How a claim was decided.
+
+    A proof is exact and rests on no random number. A refutation shows a point where the claim
+    fails. Numerical support means that no proof was found, and no point where the claim fails.
+    """
 
     PROVED = "proved"
     REFUTED = "refuted"
@@ -27,7 +31,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement and what became of it.
+    """One statement with its verdict.
 
     Attributes:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
@@ -40,6 +44,8 @@ class Claim:
         seconds: How long that took.
         counterexample: Point at which a refuted claim fails, exact values as text; else empty.
         defect: What should have been zero, at that point; else empty.
+        accepted: Whether the spec that makes this claim accepts numerical support; None for a
+            claim of the engine, which never does.
     """
 
     statement: str
@@ -49,6 +55,13 @@ class Claim:
     seconds: float = field(default=0.0, compare=False)
     counterexample: Mapping[str, str] = field(default_factory=dict)
     defect: str = ""
+    accepted: bool | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim is proved, or supported where the spec accepts that."""
+        supported = self.verdict is Verdict.SUPPORTED and self.accepted is True
+        return supported or self.verdict is Verdict.PROVED
 
     def as_record(self) -> dict[str, Any]:
         """The claim as JSON values, without the time."""
@@ -60,6 +73,8 @@ class Claim:
         }
         if self.verdict is Verdict.REFUTED:
             record |= {"counterexample": dict(self.counterexample), "defect": self.defect}
+        if self.verdict is Verdict.SUPPORTED:
+            record |= {"accepted": self.accepted is True}
         return record
 
 
@@ -93,6 +108,10 @@ class Finding:
             "error": self.error,
         }
 
+    def __str__(self) -> str:
+        parts = (self.method, self.scope, self.error and f"error: {self.error}")
+        return f"{self.statement}  {'; '.join(filter(None, parts))}"
+
 
 @dataclass(frozen=True)
 class Certificate:
@@ -114,25 +133,31 @@ class Certificate:
         return tuple(claim for claim in self.claims if claim.verdict is Verdict.REFUTED)
 
     @property
+    def failures(self) -> tuple[Claim, ...]:
+        """The claims that are refuted, or supported where a proof is asked for."""
+        return tuple(claim for claim in self.claims if not claim.holds)
+
+    @property
     def holds(self) -> bool:
-        """Whether there are claims and none is refuted."""
-        return bool(self.claims) and not self.refuted
+        """Whether every claim is proved, or supported where the spec accepts that."""
+        return not self.failures
 
     def count(self, verdict: Verdict) -> int:
         """How many claims have a verdict."""
         return sum(claim.verdict is verdict for claim in self.claims)
 
     def require(self) -> Certificate:
-        """This certificate, if no claim is refuted.
+        """This certificate, if it holds.
 
         Raises:
-            ClaimError: With every refuted claim and its counter-example.
+            ClaimError: With every claim that is refuted, and the point where it fails, and every
+                claim that is only supported though a proof is asked for.
         """
-        if self.refuted:
+        if not self.holds:
             raise ClaimError(
-                "\n".join(f"{self.system}: {_refutation(claim)}" for claim in self.refuted),
+                "\n".join(f"{self.system}: {failure_text(each)}" for each in self.failures),
                 system=self.system,
-                claims=[claim.as_record() for claim in self.refuted],
+                claims=[claim.as_record() for claim in self.failures],
             )
         return self
 
@@ -151,9 +176,21 @@ class Certificate:
             f"({claim.seconds * 1e3:.1f} ms)"
             for claim in self.claims
         ]
+        rows += [f"{'found':<21} {finding}" for finding in self.findings]
         return "\n".join([f"Certificate of {self.system}", *rows])
 
 
+#: What to do where a claim of a spec is not proved.
+_ACCEPT = (
+    "Write the formulas without functions that hide the identity; or accept what the numbers show: "
+    '{ claim = "...", accept = "numerical" } in the place of the claim in [claims], '
+    'accept = "numerical" in the table of a symmetry or transformation.'
+)
+#: What to do where a claim of the engine is not proved.
+_REWRITE = (
+    "The engine never accepts numbers for this claim: write the Lagrangian, Hamiltonian or bracket "
+    "without functions that hide the identity, or leave out the route."
+)
 #: What is likely wrong where a claim is refuted, in general and by kind.
 _FIX = "Correct the claim, or the Lagrangian or Hamiltonian that contradicts it."
 _FIXES = MappingProxyType(
@@ -164,8 +201,13 @@ _FIXES = MappingProxyType(
 )
 
 
-def _refutation(claim: Claim) -> str:
-    """A refuted claim for people."""
+def failure_text(claim: Claim) -> str:
+    """Why a claim does not hold, and what to do, for people."""
+    if claim.verdict is Verdict.SUPPORTED:
+        return (
+            f"not proved: {claim.statement}. It is only {claim.verdict} ({claim.method}); expected "
+            f"a proof. {_REWRITE if claim.accepted is None else _ACCEPT}"
+        )
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
     found = f"At {point} the difference" if point else f"By {claim.method} what is left"
     return (

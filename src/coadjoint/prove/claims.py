@@ -7,7 +7,7 @@ Read next: `coadjoint.prove.identities` for what must be zero, `coadjoint.prove.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from time import perf_counter
@@ -45,6 +45,7 @@ from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
 from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
+from coadjoint.prove.searches import within_budget
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
@@ -53,6 +54,7 @@ from coadjoint.prove.zero import (
     Decision,
     Discovery,
     Examined,
+    claimed_by,
     decide_zero,
     make_entry,
 )
@@ -100,15 +102,15 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from about_constraints(motion, routes[1:])
         yield from about_projection(first)
         yield from about_rolling(motion)
-        for claim in first.spec.conserved:
+        for place, claim in enumerate(first.spec.conserved):
             if _statement(claim) != "energy is conserved" or not keeps_energy(first):
-                yield _statement(claim), "conserved", partial(_constrained_integral, motion, claim)
-        yield from about_integrability(first)
-        yield from about_reduced_bracket(motion)
+                examine = partial(_constrained_integral, motion, claim)
+                claimed = [(_statement(claim), "conserved", examine)]
+                yield from claimed_by(
+                    first.spec, ("claims", "conserved", place), claimed, motion.field
+                )
         yield from about_momenta(motion)
-        yield from about_reversal(motion)
-        yield from about_candidates(motion, known_integrals(motion, _emitted(first)))
-        yield from about_measure(motion)
+        yield from _searched(motion, _emitted(first))
         return
     yield from _about_bracket(first)
     pulled = LegendreMap(first) if first.spec.lagrangian is not None else None
@@ -119,6 +121,24 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from _about_equality(first, other, pulled)
     yield from _about_motion(first)
     yield from about_pairs(routes)
+
+
+def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
+    """What is found out about a constrained motion, each search with a budget of its own."""
+    searches: dict[tuple[str, str], Iterator[Examined]] = {
+        ("integrability", "the growth vector"): about_integrability(motion.equations),
+        ("bracket", "the bracket of the reduced momenta"): about_reduced_bracket(motion),
+        ("transformation", "the reversal of time"): about_reversal(motion),
+        ("integrals", "integrals"): _integrals(motion, emitted),
+        ("measure", "invariant measures"): about_measure(motion),
+    }
+    for (kind, subject), examined in searches.items():
+        yield from within_budget(motion.field, kind, subject, examined)
+
+
+def _integrals(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
+    """The search for integrals; what is known already is part of its work."""
+    yield from about_candidates(motion, known_integrals(motion, emitted))
 
 
 def _about_algebra(first: Equations) -> Iterator[Examined]:
@@ -250,7 +270,7 @@ def _same_rates(first: Equations, other: Equations) -> list[Element]:
 
 def _about_motion(first: Equations) -> Iterator[Examined]:
     """The emitted motion: Hamiltonian form, energy, and the claims of the spec."""
-    spec = first.spec
+    spec, field = first.spec, first.setting.field
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
@@ -260,17 +280,16 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         )
     if energy is not None:
         yield "the energy is conserved", "conserved", partial(drift, first, energy)
-    for casimir in spec.casimirs:
-        yield (
-            f"{casimir.in_one_line} is a Casimir",
-            "casimir",
-            partial(_casimir, first, casimir),
-        )
+    for place, casimir in enumerate(spec.casimirs):
+        statement = f"{casimir.in_one_line} is a Casimir"
+        examined = [(statement, "casimir", partial(_casimir, first, casimir))]
+        yield from claimed_by(spec, ("claims", "casimirs", place), examined, field)
     if tensor is not None:
-        yield from _about_completeness(first)
-    for claim in spec.conserved:
-        yield _statement(claim), "conserved", partial(_integral, first, claim)
-    yield from about_galilean(first)
+        yield from within_budget(field, "casimir", "Casimirs", _about_completeness(first))
+    for place, claim in enumerate(spec.conserved):
+        claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
+        yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)
+    yield from claimed_by(spec, ("claims", "galilean"), about_galilean(first), field)
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
         if seen.conserved:

@@ -14,7 +14,7 @@ Source:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -30,10 +30,8 @@ from coadjoint.groups.galilean import (
     subgroups,
     transformation_defects,
 )
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.model import Parameter, Variable
-
-Examined = tuple[str, str, Callable[[], Decision]]
 
 
 def about_galilean(first: Equations) -> Iterator[Examined]:

@@ -11,7 +11,7 @@ Source:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
@@ -21,38 +21,36 @@ from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import MomentumMap
 from coadjoint.prove.identities import drift
+from coadjoint.prove.zero import Examined, claimed_by
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
 
-#: (statement, kind, what must be zero)
-Stated = tuple[str, str, Callable[[], Sequence[Element]]]
 #: Entries of a cocycle that a statement shows.
 SHOWN = 6
 
 
-def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Stated]:
+def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Examined]:
     """All claims about symmetries.
 
     Args:
         first: The emitted motion.
         known: Values of the energy, the observables and the momentum maps, which claims may use.
     """
-    spec = first.spec
+    spec, field = first.spec, first.setting.field
     energy = first.exact.energy
     if first.exact.poisson_tensor is not None:
         for symmetry in spec.symmetries:
             J = momentum_map(first, symmetry)
-            yield from _about_map(first, symmetry, J)
+            of_map = [*_about_map(first, symmetry, J)]
             if energy is not None:
-                yield from _noether(first, symmetry, J, first.closed(energy))
+                of_map += _noether(first, symmetry, J, first.closed(energy))
+            yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
         if energy is not None:
             yield from _about_integrals(first, known)
-        for claim in spec.brackets:
+        for place, claim in enumerate(spec.brackets):
             text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
-            yield (
-                f"{text} = {claim.value.in_one_line}",
-                "bracket",
-                partial(_claimed_bracket, first, claim, known),
-            )
+            statement = f"{text} = {claim.value.in_one_line}"
+            claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
+            yield from claimed_by(spec, ("claims", "brackets", place), claimed, field)
     for transformation in spec.transformations:
         yield from _about_transformation(first, transformation, known)
 
@@ -60,7 +58,7 @@ def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterato
 # -- momentum maps --------------------------------------------------------------------------------
 
 
-def _about_map(first: Equations, symmetry: Symmetry, J: MomentumMap) -> Iterator[Stated]:
+def _about_map(first: Equations, symmetry: Symmetry, J: MomentumMap) -> Iterator[Examined]:
     """The action and its momentum map."""
     name, algebra, kind = symmetry.name, symmetry.algebra.name, "symmetry"
     yield (
@@ -92,7 +90,9 @@ def _cocycle(first: Equations, symmetry: Symmetry, J: MomentumMap) -> str:
     return ", ".join(texts[:SHOWN] + ["..."] * (len(texts) > SHOWN))
 
 
-def _noether(first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element) -> Iterator[Stated]:
+def _noether(
+    first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element
+) -> Iterator[Examined]:
     """What is conserved since h is invariant: nothing is claimed of the other components."""
     rates = J.rates(h)
     invariant = [n for n, rate in enumerate(rates) if rate == 0]
@@ -109,23 +109,24 @@ def _noether(first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element) -
 # -- integrals and their symmetries ---------------------------------------------------------------
 
 
-def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Stated]:
+def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Examined]:
     """Of each claimed integral, that its Hamiltonian vector field commutes with the motion.
 
     On phase spaces; over an algebra the reduced space has no positions to be moved.
     """
     if first.spec.algebra is not None:
         return
-    for claim in first.spec.conserved:
+    for place, claim in enumerate(first.spec.conserved):
         if claim.where or claim.formula.in_one_line == "energy":
             continue
         flows = _flows(first, claim.formula, known)
-        yield (
+        statement = (
             f"the flow of {claim.formula.in_one_line} takes motions to motions"
-            f"{_kind_of(first, flows)}",
-            "symmetry",
-            partial(_commutators, first, flows),
+            f"{_kind_of(first, flows)}"
         )
+        follows = [(statement, "symmetry", partial(_commutators, first, flows))]
+        key = ("claims", "conserved", place)  # it follows from the claim there
+        yield from claimed_by(first.spec, key, follows, first.setting.field)
 
 
 def _flows(first: Equations, formula: Formula, known: Mapping[str, Quantity]) -> list[VectorField]:
@@ -180,21 +181,24 @@ def _claimed_bracket(
 
 def _about_transformation(
     first: Equations, transformation: Transformation, known: Mapping[str, Quantity]
-) -> Iterator[Stated]:
+) -> Iterator[Examined]:
     """That a map keeps the motion, and what it does to observables."""
     name = transformation.name
     goal = "its reverse" if transformation.reverses_time else "itself"
-    yield (
+    key, kind, field = ("transformations", name), "transformation", first.setting.field
+    moved = (
         f"{name} takes the motion to {goal}",
-        "transformation",
-        lambda: _motion_defects(first, transformation),
+        kind,
+        partial(_motion_defects, first, transformation),
     )
+    yield from claimed_by(first.spec, key, [moved], field)
     for observable, formula in transformation.exchanges.items():
-        yield (
+        exchanged = (
             f"{name} takes {observable} to {formula.in_one_line}",
-            "transformation",
+            kind,
             partial(_exchange_defects, first, transformation, observable, formula, known),
         )
+        yield from claimed_by(first.spec, (*key, "exchanges", observable), [exchanged], field)
 
 
 def _map(first: Equations, transformation: Transformation) -> dict[str, Element]:

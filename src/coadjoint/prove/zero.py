@@ -8,10 +8,11 @@ same certificate.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -20,6 +21,8 @@ import mpmath
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Claim, Finding, Verdict
 from coadjoint.prove.ideals import Ideal, real_function
+from coadjoint.spec import Spec
+from coadjoint.spec.positions import KeyPath
 
 DIGITS = 50
 #: Points at which a nonzero normal form is tried before it counts as numerically supported.
@@ -43,12 +46,15 @@ class Decision:
         method: How it was decided.
         point: Where it is not zero, exact values by name.
         defect: Its value there.
+        accepted: Whether the spec that makes this claim accepts numerical support; None for a
+            claim of the engine, which never does.
     """
 
     verdict: Verdict
     method: str
     point: dict[str, str] = field(default_factory=dict)
     defect: str = ""
+    accepted: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -76,7 +82,43 @@ def make_entry(
     """The entry of the certificate for a statement: a claim if it was decided, else a finding."""
     if isinstance(found, Discovery):
         return Finding(statement, kind, found.method, found.scope, found.error, seconds)
-    return Claim(statement, kind, found.verdict, found.method, seconds, found.point, found.defect)
+    return Claim(
+        statement,
+        kind,
+        found.verdict,
+        found.method,
+        seconds,
+        found.point,
+        found.defect,
+        found.accepted,
+    )
+
+
+def claimed_by(
+    spec: Spec, key: KeyPath, examined: Iterable[Examined], ring: Field
+) -> Iterator[Examined]:
+    """Statements that a spec makes, for which it may accept numerical support.
+
+    Args:
+        spec: The spec.
+        key: Where it makes them, such as ``("claims", "conserved", 0)``.
+        examined: The statements.
+        ring: Where what must be zero lives.
+    """
+    accepted = key in spec.accepted
+    for statement, kind, examine in examined:
+        yield statement, kind, partial(_marked, examine, ring, accepted=accepted)
+
+
+def _marked(
+    examine: Callable[[], Sequence[Element] | Decision | Discovery], ring: Field, *, accepted: bool
+) -> Decision | Discovery:
+    """The decision about a claim of a spec, with the mark whether support is enough."""
+    found = examine()
+    if isinstance(found, Discovery):
+        return found
+    decision = found if isinstance(found, Decision) else decide_zero(found, ring)
+    return replace(decision, accepted=accepted)
 
 
 def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:

@@ -119,6 +119,7 @@ class KernelContext:
         parameters: Quantities of the parameters, in order.
         observables: Quantities that the function ``observables`` returns, in order.
         programs: The functions, in order.
+        supported: How many claims are numerically supported and not proved, as the spec accepts.
         domain: What the rows of the function ``domain`` are; empty where there is none.
         reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
             where there is none.
@@ -134,6 +135,7 @@ class KernelContext:
     parameters: tuple[Quantity, ...]
     observables: tuple[Quantity, ...]
     programs: tuple[Program, ...]
+    supported: int = 0
     domain: tuple[Bound, ...] = ()
     reconstructed: tuple[Quantity, ...] = ()
 
@@ -227,7 +229,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "licence": _licence(context.license),
             "id": identity,
             "chunk": CHUNK,
-            "routes": _wrapped(context.routes),
+            "routes": _wrapped([*context.routes, *_unproved(context.supported)]),
             "equations": _wrapped(context.equations),
             "state": _rows(context.state),
             "reconstructed": _rows(context.reconstructed, len(_rows(context.state))),
@@ -246,6 +248,13 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
         },
     )
     return {file: rendered[template] for file, template in TEMPLATES.items()}
+
+
+def _unproved(number: int) -> list[str]:
+    """The line of the head about claims that are not proved; none if all are."""
+    claims = "1 claim is" if number == 1 else f"{number} claims are"
+    text = f"{claims} numerically supported and NOT proved: see certificate.json."
+    return [text] * bool(number)
 
 
 def _system(context: KernelContext, identity: str) -> list[str]:

@@ -45,6 +45,14 @@ def also_text(schema: dict[str, Any]) -> None:
     schema["anyOf"] = [{"type": "string"}, table]
 
 
+def also_flag(schema: dict[str, Any]) -> None:
+    """The table may be a truth value alone."""
+    no_titles(schema)
+    table = dict(schema)
+    schema.clear()
+    schema["anyOf"] = [{"type": "boolean"}, table]
+
+
 #: The ways to declare an algebra, of which each takes exactly one.
 WAYS = (
     "name",

@@ -402,7 +402,7 @@ def check_claims(source: Source, file: SpecFile, variables: Sequence[Variable]) 
                 )
     particles = [variable for variable in variables if variable.role == "coordinate"]
     flat = [q for q in particles if q.value_shape not in ((3,), (3, 3)) or q.form == "symmetric"]
-    if claims.galilean and (file.newton is None or flat):
+    if claims.galilean.claim and (file.newton is None or flat):
         found = flat[0].name if flat else "newton"
         raise source.fault(
             ("claims", "galilean"),

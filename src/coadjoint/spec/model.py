@@ -334,6 +334,8 @@ class Spec:
         rolling: How the body rolls on a plane, if it does.
         reconstruction: Variables that follow from the motion.
         sections: Sections of the constraint distribution with their momenta.
+        accepted: Keys of the claims for which support by numbers is enough, such as
+            ``("claims", "conserved", 0)``; brackets by their places.
     """
 
     name: str
@@ -370,6 +372,7 @@ class Spec:
     rolling: Rolling | None = None
     reconstruction: tuple[Reconstructed, ...] = ()
     sections: tuple[Section, ...] = ()
+    accepted: frozenset[tuple[str | int, ...]] = frozenset()
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""

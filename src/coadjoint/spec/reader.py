@@ -60,7 +60,13 @@ from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
 from coadjoint.spec.reductions import restricted
 from coadjoint.spec.representations import read_representations, representation_of
-from coadjoint.spec.schema import SpecFile
+from coadjoint.spec.schema import (
+    ClaimPart,
+    FlagPart,
+    SpecFile,
+    SymmetryPart,
+    TransformationPart,
+)
 from coadjoint.spec.source import Source
 from coadjoint.spec.structure import read_parameter, read_variable
 from coadjoint.spec.symmetries import SymmetryReader, emitted_shapes
@@ -172,7 +178,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         lax=formulas.lax(),
         clebsch=pair,
         newton=formulas.newton(variables),
-        galilean=file.claims.galilean,
+        galilean=file.claims.galilean.claim,
         definitions=definitions,
         symmetries=symmetries,
         transformations=actions.transformations(file.transformations),
@@ -184,10 +190,30 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         rolling=rolling,
         reconstruction=followed,
         sections=sections,
+        accepted=_accepted(file),
     )
     others = [*emitted, *spec.spatial, *spec.reduced_momenta, *constraints, *followed]
     check_names(source, variables, parameters, others, defined)
     return spec if file.reduction is None else restricted(source, file.reduction, spec)
+
+
+def _accepted(file: SpecFile) -> frozenset[KeyPath]:
+    """The keys of the claims for which support by numbers is enough."""
+    claims = file.claims
+    parts: dict[KeyPath, ClaimPart | FlagPart | SymmetryPart | TransformationPart] = {
+        **{("claims", "casimirs", n): part for n, part in enumerate(claims.casimirs)},
+        **{("claims", "conserved", n): part for n, part in enumerate(claims.conserved)},
+        **{("claims", "brackets", n): part for n, part in enumerate(claims.brackets.values())},
+        ("claims", "galilean"): claims.galilean,
+        **{("symmetries", name): part for name, part in file.symmetries.items()},
+        **{("transformations", name): part for name, part in file.transformations.items()},
+        **{
+            ("transformations", name, "exchanges", observable): each
+            for name, part in file.transformations.items()
+            for observable, each in part.exchanges.items()
+        },
+    }
+    return frozenset(key for key, part in parts.items() if part.accept is not None)
 
 
 def _read_structure(
@@ -270,7 +296,11 @@ class _Formulas:
     def casimirs(self) -> tuple[Formula, ...]:
         scope = make_scope("a Casimir", self.state, self.quantities)
         key: KeyPath = ("claims", "casimirs")
-        return self._formulas(key, self.file.claims.casimirs, scope)
+        found = []
+        for place, part in enumerate(self.file.claims.casimirs):
+            at = self.source.claim_key((*key, place))
+            found.append(read_formula(self.source, at, part.claim, scope, any_shape=True))
+        return tuple(found)
 
     def conserved(self, emitted: Sequence[Observable | Symmetry | Section]) -> tuple[Integral, ...]:
         named = emitted_shapes(emitted)
@@ -280,10 +310,8 @@ class _Formulas:
         found = []
         for place, part in enumerate(self.file.claims.conserved):
             key: KeyPath = ("claims", "conserved", place)
-            # A claim may be its expression alone.
-            inner = (*key, "integral")
-            at = inner if inner in self.source.positions.values else key
-            formula = read_formula(self.source, at, part.integral, scope, any_shape=True)
+            at = self.source.claim_key(key)
+            formula = read_formula(self.source, at, part.claim, scope, any_shape=True)
             where = self._formulas((*key, "where"), part.where, scope)
             found.append(Integral(formula, where))
         return tuple(found)

@@ -11,7 +11,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
-from coadjoint.spec.algebra_schema import AlgebraPart, OperandPart, Part, also_text, named
+from coadjoint.spec.algebra_schema import (
+    AlgebraPart,
+    OperandPart,
+    Part,
+    also_flag,
+    also_text,
+    named,
+)
 from coadjoint.spec.constrained_schema import (
     DissipationPart,
     ReconstructedPart,
@@ -223,6 +230,7 @@ class SymmetryPart(Part):
     form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
         None, description="the matrix whose entries are the components of the momentum map"
     )
+    accept: Accept = None
     unit: Unit = Field("1", description="unit of the momentum map; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")
 
@@ -236,6 +244,44 @@ class SymmetryPart(Part):
         return self
 
 
+#: What is enough for a claim, if not a proof.
+Accept = Annotated[
+    Literal["numerical"] | None,
+    Field(
+        description="'numerical' if values at random points are enough for this claim; by default "
+        "it must be proved"
+    ),
+]
+
+
+class ClaimPart(Part):
+    """A claim: its expression, or a table that also says what is enough for it."""
+
+    model_config = ConfigDict(json_schema_extra=also_text)
+
+    claim: str = Field(description="what is claimed")
+    accept: Accept = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: object) -> object:
+        return {"claim": value} if isinstance(value, str) else value
+
+
+class FlagPart(Part):
+    """A claim without an expression: whether it is made, or a table."""
+
+    model_config = ConfigDict(json_schema_extra=also_flag)
+
+    claim: bool = Field(description="whether this is claimed")
+    accept: Accept = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_flag(cls, value: object) -> object:
+        return {"claim": value} if isinstance(value, bool) else value
+
+
 class TransformationPart(Part):
     """A map of the state that takes the motion to itself, or to its reverse."""
 
@@ -243,45 +289,46 @@ class TransformationPart(Part):
         description="what variables become; those left out stay", json_schema_extra=named()
     )
     reverses_time: bool = Field(False, description="whether it takes the motion to its reverse")
-    exchanges: dict[str, str] = Field(
+    exchanges: dict[str, ClaimPart] = Field(
         {},
         description="what observables and momentum maps become, as J_L = 'J_R'",
         json_schema_extra=named(),
     )
+    accept: Accept = None
 
 
-class IntegralPart(Part):
+class IntegralPart(ClaimPart):
     """An integral of the motion, everywhere or on a level set."""
 
-    model_config = ConfigDict(json_schema_extra=also_text)
-
-    integral: str = Field(description="what is conserved")
     where: Annotated[list[str], Field(min_length=1)] = Field(
         [], description="functions that are zero on the level set where it is conserved"
     )
 
     @model_validator(mode="before")
     @classmethod
-    def _from_text(cls, value: object) -> object:
-        return {"integral": value} if isinstance(value, str) else value
+    def _from_former_name(cls, value: object) -> object:
+        if isinstance(value, dict) and "integral" in value and "claim" not in value:
+            return {"claim" if key == "integral" else key: x for key, x in value.items()}
+        return value
 
 
 class ClaimsPart(Part):
     """What is claimed of the motion and proved at every regeneration."""
 
-    casimirs: list[str] = Field(
+    casimirs: list[ClaimPart] = Field(
         [], description="Casimirs of the bracket: scalars, or vectors of them, of the state"
     )
     conserved: list[IntegralPart] = Field(
         [], description="integrals of the motion; 'energy' and observables have their names here"
     )
-    brackets: dict[str, str] = Field(
+    brackets: dict[str, ClaimPart] = Field(
         {},
         description="brackets such as '{L, A}' = '-hat(A)', of two expressions that are scalars or "
         "vectors",
     )
-    galilean: bool = Field(
-        False, description="whether every Galilean transformation takes Newton's law to itself"
+    galilean: FlagPart = Field(
+        default_factory=lambda: FlagPart(claim=False),
+        description="whether every Galilean transformation takes Newton's law to itself",
     )
 
 
@@ -310,7 +357,7 @@ RouteName = Literal[
 
 
 def _no_claims() -> ClaimsPart:
-    return ClaimsPart(casimirs=[], conserved=[], brackets={}, galilean=False)
+    return ClaimsPart(casimirs=[], conserved=[], brackets={}, galilean=FlagPart(claim=False))
 
 
 class SpecFile(Part):

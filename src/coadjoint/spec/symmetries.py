@@ -31,7 +31,7 @@ from coadjoint.spec.model import (
 )
 from coadjoint.spec.names import NAME
 from coadjoint.spec.positions import KeyPath
-from coadjoint.spec.schema import SymmetryPart, TransformationPart
+from coadjoint.spec.schema import ClaimPart, SymmetryPart, TransformationPart
 from coadjoint.spec.shapes import words
 from coadjoint.spec.source import Source
 from coadjoint.spec.tree import Binary, Call, Index, Name, Negate, Node, Power, children, walk_up
@@ -254,9 +254,9 @@ class SymmetryReader:
                 part.reverses_time,
                 {
                     observable: self._exchange(
-                        ("transformations", name, "exchanges", observable), observable, text
+                        ("transformations", name, "exchanges", observable), observable, each.claim
                     )
-                    for observable, text in part.exchanges.items()
+                    for observable, each in part.exchanges.items()
                 },
             )
             for name, part in parts.items()
@@ -272,6 +272,7 @@ class SymmetryReader:
                 hint=did_you_mean(name, self.named),
                 at=self.source.positions.key(key),
             )
+        key = self.source.claim_key(key)
         formula = self._any_shape(key, text, "an observable")
         if formula.shape != self.named[name]:
             raise self._misfit(key, formula, f"{words(self.named[name])}, as {name} is")
@@ -283,17 +284,18 @@ class SymmetryReader:
 
     # -- [claims.brackets] --------------------------------------------------------------
 
-    def brackets(self, texts: Mapping[str, str]) -> tuple[ClaimedBracket, ...]:
+    def brackets(self, parts: Mapping[str, ClaimPart]) -> tuple[ClaimedBracket, ...]:
         """The claimed brackets, in order; to be read after the symmetries.
 
         Raises:
             SpecError: A key is no bracket, or the value does not have its shape.
         """
-        return tuple(self._bracket(text, value) for text, value in texts.items())
+        return tuple(self._bracket(text, part.claim) for text, part in parts.items())
 
     def _bracket(self, text: str, value: str) -> ClaimedBracket:
         key: KeyPath = ("claims", "brackets", text)
         left, right = (self._side(key, text, side) for side in self._sides(key, text))
+        key = self.source.claim_key(key)
         formula = self._any_shape(key, value, "a bracket")
         shape = left.shape + right.shape
         if formula.shape != shape:

@@ -1,0 +1,46 @@
+"""Searches: what is found out beside the claims, each with a budget of its own.
+
+Integrals, measures, Casimirs and growth vectors are looked for without anyone having claimed them.
+Such a search may take very long, and must not keep a user from a proved kernel; so it ends after
+a given amount of work, and the certificate says that it did. Work is counted and not timed
+(`coadjoint.exact.element.Factors.budget`), so that a certificate is the same on every machine.
+Comes in: the statements of a search, not yet computed. Goes out: those that it reached, decided.
+Read next: `coadjoint.prove.claims`, which runs the searches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from coadjoint.exact import BudgetSpent, Field
+from coadjoint.limits import SEARCH_WORK
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
+
+#: The method of a search that ended early.
+ENDED = "the search ended after {work} operations of exact arithmetic"
+
+
+def within_budget(
+    field: Field, kind: str, subject: str, examined: Iterable[Examined], work: int = SEARCH_WORK
+) -> Iterator[Examined]:
+    """The statements of a search, decided, until its budget is spent.
+
+    Args:
+        field: Whose arithmetic is counted.
+        kind: Of the finding that says where the search ended.
+        subject: What is looked for, in the plural: ``integrals``.
+        examined: The statements; a generator, so that none of its work is done before.
+        work: The budget.
+    """
+    found = list[Examined]()
+    try:
+        with field.budget(work):
+            for statement, of_kind, examine in examined:
+                result = examine()
+                if not isinstance(result, Decision | Discovery):
+                    result = decide_zero(result, field)
+                found.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
+    except BudgetSpent:
+        end = Discovery(ENDED.format(work=work), "no statement beyond those above")
+        found.append((f"{subject}: not searched further", kind, lambda: end))
+    yield from found
