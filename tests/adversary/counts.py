@@ -15,7 +15,7 @@ import numpy as np
 
 from tests.adversary.algebras import as_number
 from tests.adversary.motion import Constrained
-from tests.adversary.reader import Undefined, mpf, names_in, read
+from tests.adversary.reader import UndefinedError, mpf, read
 
 _ALL = re.compile(r"every Casimir is a function of the (one|\d+) known")
 _SOME = re.compile(r"(\d+) of (\d+) independent Casimirs are known")
@@ -28,7 +28,7 @@ _SPACE = re.compile(
 ZERO, CLEAR = 1e-9, 1e-6
 
 
-class NoGap(ArithmeticError):
+class NoGapError(ArithmeticError):
     """Singular values do not tell the rank."""
 
 
@@ -44,7 +44,7 @@ def rank_of(rows):
         return 0
     values = values / values[0]
     if ((values > ZERO) & (values < CLEAR)).any():
-        raise NoGap(f"{values}")
+        raise NoGapError(f"{values}")
     return int((values >= CLEAR).sum())
 
 
@@ -77,7 +77,7 @@ def _casimirs(motion, text, claims, source):
             ]
             rows = [[x[i] for x in each] for each in slopes for i in range(len(each[0]))]
             gradients.append(rank_of(rows))
-        except (Undefined, NoGap):
+        except (UndefinedError, NoGapError):
             continue
         if len(ranks) == 3:
             break
@@ -148,7 +148,7 @@ def _integrals(motion, text, found, source):
             if point is None or not motion.inside(point):
                 continue
             pair = _row(motion, point, velocities, generators, monomials)
-        except Undefined:
+        except UndefinedError:
             continue
         values.append(pair[0])
         rates.append(pair[1])
@@ -156,7 +156,7 @@ def _integrals(motion, text, found, source):
         return []
     try:
         dimension = rank_of(values) - rank_of(rates)
-    except NoGap:
+    except NoGapError:
         return []
     if dimension != int(found[3]):
         return [f"{text}: singular values give the dimension {dimension}"]

@@ -193,6 +193,24 @@ time = "xi[2]"
 [claims]
 conserved = ["J"]
 """
+#: v^2/2 - cos(q): only time may be shifted; with the sign turned round, (v, v^2/2), nothing is kept.
+SHIFTED = MOVING_TIME.replace('"v^2/2"', '"v^2/2 - cos(q)"').replace('["J"]', '["J2", "J1"]')
+#: Rotations of the plane with velocities as state.
+TURNED = """title = "Rotation and time shift"
+routes = ["euler-lagrange"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "q" }
+[lagrangian]
+l = "(1 + dot(q, q))*dot(v, v)/2 - dot(q, q)/2"
+[symmetries.J]
+algebra = "R^2"
+vector = "xi"
+generators = { q = "xi[1]*vector(-q2, q1)" }
+time = "xi[1] + xi[2]"
+[claims]
+conserved = ["J"]
+"""
 SLEIGH = """title = "Sleigh"
 routes = ["nonholonomic", "hamel"]
 [algebra]
@@ -361,6 +379,12 @@ CASES = (
     ),
     # Noether's theorem
     Fixed("translation and time shift", MOVING_TIME, {"J is conserved": PROVED}),
+    Fixed(
+        "time shift alone",
+        SHIFTED,
+        {"J2 is conserved": PROVED, "J1 is conserved": REFUTED},
+    ),
+    Fixed("rotation with a time shift", TURNED, {"J is conserved": PROVED}),
     # ranks and counts
     Fixed(
         "Casimirs of se(3) beside a false one",

@@ -20,7 +20,7 @@ from itertools import islice
 
 from tests.adversary.counts import judge_count
 from tests.adversary.motion import PAIR, STEP, Motion, Restricted, Values, motion_of
-from tests.adversary.reader import Undefined, entries, mpf, number, read, subtract, value
+from tests.adversary.reader import UndefinedError, entries, mpf, number, read, value
 
 #: Points at which a claim that was not refuted is tried.
 POINTS = 3
@@ -360,7 +360,7 @@ class _Case:
             point = self._with_defaults(point) if stated.defaults else point
             try:
                 worst = self.worst(stated, point)
-            except Undefined:
+            except UndefinedError:
                 continue
             tried += 1
             if worst:
@@ -377,7 +377,7 @@ class _Case:
             return moved
         found = self.motion.project(moved, self.motion.relations, self.motion.state)
         if found is None:
-            raise Undefined("no point at the defaults")
+            raise UndefinedError("no point at the defaults")
         return found
 
     def worst(self, stated, point):
@@ -411,7 +411,7 @@ class _Case:
         for point in motion.fill(shown, self.source, stated.where):
             try:
                 found = stated.differences(point)
-            except Undefined:
+            except UndefinedError:
                 continue
             reached += 1
             near = [x for x in found if abs(x - defect) <= STATED * abs(defect) + mpf(10) ** -13]
@@ -429,7 +429,7 @@ class _Case:
             try:
                 if self.worst(stated, point):
                     return True
-            except Undefined:
+            except UndefinedError:
                 continue
         return False
 

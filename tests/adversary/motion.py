@@ -15,7 +15,7 @@ from functools import cached_property
 from tests.adversary.algebras import basis_of, blocks_of, constants
 from tests.adversary.reader import (
     CONTEXT,
-    Undefined,
+    UndefinedError,
     determinant,
     dot,
     entries,
@@ -164,7 +164,13 @@ class Motion:
         return self.emitted(name, point, values)
 
     def emitted(self, name, point, values):
-        """Components of observables, and what single kinds of motion emit."""
+        """Components of observables, momentum maps, and what single kinds of motion emit."""
+        for whole, part in self.table.get("symmetries", {}).items():
+            parts = component_names(whole, [_dimension(part["algebra"])])
+            if name == whole:
+                return self.charges(part, point)
+            if name in parts:
+                return self.charges(part, point)[parts.index(name)]
         for whole, part in self.observables.items():
             found = value(part, values, self.functions)
             if isinstance(found, list):
@@ -181,7 +187,7 @@ class Motion:
         tree = read(tree) if isinstance(tree, str) else tree
         found = entries(value(tree, Values(self, point), self.functions))
         if any(isinstance(x, CONTEXT.mpc) or not CONTEXT.isfinite(x) for x in found):
-            raise Undefined("no finite real value")
+            raise UndefinedError("no finite real value")
         return found
 
     def inside(self, point):
@@ -298,7 +304,7 @@ class Motion:
                     point = self.project(point, [*self.relations, *chosen], free or self.state)
                 if point is not None and self.inside(point):
                     yield point
-            except Undefined:
+            except UndefinedError:
                 continue
 
     def _resting(self, source, trees):
@@ -309,7 +315,7 @@ class Motion:
             point = {**self.draw(source, 1), **dict.fromkeys(self.state, mpf(0))}
             if not any(x for tree in trees for x in self.at(tree, point)) and self.inside(point):
                 yield point
-        except Undefined:
+        except UndefinedError:
             return
 
     def fill(self, shown, source, where=(), tries=60):
@@ -328,7 +334,7 @@ class Motion:
                 point = point if moved is None else moved
                 if self.inside(point) and self.is_near(point, trees):
                     yield point
-            except Undefined:
+            except UndefinedError:
                 continue
 
     def is_near(self, point, trees, digits=12):
@@ -361,6 +367,28 @@ class Motion:
 
     # -- the laws, one kind after the other -----------------------------------------------
 
+    def charges(self, part, point):
+        """``<p, dq/ds> - E dt/ds`` along each member of the basis, or the map as it is written."""
+        size, found = _dimension(part["algebra"]), []
+        for place in range(size):
+            values = Values(self, point)
+            values[part["vector"]] = [mpf(place == n) for n in range(size)]
+            if "map" in part:
+                found += entries(value(read(part["map"]), values, self.functions))
+                continue
+            total, conjugate = mpf(0), self.conjugate(point)
+            for name, text in part["generators"].items():
+                moved = entries(value(read(text), values, self.functions))
+                total += dot([conjugate[n] for n in self.components[name]], moved)
+            if "time" in part:
+                total -= self.energy(point) * entries(value(read(part["time"]), values))[0]
+            found.append(total)
+        return found
+
+    def conjugate(self, point):
+        """The momenta of the coordinates by the names of these."""
+        raise NotImplementedError("a motion without momenta")
+
     def energy(self, point):
         """The Hamiltonian."""
         return self.at(self.table["hamiltonian"]["h"], point)[0]
@@ -379,6 +407,12 @@ class Motion:
 def _sides(text):
     left, sign, right = _RELATION.fullmatch(text.strip()).groups()
     return read(left), sign, read(right)
+
+
+def _dimension(algebra):
+    """How many members the basis of an algebra has."""
+    flat = re.fullmatch(r"R\^(\d+)", algebra)
+    return int(flat[1]) if flat else len(basis_of({"name": algebra}))
 
 
 def zeros(size):
@@ -441,6 +475,15 @@ class Declared(Motion):
             ]
             return [[-_minor(rows, i, j) for j in range(len(names))] for i in range(len(names))]
         return found
+
+    def conjugate(self, point):
+        """The momenta of the coordinates by the names of these."""
+        pairs = self.table["poisson"].get("canonical", [])
+        return {
+            q: point[p]
+            for one, two in pairs
+            for q, p in zip(self._parts(one), self._parts(two), strict=True)
+        }
 
     def _parts(self, name):
         return self.components.get(name, [name])
@@ -554,6 +597,10 @@ class Canonical(Motion):
     def state(self):
         return self.flat([n for n in self.variables if self.variables[n]["role"] != "velocity"])
 
+    def conjugate(self, point):
+        """The momenta of the coordinates by the names of these."""
+        return {q: point[p] for q, p in self.pairs()}
+
     def pairs(self):
         """Coordinates with their momenta, by component."""
         for name in self.having("momentum"):
@@ -611,6 +658,11 @@ class Constrained(Motion):
 
     def lagrangian(self, point):
         return self.at(self.table["lagrangian"]["l"], point)[0]
+
+    def conjugate(self, point):
+        """The momenta of the coordinates by the names of these."""
+        momenta = dict(zip(self.velocities, self.momenta(point), strict=True))
+        return {q: momenta[v] for v, q in self.of.items()}
 
     def momenta(self, point):
         return slopes_of_quadratic(self.lagrangian, point, self.velocities)

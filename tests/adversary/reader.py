@@ -1,7 +1,7 @@
 """The judge's own reader of formulas: text to values of 50 digits, without the engine.
 
 Comes in: the text of a formula as docs/specs.md describes it, and values by name: numbers, vectors
-as lists, matrices as lists of rows. Goes out: its value, or `Undefined` outside a function's domain.
+as lists, matrices as lists of rows. Goes out: its value, or `UndefinedError` outside a function's domain.
 Nothing here is shared with `coadjoint`. Read next: `tests.adversary.motion`.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache
 
 import mpmath
 
@@ -23,7 +23,7 @@ _TOKEN = re.compile(
 )
 
 
-class Undefined(ArithmeticError):
+class UndefinedError(ArithmeticError):
     """A formula has no real value at a point."""
 
 
@@ -34,7 +34,7 @@ def number(value):
     return mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else mpf(value)
 
 
-@lru_cache(maxsize=None)
+@cache
 def read(text):
     """The tree of a formula: nested tuples, the operation first."""
     tokens, at, text = [], 0, text.strip()
@@ -212,7 +212,7 @@ def multiply(a, b):
 
 def divide(a, b):
     if b == 0:
-        raise Undefined("division by zero")
+        raise UndefinedError("division by zero")
     return scale(1 / b, a)
 
 
@@ -229,28 +229,28 @@ def power(base, exponent):
         return result
     if exponent.denominator == 1:
         if base == 0 and exponent < 0:
-            raise Undefined("division by zero")
+            raise UndefinedError("division by zero")
         return base ** int(exponent)
     if base <= 0:
-        raise Undefined("a fractional power of a number that is not positive")
+        raise UndefinedError("a fractional power of a number that is not positive")
     return base ** number(exponent)
 
 
 def square_root(x):
     if x < 0:
-        raise Undefined("square root of a negative number")
+        raise UndefinedError("square root of a negative number")
     return CONTEXT.sqrt(x)
 
 
 def logarithm(x):
     if x <= 0:
-        raise Undefined("logarithm of a number that is not positive")
+        raise UndefinedError("logarithm of a number that is not positive")
     return CONTEXT.log(x)
 
 
 def exponential(x):
     if abs(x) > 2000:
-        raise Undefined("too large a power for a judge")
+        raise UndefinedError("too large a power for a judge")
     return CONTEXT.exp(x)
 
 
@@ -284,7 +284,7 @@ def solve(matrix, right):
     for k in range(size):
         pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
         if abs(rows[pivot][k]) <= mpf(10) ** -30 * max(scales):
-            raise Undefined("singular equations")
+            raise UndefinedError("singular equations")
         rows[k], rows[pivot] = rows[pivot], rows[k]
         for i in range(k + 1, size):
             factor = rows[i][k] / rows[k][k]

@@ -24,16 +24,16 @@ SECONDS = 60
 SHORTENED = 2
 
 
-class Hang(Exception):
+class HangError(Exception):
     """A certificate that took too long."""
 
 
 @contextmanager
 def bounded(seconds=SECONDS):
-    """Raise `Hang` after some seconds of processor time."""
+    """Raise `HangError` after some seconds of processor time."""
 
     def stop(number, frame):
-        raise Hang(f"no certificate after {seconds} s of processor time")
+        raise HangError(f"no certificate after {seconds} s of processor time")
 
     before = signal.signal(signal.SIGPROF, stop)
     signal.setitimer(signal.ITIMER_PROF, seconds)
