@@ -19,7 +19,7 @@ from fractions import Fraction
 from itertools import islice
 
 from tests.adversary.counts import judge_count
-from tests.adversary.motion import PAIR, STEP, Motion, Restricted, Values, motion_of
+from tests.adversary.motion import PAIR, STEP, Constrained, Motion, Restricted, Values, motion_of
 from tests.adversary.reader import UndefinedError, entries, mpf, number, read, value
 
 #: Points at which a claim that was not refuted is tried.
@@ -34,6 +34,8 @@ NOTHING_NESTED, OUTER_STEP = mpf(10) ** -13, mpf(10) ** -10
 STATED = mpf(10) ** -7
 VERDICTS = ("proved", "refuted", "numerically supported")
 _TRIED = re.compile(r"(\d+)(?: random)? points?")
+_MEASURE = re.compile(r"an invariant measure(?:, where its density is finite)?: (\|.*)")
+_EXPONENT = re.compile(r"(?:\^\(?([-0-9/]+)\)?)?")
 _FLOW = re.compile(r"the flow of (.*) takes motions to motions")
 _FOUND = re.compile(
     r"(.*) is (a Casimir|conserved)( at the default parameters| for almost all.*)?$"
@@ -266,6 +268,49 @@ def flow(motion, text):
     return Stated(differences, nothing=NOTHING_NESTED)
 
 
+def measure(motion, statement):
+    """``d ln rho/dt + div X`` of a density that a statement writes out; None if it does not.
+
+    The divergence is that of the independent velocities and the positions; velocities that a
+    constraint gives follow from these.
+    """
+    found = _MEASURE.match(statement)
+    if found is None or not isinstance(motion, Constrained):
+        return None
+    rest, factors = found[1], []
+    while rest.startswith("|"):
+        base, _, rest = rest[1:].partition("|")
+        power = _EXPONENT.match(rest)
+        rest = rest[power.end() :].lstrip()
+        factors.append((base, number(Fraction(power[1] or 1))))
+    try:
+        trees = [(read(base), exponent) for base, exponent in factors]
+    except ValueError:
+        return None
+    given = [tree for tree in motion.relations if motion.reach(tree) & set(motion.given)]
+    names = [name for name in motion.state if name not in motion.given]
+
+    def rate(point, name):
+        moved = motion.project(point, given, motion.given) if given else point
+        return [motion.rates(moved)[name]]
+
+    def differences(point):
+        growth = sum(
+            (x * motion.rate(tree, point)[0] / motion.at(tree, point)[0] for tree, x in trees),
+            mpf(0),
+        )
+        spread = sum(
+            (
+                motion.along(lambda p, n=n: rate(p, n), point, {n: mpf(1)}, OUTER_STEP)[0]
+                for n in names
+            ),
+            mpf(0),
+        )
+        return [growth + spread]
+
+    return Stated(differences, nothing=NOTHING_NESTED)
+
+
 def _engine_claim(motion, claim):
     """What the engine claims by itself, as far as the judge can compute it; else None."""
     statement = claim["statement"]
@@ -275,6 +320,8 @@ def _engine_claim(motion, claim):
         return jacobi(motion) if motion.has_bracket else None
     if claim["kind"] == "reduction" and isinstance(motion, Restricted):
         return _restricted(motion, statement)
+    if claim["kind"] == "measure":
+        return measure(motion, statement)
     found = _FLOW.match(statement)
     if found and motion.has_bracket:
         return flow(motion, found[1])

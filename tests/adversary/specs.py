@@ -48,6 +48,13 @@ POSITIVE_ZEROS = (
     "1/sqrt({a}) - sqrt({a})/{a}",
     "exp(2*log({a})) - {a}^2",
 )
+#: Zero as well, by roots inside roots, which provers rarely see: some claims end as supported.
+DEEP_ZEROS = (
+    "sqrt(({x})^2 + 2 + 2*sqrt(({x})^2 + 1)) - sqrt(({x})^2 + 1) - 1",
+    "sqrt(2*({x})^2 + 3 + 2*sqrt((({x})^2 + 1)*(({x})^2 + 2))) - sqrt(({x})^2 + 1)"
+    " - sqrt(({x})^2 + 2)",
+    "sqrt(exp({x}) + 1 + 2*exp(({x})/2)) - exp(({x})/2) - 1",
+)
 #: Not zero, and close to one that is.
 NEAR_MISSES = (
     "sin(-({x})) - sin({x})",
@@ -129,6 +136,11 @@ class Author:
         choices = [*HIDDEN_ZEROS, *(POSITIVE_ZEROS * 2 if self.draft.positive else ())]
         return self._filled(self.one(choices))
 
+    def deep_integral(self):
+        """What is conserved, hidden in roots inside roots."""
+        zero = self._filled(self.one(DEEP_ZEROS))
+        return f"{self.one(self.draft.integrals)} + ({zero})*{self.one(self.draft.moving)}"
+
     def miss(self):
         """A formula that is not zero, which does not show either."""
         choices = [*NEAR_MISSES, *(POSITIVE_MISSES if self.draft.positive else ())]
@@ -187,9 +199,9 @@ class Author:
         )
         return integral, where
 
-    def claims(self, count):
-        """The table [claims], with about so many claims."""
-        conserved = []
+    def claims(self, count, deep):
+        """The table [claims], with about so many claims; one hidden deeply if wanted."""
+        conserved = [_quoted(self.deep_integral())] if deep else []
         for _ in range(count):
             kind = self.source.random()
             if kind < 0.4:
@@ -677,4 +689,4 @@ def generate(seed, claims=8):
     source = random.Random(f"spec {seed}")
     family = source.choices(list(FAMILIES), list(FAMILIES.values()))[0]
     draft = family(source)
-    return draft.head + draft.maps + Author(source, draft).claims(claims)
+    return draft.head + draft.maps + Author(source, draft).claims(claims, deep=seed % 3 == 0)

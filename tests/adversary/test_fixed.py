@@ -32,8 +32,7 @@ def test_a_fixed_case_has_the_verdict_that_is_true(case):
     record = record_of(case.text)
     found = {claim["statement"]: claim for claim in record["claims"]}
     for statement, verdict in case.verdicts.items():
-        if verdict:
-            assert found[statement]["verdict"] == verdict, found[statement]
+        assert found[statement]["verdict"] == verdict, found[statement]
     texts = [entry["statement"] for entry in (*record["claims"], *record.get("findings", ()))]
     for piece in case.says:
         assert any(piece in text for text in texts), texts
@@ -42,7 +41,6 @@ def test_a_fixed_case_has_the_verdict_that_is_true(case):
     report = judge(case.text, record)
     assert not report.faults, "\n".join(report.faults)
     assert not report.unjudged, report.unjudged
-    assert set(case.verdicts) <= {*found, *texts}, texts
 
 
 def test_both_verdicts_are_among_the_fixed_cases():

@@ -237,6 +237,23 @@ c = "v3 - q2*v1 == 0"
 [claims]
 conserved = ["v2", "energy"]
 """
+SLEIGH = """title = "Sleigh"
+routes = ["nonholonomic"]
+[algebra]
+name = "se(2)"
+[variables]
+v = { role = "velocity", block = ["P1"] }
+u = { role = "velocity", block = ["P2"] }
+omega = { role = "velocity", block = "rotation" }
+[parameters]
+m = {}
+I = {}
+a = {}
+[lagrangian]
+l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
+[constraints]
+blade = "u == 0"
+"""
 SPACE = "integrals of degree <= {}: a space of dimension {} with constants, all functions of v2"
 
 
@@ -259,6 +276,17 @@ def test_the_dimension_of_a_space_of_integrals_is_counted(dimension, caught):
         ],
     }
     assert bool(judge(FREE, record).faults) is caught
+
+
+@pytest.mark.parametrize(("density", "caught"), [("|omega|^(-1)", False), ("|omega|", True)])
+def test_an_invariant_measure_is_tried(density, caught):
+    """The sleigh keeps dv domega/|omega|: div X = -k v, and d ln omega/dt = -k v as well."""
+    text = SLEIGH + '[claims]\nconserved = ["energy"]\n'
+    statement = f"an invariant measure, where its density is finite: {density} dv domega"
+    record = {
+        "claims": [claim("the energy is conserved", "conserved"), claim(statement, "measure")]
+    }
+    assert bool(judge(text, record).faults) is caught
 
 
 def test_the_reader_knows_the_language():
@@ -312,25 +340,7 @@ def test_the_rates_are_those_of_euler():
 
 def test_the_accelerations_are_those_of_a_sleigh():
     """Chaplygin 1911: dv/dt = a omega^2, domega/dt = -m a v omega/(I + m a^2)."""
-    motion = motion_of(
-        """title = "Sleigh"
-routes = ["nonholonomic"]
-[algebra]
-name = "se(2)"
-[variables]
-v = { role = "velocity", block = ["P1"] }
-u = { role = "velocity", block = ["P2"] }
-omega = { role = "velocity", block = "rotation" }
-[parameters]
-m = {}
-I = {}
-a = {}
-[lagrangian]
-l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
-[constraints]
-blade = "u == 0"
-"""
-    )
+    motion = motion_of(SLEIGH)
     point = dict.fromkeys(["v", "u", "omega", "m", "I", "a"], mpf(0))
     point |= {"v": mpf(3), "omega": mpf(2), "m": mpf(5), "I": mpf(7), "a": mpf(1) / 2}
     rates = motion.rates(point)
