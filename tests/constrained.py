@@ -106,6 +106,93 @@ l = "dot(Omega, diag(I)*Omega)/2 + m*dot(Y, Y)/2 - m*g*dot(Gamma, chi)"
 [constraints]
 rolling = "Y == cross(Omega, s)"
 """
+#: Constraints that are kept where free motion has no acceleration: no force acts on them.
+STRAIGHT = """
+title = "A free particle on a line"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+v = { role = "velocity", of = "y" }
+[parameters]
+m = { positive = true, default = 1 }
+k = { default = 2 }
+[lagrangian]
+l = "m*(u^2 + v^2)/2"
+[constraints]
+line = "u + k*v == 0"
+"""
+#: Every axis of the body is principal, so that it turns uniformly about any.
+ROUND = """
+title = "A body of unit inertia"
+routes = ["nonholonomic", "hamel"]
+[algebra]
+name = "so(3)"
+[variables]
+w = { role = "velocity" }
+[lagrangian]
+l = "dot(w, w)/2"
+[constraints]
+gear = "3*w1 == 2*w2"
+"""
+#: Its centre on a cylinder of radius R, the radius of the ball r, no slip; upright, weight along z.
+CYLINDER = """
+title = "A ball in an upright cylinder"
+routes = ["nonholonomic", "hamel"]
+[variables]
+theta = { role = "coordinate" }
+z = { role = "coordinate" }
+a = { role = "coordinate", shape = [3] }
+u = { role = "velocity", of = "theta" }
+w = { role = "velocity", of = "z" }
+s = { role = "velocity", of = "a" }
+[parameters]
+m = { positive = true, default = 1 }
+I = { positive = true, default = 1 }
+R = { positive = true, default = 3 }
+r = { positive = true, default = 1 }
+g = { default = 1 }
+[lagrangian]
+l = "m*(R^2*u^2 + w^2)/2 + I*dot(s, s)/2 - m*g*z"
+[constraints]
+around = "R*u + r*s3 == 0"
+along = "w - r*(-sin(theta)*s1 + cos(theta)*s2) == 0"
+"""
+#: Appell's: a weight on a thread that a rolling wheel winds up; a mass at rho before the wheel.
+APPELL = """
+title = "Appell's machine"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+z = { role = "coordinate" }
+psi = { role = "coordinate" }
+phi = { role = "coordinate" }
+vx = { role = "velocity", of = "x" }
+vy = { role = "velocity", of = "y" }
+vz = { role = "velocity", of = "z" }
+vpsi = { role = "velocity", of = "psi" }
+vphi = { role = "velocity", of = "phi" }
+[parameters]
+m = { positive = true, default = 1 }
+M = { positive = true, default = 2 }
+I = { positive = true, default = 1 }
+J = { positive = true, default = 1 }
+a = { positive = true, default = 1 }
+b = { positive = true, default = 1 }
+rho = { default = 1 }
+g = { default = 1 }
+[definitions]
+X = "vx - rho*sin(psi)*vpsi"
+Y = "vy + rho*cos(psi)*vpsi"
+[lagrangian]
+l = "M*(X^2 + Y^2)/2 + m*(X^2 + Y^2 + vz^2)/2 + I*vphi^2/2 + J*vpsi^2/2 - m*g*z"
+[constraints]
+along = "vx == a*cos(psi)*vphi"
+across = "vy == a*sin(psi)*vphi"
+thread = "vz == b*vphi"
+"""
 
 
 @cache

@@ -6,6 +6,7 @@ A spoiled text can so be evaluated as well, which the loader would refuse.
 from __future__ import annotations
 
 import ctypes
+import hashlib
 import shutil
 import subprocess
 import tempfile
@@ -40,6 +41,7 @@ class TextSystem:
         self.PARAMETERS = {quantity.name: quantity for quantity in context.parameters}
         self.rows = {program.name: program.shape for program in context.programs}
         self.python = {}
+        self.texts = texts
         exec(texts["kernel.py"], self.python)
         self.libraries = {}
         for target, flags in (("c", c_flags), ("c-fast", FUSED)):
@@ -47,22 +49,27 @@ class TextSystem:
             path = compile_text(texts, Path(tempfile.mkdtemp(dir=folder)), flags)
             self.libraries[target] = ctypes.CDLL(str(path))
 
-    def prepare(self, targets):
-        """Everything was compiled when the system was made."""
+    def load_kernels(self, targets):
+        """Everything was compiled when the system was made; the hash of each text."""
+        files = {target: "kernel.py" if target == "numpy" else "kernel.c" for target in targets}
+        return {
+            target: hashlib.sha256(self.texts[file].encode()).hexdigest()
+            for target, file in files.items()
+        }
 
     def __getattr__(self, function):
-        def method(state, parameters, target="c"):
+        def method(state, parameters, target="c", out=None):
             if target == "numpy":
-                return self.python[function](state, parameters)
-            return self._call(function, state, parameters, target)
+                return self.python[function](state, parameters, out)
+            return self._call(function, state, parameters, target, out)
 
         return method
 
-    def _call(self, function, state, parameters, target):
+    def _call(self, function, state, parameters, target, out):
         """One call of the C function, as its header declares it."""
         state, parameters = np.ascontiguousarray(state), np.ascontiguousarray(parameters)
         members = state.shape[1]
-        out = np.empty((*self.rows[function], members))
+        out = np.empty((*self.rows[function], members)) if out is None else out
         stride = members if parameters.ndim > 1 else 0
         getattr(self.libraries[target], f"{self.name}_{function}")(
             ctypes.c_size_t(members),
@@ -78,8 +85,6 @@ class TextSystem:
 
 class ProgramReference:
     """Programs in place of equations, for tests of the comparison itself."""
-
-    deep = False
 
     def __init__(self, programs):
         self.programs = {program.name: program for program in programs}

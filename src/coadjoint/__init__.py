@@ -7,7 +7,9 @@
     (J1**2 + J2**2 + J3**2,)
 
 Importing this package, or a generated system, loads neither SymPy nor NumPy; each public name below
-loads what it needs on first use. To read the engine, begin with `coadjoint.pipeline`.
+loads what it needs on first use. `load` and the names that end in ``_bounded`` limit the time and
+memory that a spec may take, for specs of strangers; `read_spec`, `derive` and `prove` do not. To
+read the engine, begin with `coadjoint.pipeline`.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from coadjoint.errors import CoadjointError
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra, algebra_by_name
+    from coadjoint.bounded import derive_bounded, prove_bounded, read_bounded
     from coadjoint.derive import Equations, derive
     from coadjoint.loading import load
     from coadjoint.poisson import PoissonStructure
@@ -39,9 +42,12 @@ __all__ = [
     "System",
     "algebra_by_name",
     "derive",
+    "derive_bounded",
     "examine",
     "load",
     "prove",
+    "prove_bounded",
+    "read_bounded",
     "read_spec",
 ]
 
@@ -56,9 +62,12 @@ _HOMES = {
     "System": "coadjoint.solve.system",
     "algebra_by_name": "coadjoint.algebra",
     "derive": "coadjoint.derive",
+    "derive_bounded": "coadjoint.bounded",
     "examine": "coadjoint.prove.examination",
     "load": "coadjoint.loading",
     "prove": "coadjoint.prove",
+    "prove_bounded": "coadjoint.bounded",
+    "read_bounded": "coadjoint.bounded",
     "read_spec": "coadjoint.spec",
 }
 

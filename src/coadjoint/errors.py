@@ -1,14 +1,24 @@
 """Errors of every step: one base, and a few children named for what the user did.
 
-The parts of a message stay on the exception as keyword attributes, so that a caller or a test reads
-them without parsing text, and so that an error raised in a child process arrives whole in the
-parent (`as_record` and `from_record`).
+A message is plain text of at most a screen, whatever a spec has put into it: characters that a
+terminal would obey are shown as escapes (`plain`). The parts of a message stay on the exception as
+keyword attributes, so that a caller or a test reads them without parsing text, and so that an error
+raised in a child process arrives whole in the parent (`as_record` and `from_record`).
 """
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
+
+from coadjoint.limits import MESSAGE_ROWS
+
+#: Columns of the narrowest usual terminal.
+_COLUMNS: Final = 80
+#: Rows of the end of a message that are kept where its middle is left out: the likely fix.
+_LAST_ROWS: Final = 6
 
 
 class CoadjointError(Exception):
@@ -24,7 +34,7 @@ class CoadjointError(Exception):
     exit_status: ClassVar[int] = 2
 
     def __init__(self, message: str, **parts: Any) -> None:
-        super().__init__(message)
+        super().__init__(shortened(plain(message)))
         self.parts = parts
 
     def __getattr__(self, name: str) -> Any:
@@ -89,13 +99,83 @@ class KernelTypeError(CoadjointError, TypeError):
 
 
 class ResourceError(CoadjointError):
-    """A bounded child process ran out of its time or memory."""
+    """A bounded child process ran out of its time or memory, or was promised no proper amount."""
 
 
 class InternalError(CoadjointError):
     """A fault of coadjoint itself, found in a child process; please report it."""
 
     exit_status = 70
+
+
+def plain(text: str) -> str:
+    r"""Text for a terminal: what it would obey is shown as an escape; line ends stay.
+
+    >>> plain("a title \x1b]0;owned\x07")
+    'a title \\x1b]0;owned\\x07'
+    """
+    if text.isascii() and text.replace("\n", "").isprintable():
+        return text
+    return "".join(
+        c if c.isprintable() or c == "\n" else " " if c == "\t" else ascii(c)[1:-1] for c in text
+    )
+
+
+def shortened(text: str) -> str:
+    """A message of at most a screen; of a longer one, the middle is left out."""
+    rows = [
+        row
+        for line in text.split("\n")
+        for row in _rows(line + "\n")  # each end of line stays with the last row of its line
+    ]
+    if len(rows) <= MESSAGE_ROWS:
+        return text
+    first = MESSAGE_ROWS - _LAST_ROWS - 1
+    return "".join(rows[:first]).rstrip() + "\n[...]\n" + "".join(rows[-_LAST_ROWS:]).strip()
+
+
+def _rows(line: str) -> list[str]:
+    """A line, its end included, as rows of a terminal."""
+    return [line[n : n + _COLUMNS] for n in range(0, max(1, len(line) - 1), _COLUMNS)]
+
+
+#: What the operating system refuses for reasons that are no fault of ours, and what helps.
+_REFUSALS: Final = {
+    errno.ENOSPC: "Free some space.",
+    errno.EDQUOT: "Free some space of your quota.",
+    errno.EFBIG: "Raise the limit of file sizes (ulimit -f).",
+    errno.EROFS: "Choose a place that can be written.",
+    errno.EACCES: "Check the permissions.",
+    errno.EPERM: "Check the permissions.",
+    errno.EIO: "Check the device.",
+    errno.EMFILE: "Raise the limit of open files (ulimit -n).",
+    errno.ENFILE: "Close some programs.",
+    errno.ENOMEM: "Free some memory.",
+    errno.EAGAIN: "Raise the limit of processes (ulimit -u), or close some programs.",
+}
+
+
+def system_error(error: OSError) -> OutputError | None:
+    """A refusal of the operating system as an error that says what it is; None for other faults."""
+    help_with = _REFUSALS.get(error.errno or 0, "")
+    reason = error.strerror or str(error)
+    if error.errno == errno.ENOENT and "temporary directory" in str(error):
+        reason, help_with = str(error), "Set TMPDIR to a folder that can be written."
+    if error.errno == errno.ENOENT and not _has_working_folder():
+        reason, help_with = "the working folder is gone", "Go to one that is there."
+    if not help_with:
+        return None
+    place = f"{os.fsdecode(error.filename)}: " if isinstance(error.filename, str | bytes) else ""
+    return OutputError(f"{place}{reason}. {help_with}", path=place.removesuffix(": "), found=reason)
+
+
+def _has_working_folder() -> bool:
+    """Whether the folder that this process works in is still there."""
+    try:
+        os.getcwd()  # noqa: PTH109 (Path.cwd is the same call)
+    except OSError:
+        return False
+    return True
 
 
 def from_record(record: Mapping[str, Any]) -> CoadjointError:

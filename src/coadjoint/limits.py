@@ -85,11 +85,23 @@ C_STATEMENTS = 1000
 
 # -- children -------------------------------------------------------------------------------------
 
-#: Seconds that the derivation of one system may take.
+#: Seconds of processor time that the derivation of one system may take, unless more are asked for.
 WORKER_SECONDS = 60
+#: Times as long that it may take by the clock: a machine that is busy with twenty tasks is no fault
+#: of a spec, and what waits for ever is ended.
+WALL_FACTOR = 20
 #: Bytes of memory that the derivation of one system may take.
 WORKER_BYTES = 2 * 1024**3
-#: Seconds that compiling one kernel may take.
+#: Seconds of processor time that compiling one kernel may take.
 COMPILE_SECONDS = 60
+#: Seconds of wall time after which a compiler hangs; a busy machine needs more than the processor.
+COMPILE_WALL_SECONDS = 240
 #: Bytes of memory that compiling one kernel may take.
 COMPILE_BYTES = 2 * 1024**3
+#: Bytes of the cache, beyond which what was not used for longest is removed.
+CACHE_BYTES = 256 * 1024**2
+
+# -- messages -------------------------------------------------------------------------------------
+
+#: Rows of 80 columns that a message fills at the most: a screen.
+MESSAGE_ROWS = 24

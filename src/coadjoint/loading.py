@@ -16,11 +16,21 @@ from coadjoint.regenerate import Progress, regenerate
 from coadjoint.solve.system import System, load_folder
 
 
-def load(path: str | PathLike[str], *, progress: Progress = lambda *_: None) -> System:
+def load(
+    path: str | PathLike[str],
+    *,
+    seconds: float | None = None,
+    progress: Progress = lambda *_: None,
+) -> System:
     """Derive, prove, compile and load the system of a spec file.
+
+    Deriving runs in a child whose processor time and memory are bounded, so that a spec of a
+    stranger can be loaded; nothing of the spec's text is ever run as it stands.
 
     Args:
         path: A spec in TOML.
+        seconds: Processor time that deriving may take; by default the environment variable
+            ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
         progress: Told of every stage: system, stage, stages done, stages in all.
 
     Raises:
@@ -28,11 +38,12 @@ def load(path: str | PathLike[str], *, progress: Progress = lambda *_: None) -> 
         DerivationError: Its equations cannot be derived.
         ClaimError: One of its claims is false.
         CrossCheckError: Two forms of one function disagree.
+        ResourceError: Deriving took more time or memory than it may.
     """
     source = Path(path)
     # One folder for each place of a spec, so that equal names of different people do not collide.
     folder = cache_folder() / "systems" / digest(str(source.resolve()))[:16]
-    outcome = regenerate([source], folder, progress=progress)
+    outcome = regenerate([source], folder, seconds=seconds, progress=progress)
     for error in outcome.failures.values():
         raise error
     return load_folder(folder / source.stem)

@@ -16,12 +16,11 @@ and writes what passed.
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
+from coadjoint.build.cache import working_folder
 from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
@@ -98,10 +97,10 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Repor
         CrossCheckError: Two forms of one function disagree.
     """
     progress("compile and cross-check")
-    with tempfile.TemporaryDirectory(prefix="coadjoint-") as folder:
+    with working_folder() as folder:
         for name, text in rendered.texts.items():
-            (Path(folder) / name).write_text(text, encoding="utf-8")
-        system = load_folder(Path(folder))
+            (folder / name).write_text(text, encoding="utf-8")
+        system = load_folder(folder)
         reference = Reference(rendered.equations)
         return crosscheck(rendered.programs, rendered.texts, reference, system)
 

@@ -12,27 +12,31 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 from coadjoint import limits
+from coadjoint.budget import allowed_seconds
 from coadjoint.build.cache import cache_folder, replace_file
 from coadjoint.build.compiler import find_compiler
-from coadjoint.errors import CoadjointError, CompilerError, DriftError, SpecError
+from coadjoint.errors import CoadjointError, CompilerError, DriftError, OutputError, SpecError
+from coadjoint.files import read_object, read_regular
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
+from coadjoint.render.ownership import PACKAGE, leftovers, make_plan, read_manifest
 from coadjoint.render.write import (
-    PACKAGE,
+    SYSTEM_FILES,
     GeneratedSystem,
     manifest_text,
-    read_manifest,
     tree_texts,
     write_systems,
 )
-from coadjoint.sandbox import report_progress, run_bounded
+from coadjoint.sandbox import Children, report_progress, run_bounded
+from coadjoint.spec.faults import listed
+from coadjoint.spec.names import system_refusal
 from coadjoint.spec.reader import read_file
 
 #: Called with system, stage, number of stages done, number of stages.
@@ -111,6 +115,7 @@ def regenerate(
     *,
     jobs: int = 1,
     complete: bool = False,
+    seconds: float | None = None,
     progress: Progress = lambda *_: None,
     on_wait: Callable[[], None] = lambda: None,
 ) -> Outcome:
@@ -121,6 +126,7 @@ def regenerate(
         output: The generated folder.
         jobs: How many systems are worked on at a time.
         complete: Whether these are all the systems of the folder; others are then removed.
+        seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
         progress: Told of every stage of every system.
         on_wait: Called if another run holds the lock of the folder.
 
@@ -131,11 +137,12 @@ def regenerate(
         SpecError: A file cannot be read.
         OutputError: The folder cannot be written; what stood there is untouched.
     """
-    sources = _sources(paths)
+    sources, allowed = _sources(paths), allowed_seconds(seconds)
     rows = {source.name: row for source in sources if (row := _unchanged(source, output))}
     pending = [source for source in sources if source.name not in rows]
-    records, failures = _build_all(pending, jobs, progress)
     keep = {source.name for source in sources} if complete else None
+    _refuse_early(output, pending, keep)
+    records, failures = _build_all(pending, jobs, allowed, progress)
     if records or not _is_current(output, keep):
         systems = {name: _generated_system(record) for name, record in records.items()}
         write_systems(output, systems, template_hashes(), keep, on_wait)
@@ -152,6 +159,7 @@ def check(
     *,
     jobs: int = 1,
     complete: bool = False,
+    seconds: float | None = None,
     progress: Progress = lambda *_: None,
 ) -> Outcome:
     """Derive everything afresh and compare with what is checked in; nothing is written.
@@ -161,13 +169,14 @@ def check(
         output: The generated folder.
         jobs: How many systems are worked on at a time.
         complete: Whether these are all the systems of the folder, so that others are extra.
+        seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
         progress: Told of every stage of every system.
 
     Raises:
         DriftError: Files are missing, extra or changed; its ``differences`` list them.
     """
     sources = _sources(paths)
-    records, failures = _build_all(sources, jobs, progress)
+    records, failures = _build_all(sources, jobs, allowed_seconds(seconds), progress)
     systems = {name: _generated_system(record) for name, record in records.items()}
     entries = {name: system.record() for name, system in systems.items()}
     if not complete:
@@ -179,10 +188,12 @@ def check(
         if complete or _concerns(difference.path, records)
     ]
     if differences:
+        extra = any(each.kind == "extra" for each in differences)
         raise DriftError(
             f"{output}: {len(differences)} of the generated files differ from a fresh run: "
-            + ", ".join(f"{each.path} ({each.kind})" for each in differences)
-            + ". Run `coadjoint regenerate` and commit what it writes.",
+            + listed((f"{each.path} ({each.kind})" for each in differences), 8)
+            + ". Run `coadjoint regenerate` and commit what it writes"
+            + ("; it leaves extra files that no run wrote." if extra else "."),
             path=str(output),
             differences=[asdict(each) for each in differences],
         )
@@ -194,6 +205,19 @@ def check(
 def _row(record: Mapping[str, Any]) -> Row:
     """A row from JSON values, which know no tuples."""
     return Row(**{**record, "routes": tuple(record["routes"]), "targets": tuple(record["targets"])})
+
+
+def _is_row(record: Any) -> bool:
+    """Whether JSON values make a row, of which the table is printed."""
+    if not isinstance(record, dict) or record.keys() != {each.name for each in fields(Row)}:
+        return False
+    texts = all(
+        isinstance(record[key], list) and all(isinstance(each, str) for each in record[key])
+        for key in ("routes", "targets")
+    )
+    counts = ("dimension", "proved", "claims", "operations", "k", "seconds")
+    numbers = all(isinstance(record[key], int | float) for key in counts)
+    return texts and numbers and isinstance(record["system"], str)
 
 
 def _concerns(path: str, records: Mapping[str, Any]) -> bool:
@@ -221,10 +245,30 @@ def _sources(paths: Sequence[Path]) -> list[_Source]:
 # -- what need not be done again -----------------------------------------------------
 
 
+def _refuse_early(output: Path, pending: Sequence[_Source], keep: set[str] | None) -> None:
+    """Refuse, before any work, a folder in which what is to be written may not stand.
+
+    Raises:
+        OutputError: Something that no run wrote is in the way, or the folder cannot be read.
+    """
+    names = [source.name for source in pending if system_refusal(source.name) is None]
+    try:
+        make_plan(output, dict.fromkeys(names, SYSTEM_FILES), keep)
+    except OSError as error:
+        raise OutputError(
+            f"{output}: cannot be read: {error.strerror or error}. Check permissions, or choose "
+            "another folder with --output.",
+            path=str(output),
+            found=error.strerror or str(error),
+        ) from error
+
+
 def _is_current(output: Path, names: set[str] | None) -> bool:
     """Whether the manifest speaks of these systems and of the templates as they are."""
     manifest = read_manifest(output)
     if any(not _holds(output / file, text) for file, text in PACKAGE.items()):
+        return False
+    if any(leftovers(output)):
         return False
     same = names is None or manifest["systems"].keys() == names
     return bool(same and manifest["templates"] == template_hashes())
@@ -233,7 +277,7 @@ def _is_current(output: Path, names: set[str] | None) -> bool:
 def _holds(path: Path, text: str) -> bool:
     """Whether a file has exactly this text."""
     with suppress(OSError):
-        return path.read_bytes() == text.encode()
+        return read_regular(path) == text.encode()
     return False
 
 
@@ -242,14 +286,14 @@ def _unchanged(source: _Source, output: Path) -> Row | None:
 
     What was verified is remembered in the private cache of this machine, by fingerprint.
     """
-    try:
-        found = json.loads(_stamp(source).read_text(encoding="ascii"))
-        entry = read_manifest(output)["systems"].get(source.name)
-        if found["entry"] == entry and is_intact(output, source.name):
-            return _row({**found["row"], "seconds": 0.0, "fresh": False})
-    except (OSError, ValueError, KeyError, TypeError):
-        pass  # a damaged stamp is no stamp
-    return None
+    found = read_object(_stamp(source))
+    entry = read_manifest(output)["systems"].get(source.name)
+    row: Any = found.get("row")
+    if not _is_row(row) or entry is None or found.get("entry") != entry:
+        return None  # a damaged stamp is no stamp
+    if not is_intact(output, source.name):
+        return None
+    return _row({**row, "seconds": 0.0, "fresh": False})
 
 
 def _remember(source: _Source, record: Mapping[str, Any]) -> None:
@@ -272,11 +316,12 @@ def _generated_system(record: Mapping[str, Any]) -> GeneratedSystem:
 
 
 def _build_all(
-    sources: Sequence[_Source], jobs: int, progress: Progress
+    sources: Sequence[_Source], jobs: int, seconds: int, progress: Progress
 ) -> tuple[dict[str, dict[str, Any]], dict[str, CoadjointError]]:
     """Records of the systems that passed, and errors of the others."""
     records: dict[str, dict[str, Any]] = {}
     failures: dict[str, CoadjointError] = {}
+    children = Children()
 
     def run(source: _Source) -> None:
         def report(stage: str, done: int, total: int) -> None:
@@ -286,16 +331,22 @@ def _build_all(
             records[source.name] = run_bounded(
                 "coadjoint.regenerate:build_record",
                 {"path": str(source.path)},
-                seconds=limits.WORKER_SECONDS,
+                seconds=seconds,
                 memory=limits.WORKER_BYTES,
                 on_progress=report,
+                children=children,
+                subject=str(source.path),
             )
         except CoadjointError as error:
             failures[source.name] = error
 
     # Threads only wait for children; a lost child is an error of its system, never a hang.
-    with ThreadPoolExecutor(max_workers=max(1, jobs)) as pool:
+    pool = ThreadPoolExecutor(max_workers=max(1, jobs))
+    try:
         list(pool.map(run, sources))
+    finally:  # Ctrl-C arrives here, in the main thread, while the others wait
+        children.stop()
+        pool.shutdown(cancel_futures=True)
     return records, failures
 
 

@@ -1,14 +1,17 @@
 """Bounded children: a function of this package run in a process that can be killed.
 
 Comes in: the name of a function and a JSON value. Goes out: its JSON result, or the error that it
-raised, as in this process. Time and memory are limited, since no static limit on a spec keeps every
-computation short; a child dies with its parent.
+raised, as in this process. Processor time and memory are limited, since no static limit on a spec
+keeps every computation short; time by the clock only so far that nothing waits for ever. A child
+dies with its parent, and with a child dies what it started.
 """
 
 from __future__ import annotations
 
 import ctypes
+import errno
 import json
+import math
 import os
 import resource
 import signal
@@ -20,10 +23,18 @@ from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
-from threading import Timer
+from threading import Lock, Timer
 from typing import IO, Any
 
-from coadjoint.errors import CoadjointError, InternalError, ResourceError, from_record
+from coadjoint.budget import VARIABLE
+from coadjoint.errors import (
+    CoadjointError,
+    InternalError,
+    ResourceError,
+    from_record,
+    system_error,
+)
+from coadjoint.limits import WALL_FACTOR
 
 #: Called with stage, number of stages done, number of stages.
 Progress = Callable[[str, int, int], None]
@@ -38,6 +49,36 @@ _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
 _channel: IO[str] | None = None
 
 
+class Children:
+    """The children of one task that run now, so that they can be ended together."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._running: set[subprocess.Popen[str]] = set()
+        self._stopped = False
+
+    def add(self, process: subprocess.Popen[str]) -> None:
+        """Note a child; one that comes after the end of the task is ended at once."""
+        with self._lock:
+            self._running.add(process)
+            stopped = self._stopped
+        if stopped:
+            _kill(process)
+
+    def remove(self, process: subprocess.Popen[str]) -> None:
+        """Forget a child that has ended."""
+        with self._lock:
+            self._running.discard(process)
+
+    def stop(self) -> None:
+        """End every child and what it started, now and later."""
+        with self._lock:
+            self._stopped = True
+            running = list(self._running)
+        for process in running:
+            _kill(process)
+
+
 def run_bounded(
     target: str,
     argument: Any,
@@ -45,15 +86,22 @@ def run_bounded(
     seconds: float,
     memory: int,
     on_progress: Progress = lambda *_: None,
+    children: Children | None = None,
+    wall: float | None = None,
+    subject: str = "",
 ) -> Any:
     """Run ``module:function`` of this package on a JSON value in a bounded child.
 
     Args:
         target: A function of one argument, e.g. ``"coadjoint.regenerate:build_record"``.
         argument: A JSON value.
-        seconds: Limit of wall time and of processor time.
+        seconds: Limit of processor time of the child itself; a compiler that it runs has limits of
+            its own. Rounded up to whole seconds.
         memory: Limit of address space, bytes.
         on_progress: Told what the function reports through `report_progress`.
+        children: Where to note the child while it runs.
+        wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``.
+        subject: What it is about, for messages: the path of a spec. By default the function.
 
     Returns:
         The function's JSON result.
@@ -61,45 +109,74 @@ def run_bounded(
     Raises:
         CoadjointError: What the function raised, the same class with the same parts.
         ResourceError: The child ran out of time or memory, or was killed.
+        OutputError: The operating system refuses what the child needs, e.g. a temporary file.
         InternalError: The function raised anything else: a fault of ours.
     """
+    subject = subject or target.rpartition(":")[2]
     request = {"target": target, "argument": argument, "seconds": seconds, "memory": memory}
-    expired: list[bool] = []
-    with tempfile.TemporaryFile() as errors, _started(errors) as process:
+    request["subject"] = subject
+    task = _Task(
+        subject,
+        _processor_limit(seconds),
+        WALL_FACTOR * seconds if wall is None else wall,
+        memory,
+    )
+
+    def note(stage: str, done: int, total: int) -> None:
+        task.stage = stage
+        on_progress(stage, done, total)
+
+    try:
+        errors, process = _start()
+    except OSError as error:
+        refused = system_error(error)
+        if refused is None:
+            raise
+        raise refused from error
+    with errors, process:
+        noted = children or Children()
+        noted.add(process)
 
         def expire() -> None:
-            expired.append(True)
+            task.expired = True
             _kill(process)
 
-        timer = Timer(seconds, expire)
+        timer = Timer(task.wall, expire)
         timer.daemon = True
         timer.start()
         try:
-            last = _converse(process, request, on_progress)
-            process.wait()
+            last = _converse(process, request, note)
+            task.used = _reap(process)
         finally:
             timer.cancel()
+            noted.remove(process)
             _kill(process)
         if last is None:
             errors.seek(0)
-            raise _lost(target, process.returncode, bool(expired), seconds, memory, errors.read())
+            raise task.lost(process.returncode, errors.read())
     if "error" in last:
         raise from_record(last["error"])
     return last["result"]
 
 
-def _started(errors: IO[bytes]) -> subprocess.Popen[str]:
-    """The child, waiting for its request."""
-    return subprocess.Popen(
-        [sys.executable, "-I", "-c", _BOOT, _ROOT, str(os.getpid())],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=errors,
-        text=True,
-        start_new_session=True,
-        # One thread: each pool of a numerical library reserves memory of the child's limit.
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-    )
+def _start() -> tuple[IO[bytes], subprocess.Popen[str]]:
+    """A file for what the child complains of, and the child, waiting for its request."""
+    errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed by the caller)
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-I", "-c", _BOOT, _ROOT, str(os.getpid())],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            text=True,
+            start_new_session=True,
+            # One thread: each pool of a numerical library reserves memory of the child's limit.
+            env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+        )
+    except BaseException:
+        errors.close()
+        raise
+    return errors, process
 
 
 def _converse(
@@ -123,32 +200,103 @@ def _converse(
     return None
 
 
+def _reap(process: subprocess.Popen[str]) -> float:
+    """Wait for the end of a child; processor time that it and what it waited for have used."""
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return usage.ru_utime + usage.ru_stime
+
+
 def _kill(process: subprocess.Popen[str]) -> None:
-    """Kill a child and whatever it started; its session is its own."""
-    with suppress(ProcessLookupError):
+    """Kill a child and whatever it started, in sessions of their own too."""
+    if process.returncode is None:
+        with suppress(ProcessLookupError, PermissionError):
+            os.kill(process.pid, signal.SIGSTOP)  # nothing new is started from here on
+        for started in _descendants(process.pid):
+            with suppress(ProcessLookupError, PermissionError):
+                os.kill(started, signal.SIGKILL)
+    with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
 
 
-def _lost(
-    target: str, status: int, expired: bool, seconds: float, memory: int, errors: bytes
-) -> ResourceError:
-    """Why a child ended without a final message."""
-    task, tail = target.rpartition(":")[2], errors.decode(errors="replace").strip()[-400:]
-    if expired or status == -signal.SIGXCPU:
+def _descendants(ancestor: int) -> list[int]:
+    """Processes below one, where the system shows them in /proc."""
+    below: dict[int, list[int]] = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError, ValueError, IndexError):  # it may have ended meanwhile
+            parent = path.read_text(errors="replace").rpartition(")")[2].split()[1]
+            below.setdefault(int(parent), []).append(int(path.parent.name))
+    found, waiting = [], [ancestor]
+    while waiting:
+        children = below.get(waiting.pop(), [])
+        found += children
+        waiting += children
+    return found
+
+
+def _processor_limit(seconds: float) -> int:
+    """Whole seconds of processor time, less where this process has a lower limit itself."""
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    whole = max(1, math.ceil(seconds))
+    # One less than the hard limit, at which the system kills without saying why.
+    return whole if most == resource.RLIM_INFINITY else max(1, min(whole, most - 1))
+
+
+class _Task:
+    """What is known of one child, to say why it was lost."""
+
+    def __init__(self, subject: str, seconds: int, wall: float, memory: int) -> None:
+        self.subject, self.seconds, self.wall, self.memory = subject, seconds, wall, memory
+        self.stage, self.used, self.expired = "", 0.0, False
+
+    def lost(self, status: int, errors: bytes) -> ResourceError:
+        """The error of a child that ended without a final message."""
+        if status == -signal.SIGXCPU:
+            message, limit = self._out_of_time(), float(self.seconds)
+        elif self.expired:
+            message, limit = self._out_of_patience(), self.wall
+        else:
+            message, limit = self._killed(status, errors), self.memory
         return ResourceError(
-            f"{task} took more than {seconds:g} s and was stopped. Simplify the spec: fewer or "
-            "shorter expressions, fewer coupled variables.",
-            limit=seconds,
-            task=task,
+            f"{self.subject}: {message}",
+            limit=limit,
+            task=self.subject,
+            stage=self.stage,
+            used=self.used,
+            status=status,
         )
-    found = signal.Signals(-status).name if status < 0 else f"exit status {status}"
-    return ResourceError(
-        f"{task} was lost ({found}; limit of memory {memory // 2**20} MiB). Simplify the spec, or "
-        f"look whether something ended the process. {tail}".rstrip(),
-        limit=memory,
-        task=task,
-        status=status,
-    )
+
+    @property
+    def _where(self) -> str:
+        return f" in the stage {self.stage!r}" if self.stage else ""
+
+    def _out_of_time(self) -> str:
+        """The limit of processor time was reached."""
+        return (
+            f"stopped{self._where} after {self.seconds} s of processor time, which is the limit. "
+            f"Allow more with --seconds {10 * self.seconds}, in a program with "
+            f"seconds={10 * self.seconds}, or with the environment variable {VARIABLE}; or "
+            "simplify the spec: fewer or shorter expressions, fewer coupled variables."
+        )
+
+    def _out_of_patience(self) -> str:
+        """The limit of time by the clock was reached."""
+        return (
+            f"stopped{self._where} after {self.wall:g} s by the clock, in which it has computed "
+            f"for {self.used:.1f} s. Something it waits for does not answer, or the machine is "
+            "busy with other work: try again later, or allow more with --seconds (the clock may "
+            f"show {WALL_FACTOR} times that), seconds=, or {VARIABLE}."
+        )
+
+    def _killed(self, status: int, errors: bytes) -> str:
+        """A signal or an exit that nobody here has asked for."""
+        found = signal.Signals(-status).name if status < 0 else f"exit status {status}"
+        tail = errors.decode(errors="replace").strip()[-400:]
+        return (
+            f"lost{self._where} ({found}, after {self.used:.1f} s of processor time; limit of "
+            f"memory {self.memory // 2**20} MiB). Simplify the spec, or look whether something "
+            f"ended the process. {tail}".rstrip()
+        )
 
 
 # -- in the child ---------------------------------------------------------------------------------
@@ -167,20 +315,38 @@ def child() -> None:
     os.dup2(2, 1)  # what libraries print must not meet the messages
     request = json.load(sys.stdin)
     _limit(resource.RLIMIT_AS, request["memory"])
-    _limit(resource.RLIMIT_CPU, int(request["seconds"]) + 1)
     _limit(resource.RLIMIT_CORE, 0)
+    # The soft limit alone: what this child starts may be given another one.
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    resource.setrlimit(resource.RLIMIT_CPU, (_processor_limit(request["seconds"]), most))
     try:
         _send({"result": _function(request["target"])(request["argument"])})
     except CoadjointError as error:
         _send({"error": error.as_record()})
-    except MemoryError:
-        limit = f"{request['memory'] // 2**20} MiB"
-        message = f"more than {limit} of memory were needed. Simplify the spec."
-        _send({"error": ResourceError(message, limit=request["memory"]).as_record()})
     except Exception as error:
-        message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."
-        trace = traceback.format_exc()
-        _send({"error": InternalError(message, traceback=trace).as_record()})
+        _send({"error": _described(error, request).as_record()})
+
+
+def _described(error: Exception, request: dict[str, Any]) -> CoadjointError:
+    """An exception that is none of ours, as one; called where it is handled."""
+    if _is_want_of_memory(error):
+        memory: int = request["memory"]
+        message = f"more than {memory // 2**20} MiB of memory were needed. Simplify the spec."
+        return ResourceError(f"{request['subject']}: {message}", limit=memory)
+    refused = system_error(error) if isinstance(error, OSError) else None
+    if refused is not None:
+        return refused
+    message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."
+    return InternalError(message, traceback=traceback.format_exc())
+
+
+def _is_want_of_memory(error: Exception) -> bool:
+    """Whether memory was refused, to Python, by the system, or to a library that was to load."""
+    if isinstance(error, ImportError):
+        return "failed to map segment" in str(error) or "annot allocate memory" in str(error)
+    # A SystemError comes from libraries in C that do not look what they were given.
+    refused = isinstance(error, MemoryError | SystemError)
+    return refused or getattr(error, "errno", None) == errno.ENOMEM
 
 
 def _function(target: str) -> Callable[[Any], Any]:

@@ -5,13 +5,16 @@ import shutil
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from coadjoint.build import cache
 from coadjoint.build.cache import CacheWarning, cache_folder, check_private, fetch, store
+from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import OutputError
+from coadjoint.solve import kernels
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import rigid_body
 
@@ -40,9 +43,12 @@ def test_an_object_comes_back_as_it_was_stored(folder):
     assert fetch("other") is None
 
 
-@pytest.mark.parametrize("damage", ["empty", "half", "flip", "gone", "link", "key"])
-def test_every_damage_is_a_miss(folder, damage):
-    """Emptied, halved, one bit flipped, removed, replaced by a link, or with a garbled key."""
+@pytest.mark.parametrize(
+    "damage",
+    ["empty", "half", "flip", "gone", "link", "key", "folder", "folders", "file", "lost"],
+)
+def test_every_damage_is_a_miss_and_heals(folder, damage):
+    """Emptied, halved, one bit flipped, removed, a link, a folder, a garbled key; then stored."""
     path = store("key", b"content of an object")
     whole = path.read_bytes()
     match damage:
@@ -57,6 +63,19 @@ def test_every_damage_is_a_miss(folder, damage):
         case "link":
             path.rename(path.with_name("moved"))
             path.symlink_to(path.with_name("moved"))
+        case "folder":
+            path.unlink()
+            (path / "inner").mkdir(parents=True)
+        case "folders":
+            for each in (path, path.parent / "key"):
+                each.unlink()
+                each.mkdir()
+        case "file":
+            shutil.rmtree(path.parent)
+            path.parent.write_text("not a folder")
+        case "lost":
+            shutil.rmtree(path.parent)
+            path.parent.symlink_to(folder / "nowhere")
         case "key":
             (path.parent / "key").write_bytes(b"\xff../../etc/passwd")
     assert fetch("key") is None
@@ -156,6 +175,79 @@ def test_the_temporary_folder_ends_with_its_process(tmp_path):
     assert not list((tmp_path / "temporary").iterdir())
 
 
+KILLED = """
+import os
+from coadjoint.build import cache
+cache.os.fsync = lambda _: os.kill(os.getpid(), 9)
+cache.store("key", b"content")
+"""
+
+
+def test_a_killed_writer_leaves_nothing_past_the_next_run(folder):
+    """What it wrote is no object, and the next process that looks into the cache removes it."""
+    assert subprocess.run([sys.executable, "-c", KILLED], check=False).returncode == -9
+    assert [path for path in folder.rglob("*") if path.is_file()]
+    look = "from coadjoint.build.cache import fetch; assert fetch('key') is None"
+    subprocess.run([sys.executable, "-c", look], check=True)
+    assert not [path for path in folder.rglob("*") if path.is_file()]
+
+
+def test_without_a_home_the_cache_is_temporary(monkeypatch, tmp_path):
+    """No HOME, and a user whom the system does not know: said as what it is."""
+
+    def unknown():
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("COADJOINT_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(Path, "home", unknown)
+    cache._usable.cache_clear()
+    with pytest.warns(CacheWarning, match="no home folder for the cache. Set HOME"):
+        found = cache_folder()
+    shutil.rmtree(found)
+    cache._usable.cache_clear()
+
+
+NOWHERE = """
+import resource, sys
+from coadjoint.systems import rigid_body
+import numpy, warnings
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    print(rigid_body.rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0]).tolist())
+print(*(each.message for each in said))
+"""
+
+
+def test_where_no_file_can_be_written_numpy_stands_in(folder):
+    """A first call under a file size limit of zero: the right numbers, and why they come slowly."""
+    found = subprocess.run(
+        [sys.executable, "-c", NOWHERE], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    assert found[0] == "[-1.5, 2.25, -1.0]"  # (1/I3 - 1/I2) Pi2 Pi3 and cyclic
+    assert "cannot be compiled here" in found[1]
+    assert "NumPy kernels are used" in found[1]
+
+
+def test_without_any_temporary_folder_numpy_stands_in(monkeypatch, tmp_path):
+    """No cache and no temporary folder: as without a compiler."""
+    (tmp_path / "file").write_text("")
+
+    def none():
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "file"))
+    monkeypatch.setattr(cache.tempfile, "gettempdir", none)
+    monkeypatch.setattr(kernels, "_said", set())
+    system = body(tmp_path)
+    with pytest.warns(CompilerWarning, match="no temporary folder can be written"):
+        found = system.rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])
+    assert found.tolist() == [-1.5, 2.25, -1.0]
+    with pytest.raises(OutputError, match="No temporary folder can be written either"):
+        cache_folder()
+
+
 def test_a_full_disk_leaves_the_old_object(folder, monkeypatch):
     """A failing write is an error that names the folder; what was there still is."""
     store("key", b"old")
@@ -169,4 +261,4 @@ def test_a_full_disk_leaves_the_old_object(folder, monkeypatch):
     monkeypatch.undo()
     monkeypatch.setenv("COADJOINT_CACHE", str(folder))
     assert fetch("key").read_bytes() == b"old"
-    assert not list(folder.rglob("*.tmp"))
+    assert not list((folder / "work").iterdir())

@@ -1,7 +1,10 @@
 """Compilers: found, missing, failing, hanging, lying; CC is a program and nothing else."""
 
 import shutil
+import signal
 import stat
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -9,6 +12,7 @@ import numpy as np
 import pytest
 
 from coadjoint.build import compiler
+from coadjoint.build.cache import cache_folder
 from coadjoint.build.compiler import Compiler, CompilerWarning, compile_kernel, find_compiler
 from coadjoint.errors import CompilerError
 from coadjoint.solve import kernels
@@ -120,15 +124,91 @@ def test_a_warning_is_an_error(tmp_path):
 def test_a_hanging_compiler_is_stopped(monkeypatch, tmp_path):
     """The limit is named, and nothing of it is left running."""
     fake = script(tmp_path, "slow", "sleep 61 & echo $! > started; wait")
-    monkeypatch.setattr(compiler._run, "__defaults__", (0.5,))
-    with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
+    monkeypatch.setattr(compiler._run, "__defaults__", (60, 0.5))
+    with pytest.raises(CompilerError, match=r"the compiler did not finish in 0\.5 s: .*slow was"):
         compile_kernel(Compiler((str(fake),), "slow 1.0"), sources(tmp_path), "exact")
-    child = Path("/proc") / (tmp_path / "started").read_text().strip() / "cmdline"
-    for _ in range(50):
-        if not child.exists() or not child.read_bytes():  # gone, or a zombie
-            return
-        time.sleep(0.1)
-    pytest.fail("what the compiler started is still running")
+    wait_for_the_end(tmp_path / "started")
+
+
+def wait_for_the_end(started):
+    """Wait until the process whose number stands in a file is gone; a hang is the test's limit."""
+    child = Path("/proc") / started.read_text().strip() / "cmdline"
+    while child.exists() and child.read_bytes():  # gone, or a zombie
+        time.sleep(0.05)
+
+
+def test_a_compiler_that_never_ends_is_stopped_by_its_processor_time(monkeypatch, tmp_path):
+    """A loop is told from a machine that is busy: the limit counts what the compiler used."""
+    fake = script(tmp_path, "loop", "while :; do :; done")
+    monkeypatch.setattr(compiler._run, "__defaults__", (1, 120))
+    with pytest.raises(CompilerError, match=r"did not finish in 1 s of processor time: .*loop was"):
+        compile_kernel(Compiler((str(fake),), "loop 1.0"), sources(tmp_path), "exact")
+
+
+CALLER = """
+import sys, warnings
+from pathlib import Path
+from coadjoint.solve.system import load_folder
+load_folder(Path(sys.argv[1])).prepare(("c", "c-fast"))
+"""
+#: Says its number and sleeps, in a child of its own as compilers have.
+SLEEPER = (
+    '[ "$1" = --version ] && echo sleeper 1.0 && exit\n'
+    "sleep 1000 & echo $! > {folder}/started.$$.part\n"
+    "mv {folder}/started.$$.part {folder}/started.$$\nwait"
+)
+
+
+def sleeping(monkeypatch, tmp_path):
+    """A process that waits for two compilers, and the files in which their numbers stand."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("CC", str(script(tmp_path, "sleeper", SLEEPER.format(folder=tmp_path))))
+    folder = tmp_path / "heavy_top"
+    shutil.copytree(heavy_top.system.folder, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    caller = subprocess.Popen([sys.executable, "-c", CALLER, str(folder)], stderr=subprocess.PIPE)
+    while len(started := sorted(tmp_path.glob("started.*[0-9]"))) < 2:
+        assert caller.poll() is None
+        time.sleep(0.05)
+    return caller, started
+
+
+def test_ctrl_c_ends_compilers_and_the_wait_for_them(monkeypatch, tmp_path):
+    """KeyboardInterrupt in the caller, and nothing of two sleeping compilers is left."""
+    caller, started = sleeping(monkeypatch, tmp_path)
+    caller.send_signal(signal.SIGINT)
+    _, said = caller.communicate()
+    assert b"KeyboardInterrupt" in said
+    for each in started:
+        wait_for_the_end(each)
+    assert not list((tmp_path / "cache" / "work").iterdir())
+
+
+def test_compilers_end_when_their_caller_is_killed(monkeypatch, tmp_path):
+    """A kill -9 leaves no compiler running; its folder is removed when the cache is used next."""
+    caller, started = sleeping(monkeypatch, tmp_path)
+    caller.kill()
+    caller.communicate()
+    for each in started:
+        wait_for_the_end(each)
+    work = tmp_path / "cache" / "work"
+    assert len(list(work.iterdir())) == 2
+    cache_folder()
+    assert not list(work.iterdir())
+
+
+def test_a_failed_version_is_remembered(monkeypatch, tmp_path):
+    """A compiler that cannot tell its version is asked once, however often one is looked for."""
+    log = tmp_path / "log"
+    fake = script(tmp_path, "mute", f"echo asked >> {log}; exit 3")
+    monkeypatch.setenv("CC", str(fake))
+    messages = set()
+    for _ in range(3):
+        with pytest.raises(CompilerError, match="--version ended with status 3") as caught:
+            find_compiler()
+        messages.add(str(caught.value))
+        assert caught.value.found == str(fake)
+    assert len(messages) == 1
+    assert log.read_text() == "asked\n"
 
 
 def test_a_compiler_that_needs_too_much_memory_is_stopped(monkeypatch, tmp_path):
@@ -195,6 +275,6 @@ def test_a_wrong_kernel_is_noticed_before_it_is_cached(monkeypatch, fresh_top, t
     real = find_compiler().command[0]
     changed = "sed -i 's/ - / + /' kernel.c"
     monkeypatch.setenv("CC", str(script(tmp_path, "traitor", f'{changed}; exec {real} "$@"')))
-    with pytest.warns(CompilerWarning, match="made a wrong kernel"):
+    with pytest.warns(CompilerWarning, match="a wrong kernel was compiled"):
         fresh_top.rhs(np.ones(6))
     assert not list(Path(tmp_path / "cache").rglob("*.so"))

@@ -1,5 +1,7 @@
 """The library: right ids, keys of all that matters, objects that are whole and of no use."""
 
+import hashlib
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,7 +13,7 @@ from coadjoint.build import library
 from coadjoint.build.cache import fetch, store
 from coadjoint.build.compiler import find_compiler
 from coadjoint.build.library import Library, load_library
-from coadjoint.errors import CompilerError
+from coadjoint.errors import CompilerError, OutputError
 from coadjoint.systems import rigid_body
 
 BODY = rigid_body.system
@@ -52,7 +54,46 @@ def test_an_object_of_another_system_is_refused(cache):
     load()
     (path,) = cache.rglob("*.so")
     with pytest.raises(CompilerError, match=r"kernel of other cannot be loaded.*other_id"):
-        Library(path, "other", BODY.id)
+        Library(path, "other", BODY.id, "exact")
+
+
+def test_an_object_of_another_build_is_refused_and_replaced(cache):
+    """It says which build it is; the fast one under the key of the exact one is compiled anew."""
+    fast = load_library(BODY.folder, BODY.name, BODY.id, "fast", lambda _: None)
+    assert fast.source == hashlib.sha256(SOURCES["kernel.c"]).hexdigest()
+    compiler = find_compiler()
+    path = fetch(library._key(compiler, SOURCES, "fast"))
+    with pytest.raises(CompilerError, match="carries the build 'fast'; expected 'exact'"):
+        Library(path, BODY.name, BODY.id, "exact")
+    exact = library._key(compiler, SOURCES, "exact")
+    store(exact, path.read_bytes())
+    assert isinstance(load(), Library)
+    assert fetch(exact) != path
+    Library(fetch(exact), BODY.name, BODY.id, "exact")
+
+
+def test_a_function_that_is_not_there_is_named(cache):
+    """Neither an AttributeError nor a crash."""
+    with pytest.raises(CompilerError, match="has no function nothing"):
+        load().function("nothing")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="an option of ELF linkers")
+def test_all_symbols_are_bound_when_a_library_is_loaded(cache):
+    """The object says so itself (DF_BIND_NOW), whoever loads it."""
+    load()
+    readelf = shutil.which("readelf")
+    if readelf is None:
+        pytest.skip("no readelf on this machine")
+    (path,) = cache.rglob("*.so")
+    found = subprocess.run([readelf, "-d", path], capture_output=True, text=True, check=True)
+    assert "BIND_NOW" in found.stdout
+
+
+def test_a_folder_without_a_kernel_is_named(cache, tmp_path):
+    """What is missing is in the message, with what to do."""
+    with pytest.raises(OutputError, match=r"kernel\.c cannot be read: No such file"):
+        load_library(tmp_path, BODY.name, BODY.id, "exact", lambda _: None)
 
 
 def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
@@ -106,5 +147,5 @@ def test_builders_at_one_time_do_not_disturb_one_another(cache):
     ]
     answers = [process.communicate(timeout=120)[0].strip() for process in started]
     assert answers == ["[-1.5, 2.25, -1.0]"] * 6
-    assert not list(cache.rglob("*.tmp"))
+    assert not list((cache / "work").iterdir())
     assert fetch(library._key(find_compiler(), SOURCES, "exact"))

@@ -8,7 +8,7 @@ import re
 import pytest
 
 from coadjoint.cli.algebra import examination_record
-from coadjoint.errors import LimitError, ResourceError
+from coadjoint.errors import LimitError
 from coadjoint.limits import EXAMINED_GENERATORS
 from coadjoint.render.document import render_document
 
@@ -155,16 +155,17 @@ def test_degree_bounds_the_search():
     """To degree 1 the Casimirs of se(3) are not found, and the record says why."""
     found = record("se(3)", degree=1)["casimirs"]
     assert (found["expected"], found["found"]) == (2, [])
-    assert "degree 1" in found["missing"]
+    assert found["missing"] == "2 not found among all polynomials of degree <= 1"
     assert len(record("se(3)", degree=2)["casimirs"]["found"]) == 2
 
 
-def test_search_that_would_be_too_large_is_told_and_the_rest_shown():
-    """Without a search for Casimirs everything else is still there, and the reason."""
+def test_search_that_would_be_too_large_goes_as_far_as_it_can():
+    """se(7) has 35959 monomials to degree 4: to degree 3 the square of P is found, and all told."""
     found = record("se(7)")
     assert found["rank"] == 24
-    assert found["casimirs"]["found"] == []
+    assert len(found["casimirs"]["found"]) == 1
     assert "35959 monomials" in found["casimirs"]["missing"]
+    assert "all polynomials of degree <= 3" in found["findings"][0]["statement"]
 
 
 # -- specs ----------------------------------------------------------------------------------------
@@ -187,8 +188,8 @@ def test_algebra_with_parameters_is_proved_for_all_their_values(run, twisted):
     assert found["casimirs"]["expected"] == 1
     assert "parameters" in found["casimirs"]["missing"]
     text = run("algebra", twisted).stdout
-    assert "its signs depend on the parameters" in text
-    assert "semisimple, unimodular (for almost all values of the parameters)" in text
+    assert "not counted, since the constants hold parameters" in text
+    assert "semisimple, unimodular, for almost all values of the parameters" in text
 
 
 @pytest.mark.parametrize(
@@ -202,7 +203,8 @@ def test_algebra_with_parameters_is_proved_for_all_their_values(run, twisted):
 def test_prove_counts_the_casimirs_of_every_bracket(run, system, statement):
     """`prove` says whether all are known, of declared brackets as of algebras."""
     proved = json.loads(run("prove", system, "--json").stdout)
-    assert statement in [claim["statement"] for claim in proved["claims"]]
+    statements = [claim["statement"] for claim in proved["claims"]]
+    assert f"{statement}, near almost every point" in statements
     assert proved["holds"]
 
 
@@ -281,14 +283,9 @@ def test_spoiled_algebra_is_refused_with_triple_and_defect(run, twisted):
     assert re.search(r"\[e1, \[e2, e3\]\] \+ cyclic = \(k\) e3; expected 0", message)
 
 
-def test_examination_that_takes_too_long_says_what_to_lower(run, monkeypatch):
-    """A child that is stopped names the algebra and the options that bound the work."""
-
-    def stopped(*_, **__):
-        raise ResourceError("examination_record took more than 60 s and was stopped.")
-
-    monkeypatch.setattr("coadjoint.sandbox.run_bounded", stopped)
-    message = refused(run, "so(8)")
-    assert "so(8)" in message
-    assert "60 s" in message
+def test_examination_that_takes_too_long_says_what_to_lower(run):
+    """A child that is stopped names the algebra, its stage, and the options that bound the work."""
+    message = refused(run, "so(9)", "--degree", "6", "--seconds", "2")
+    assert "so(9): stopped in the stage 'examine' after 2 s of processor time" in message
+    assert "--seconds 20" in message
     assert "--degree" in message

@@ -30,10 +30,46 @@ def test_folders_default_to_those_at_hand(project):
 
 
 def test_folders_default_to_the_shipped_ones_elsewhere(folder):
-    """In a folder without specs the shipped systems are regenerated in place."""
+    """In a folder without specs the shipped systems are meant."""
     assert folders(None, None) == (derivations_folder(), systems_folder())
     assert folders(folder / "mine", None)[1] == folder / "generated"
     assert folders(None, folder / "out")[1] == folder / "out"
+
+
+def test_outside_a_project_nothing_is_regenerated(folder, run, monkeypatch):
+    """Without a folder of specs at hand the run explains itself, before any work."""
+    monkeypatch.setattr("coadjoint.regenerate.run_bounded", None)
+    result = run("regenerate", "rigid_body")
+    assert result.exit_code == 2
+    assert f"{folder}: there is no folder `derivations` here" in result.stderr
+    assert "--derivations FOLDER" in result.stderr
+    assert list(folder.iterdir()) == []
+
+
+def test_an_installed_package_is_never_written_to(folder, run, monkeypatch):
+    """In the folder of the package itself, and with any name for it, the run is refused."""
+    installed = folder / "lib" / "site-packages" / "coadjoint"
+    (installed / "derivations").mkdir(parents=True)
+    (installed / "derivations" / "body.toml").write_text(RIGID_BODY)
+    monkeypatch.setattr("coadjoint.regenerate.run_bounded", None)
+    monkeypatch.chdir(installed)
+    for words in ((), ("--derivations", "derivations"), ("--output", installed / "systems")):
+        result = run("regenerate", *words)
+        assert result.exit_code == 2
+        assert "installed package, which is never written to" in result.stderr
+    assert sorted(path.name for path in installed.iterdir()) == ["derivations"]
+
+
+def test_files_of_others_are_refused_before_any_work(project, run, monkeypatch):
+    """A package of somebody's in the place of the generated folder is named and stays."""
+    (project / "generated").mkdir()
+    (project / "generated" / "__init__.py").write_text("precious = 1\n")
+    monkeypatch.setattr("coadjoint.regenerate.run_bounded", None)
+    result = run("regenerate")
+    assert result.exit_code == 2
+    assert "__init__.py" in result.stderr
+    assert (project / "generated" / "__init__.py").read_text() == "precious = 1\n"
+    assert len(list((project / "generated").iterdir())) == 1
 
 
 def test_a_run_writes_a_table_and_files_and_a_second_finds_nothing_to_do(project, run):
@@ -53,6 +89,9 @@ def test_a_run_writes_a_table_and_files_and_a_second_finds_nothing_to_do(project
     kernel = project / "generated" / "body" / "kernel.py"
     kernel.write_text(kernel.read_text().replace("+", "-", 1))
     (project / "generated" / "body" / "stray.txt").write_text("stray")
+    refused = run("regenerate")
+    assert refused.exit_code == 2
+    assert "body/stray.txt" in refused.stderr
     drifted = run("regenerate", "--check")
     assert drifted.exit_code == 1
     assert "changed: body/kernel.py" in drifted.stdout

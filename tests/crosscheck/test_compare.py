@@ -1,4 +1,4 @@
-"""What k may be: 4 for short formulas, and for long ones the number of their roundings."""
+"""What k may be: 4 for short formulas, and for long ones the number of their levels."""
 
 from __future__ import annotations
 
@@ -6,18 +6,24 @@ from dataclasses import replace
 
 import pytest
 
-from coadjoint.crosscheck.compare import Subject, most_roundings
+from coadjoint.crosscheck.compare import Subject, depth
 from tests.kernels import ProgramReference
 from tests.programs import PENDULUM, TOP_ENERGY, TOP_RHS, program
 
 
 @pytest.mark.parametrize(
-    ("value", "roundings"),
-    [("x", 0), ("-x", 0), ("x + y", 1), ("x*y*x", 2), ("(x + y)*(x + y)/(x + y)", 5)],
+    ("value", "levels"),
+    [("x", 0), ("-x", 0), ("x + y", 1), ("x*y*x", 2), ("(x + y)*(x + y)/(x + y)", 3), ("x/3", 1)],
 )
-def test_roundings_are_counted(value, roundings):
-    """A sum counts its longer side, a product or quotient both sides, and each operation one."""
-    assert most_roundings(program("f", "x y", "", "", value, ())) == roundings
+def test_levels_are_counted(value, levels):
+    """Each operation is one more than the deeper of its operands."""
+    assert depth(program("f", "x y", "", "", value, ())) == levels
+
+
+def test_a_constant_that_is_no_double_is_a_rounding():
+    """A tenth is rounded when it is printed, a half is not."""
+    assert depth(program("f", "x", "", "", "0.1", ())) == 1
+    assert depth(program("f", "x", "", "", "0.5", ())) == 0
 
 
 def threshold(*programs):
@@ -27,12 +33,13 @@ def threshold(*programs):
 
 
 def test_short_formulas_are_held_to_4():
-    """The rates and the energy of the heavy top, typed from the book, are short."""
-    assert most_roundings(TOP_ENERGY) == 6
-    assert threshold(TOP_RHS, TOP_ENERGY) == 4
+    """A cross product is short; the heavy top, typed from the book, is longer."""
+    assert threshold(program("f", "x y", "", "", "x*y - y*x", ())) == 4
+    assert threshold(TOP_RHS) == depth(TOP_RHS) == 5
+    assert threshold(TOP_ENERGY) == depth(TOP_ENERGY) == 6
 
 
-def test_a_long_formula_may_have_a_k_of_its_roundings():
+def test_a_long_formula_may_have_a_k_of_its_levels():
     """A right formula of 20 factors is not called wrong for the rounding of 19 products."""
     long = program("f", "x y", "", "", "*".join(["x"] * 20), ())
     assert threshold(long, replace(TOP_RHS, name="g")) == 19

@@ -34,7 +34,8 @@ def test_nothing_is_lost_to_cancellation():
     """(1 + u) - 1 with u = 2^-80 has all its digits, where doubles have none."""
     bounded = one_output("(x*x + y) - x*x", "xy", x=1.0, y=2.0**-80)
     assert abs(bounded.value - decimal.Decimal(2.0**-80)) < decimal.Decimal("1e-50")
-    assert float(bounded.envelope) == pytest.approx(2.0, abs=1e-9)  # the magnitudes of all addends
+    # Each of the two squares moves by twice what x moves by.
+    assert float(bounded.envelope) == pytest.approx(4.0, abs=1e-9)
 
 
 def test_fifty_digits_of_every_function():
@@ -65,9 +66,16 @@ def test_envelopes_grow_with_the_slope(function):
 
 
 def test_a_division_amplifies_by_its_condition():
-    """The envelope of a/b is envelope(a)/|b| times envelope(b)/|b|."""
+    """The envelope of a/b is envelope(a)/|b| and |a/b| times envelope(b)/|b|."""
     bounded = one_output("x/(y - 1)", "xy", x=3.0, y=1.5)
-    assert float(bounded.envelope) == pytest.approx(3 / 0.5 * (2.5 / 0.5), rel=1e-14)  # as above
+    wanted = 3 / 0.5 + 3 / 0.5 * (2.5 / 0.5)
+    assert float(bounded.envelope) == pytest.approx(wanted, rel=1e-14)  # as above
+
+
+def test_relative_errors_of_factors_add():
+    """The envelope of a product is |a| envelope(b) + |b| envelope(a), not their product."""
+    bounded = one_output("(x - 1)*(y - 1)", "xy", x=1.25, y=1.5)
+    assert float(bounded.envelope) == 0.25 * 2.5 + 0.5 * 2.25
 
 
 @pytest.mark.parametrize(
@@ -80,6 +88,7 @@ def test_a_division_amplifies_by_its_condition():
         ("log(x)", 0.0),
         ("sqrt(x - x)", 1.0),
         ("exp(x)", 1e300),
+        ("exp(x)", -800.0),
         ("log(x)", -1.0),
     ],
 )

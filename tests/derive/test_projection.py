@@ -10,7 +10,7 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Negate
-from tests.constrained import PARTICLE, PENDULUM, SUSLOV, derived
+from tests.constrained import CYLINDER, PARTICLE, PENDULUM, ROUND, STRAIGHT, SUSLOV, derived
 
 #: Two masses, so that the least kinetic energy is not the least length.
 UNEVEN = ('"m*(u^2 + v^2)/2 - m*g*y"', '"m*u^2/2 + m*g*v^2/2"')
@@ -86,5 +86,41 @@ def test_a_projection_solves_for_no_acceleration():
     """Its lines are those of the matrix and of the new right side alone."""
     program = lower(derived(PENDULUM)["nonholonomic"])["projection"]
     names = {statement.name for statement in program.statements}
-    assert {"_d3", "_y3", "_u1", "_s1", "_s2"} <= names
+    assert {"_d3", "_y3", "_u1"} <= names
     assert not names & {"_y1", "_z1", "du_dt", "dv_dt"}
+
+
+@pytest.mark.parametrize("route", ["nonholonomic", "hamel"])
+def test_a_line_without_a_force_is_reached_all_the_same(route):
+    """From (u, v) by -(u + k v) (1, k)/(1 + k^2); nothing accelerates, and no force is needed."""
+    point = {name: Fraction(n) for name, n in zip("xyuvmk", (1, 2, 7, 5, 3, 2), strict=True)}
+    equations = derived(STRAIGHT)[route]
+    share = Fraction(7 + 2 * 5, 1 + 2**2)
+    assert nearest(equations, point) == [1, 2, 7 - share, 5 - 2 * share]
+    assert all(equations.numbers[name] == 0 for name in ("du_dt", "dv_dt", "_u1"))
+
+
+@pytest.mark.parametrize("route", ["nonholonomic", "hamel"])
+def test_a_gear_on_a_round_body_is_reached(route):
+    """From w by -(3 w1 - 2 w2) (3, -2, 0)/13; the free body has no acceleration."""
+    point = {"w1": Fraction(5), "w2": Fraction(-1), "w3": Fraction(4)}
+    share = Fraction(3 * 5 + 2, 13)
+    assert nearest(derived(ROUND)[route], point) == [5 - 3 * share, -1 + 2 * share, 4]
+
+
+@pytest.mark.parametrize(
+    "text", [STRAIGHT, ROUND, CYLINDER, PENDULUM], ids=lambda t: t.split('"')[1]
+)
+def test_no_name_of_a_projection_is_defined_twice(text):
+    """Its definitions are those on which matrix and residuals rest, then its own solve."""
+    equations = derived(text)["nonholonomic"]
+    names = [name for name, _ in equations.projection.exact.definitions]
+    assert len({*names}) == len(names) > 0
+    check_inverse(equations, lower(equations)["projection"])
+
+
+def test_a_ball_in_an_upright_cylinder_keeps_its_turn():
+    """du/dt = 0: only along the cylinder does weight act; the projected state stays so."""
+    equations = derived(CYLINDER)["nonholonomic"]
+    assert equations.numbers["du_dt"] == equations.numbers["ds3_dt"] == 0
+    assert "dw_dt" not in equations.numbers

@@ -135,7 +135,9 @@ BY_HAND = {
     # s and its rate; Y, ds/dt x .., dGamma/dt; signs of -m s_i s_j; I + m (s^2 - s s^T); the
     # force m(Omega x Y + Omega x ds/dt); I Omega x Omega, s x force, weight, sums; L D L^T, solves
     "chaplygin_ball": 6 + 3 + 3 * 9 + 3 + 18 + 15 + 6 + 9 + 9 + 6 + 15 + 15,
-    "chaplygin_ball_centred": 3 + 3 + 3 * 9 + 3 + 18 + 15 + 6 + 9 + 3 + 15 + 15,  # no weight
+    # no weight, and no force: Y' = Y x Omega, as a point carried about has it. r Gamma, dGamma/dt,
+    # I + m (s^2 - s s^T), I Omega x Omega, L D L^T, solves
+    "chaplygin_ball_centred": 3 + 9 + 18 + 6 + 15 + 15,
     "routh_sphere": 4 + 3 + 3 * 9 + 3 + 18 + 15 + 4 + 9 + 2 + 2 + 2 + 15 + 15,  # I1 = I2
     # sine h, s; dGamma/dt; h'; s' = (r Gamma' - s h')/h; Y, s' turned, the force of both; I + m
     # (s^2 - s s^T) with s3 = 0, L D L^T of 2 x 2; I Omega x Omega, I1 = I2; torques, sums, solves
@@ -150,13 +152,13 @@ BY_HAND = {
     # I Omega x Omega; Gamma x Omega; Gamma/I, its pivot, both sides of the multiplier; the rest
     "veselova": 6 + 9 + 3 + 9 + 12 + 1 + 9,
     "chaplygin_sleigh": 4 + 3,  # m a v omega/J and its sign; m a omega^2/m
-    # sin, cos; B, velocities, its rates, convected; forces, mass, known side, quotient
-    "rolling_disk_vertical": 2 + 2 + 2 + 4 + 2 + 4 + 5 + 3 + 1,
+    "rolling_disk_vertical": 2 + 1 + 2,  # sin, cos; r vtheta along both; no acceleration
     # functions; driver; rate of the normal; L, D; forces; both sides of the multiplier; the rest
     "knife_edge_cvt": 2 + 6 + 3 + 1 + 4 + 4 + 7 + 1 + 4,
-    # functions; constraints, their rates, forces; two columns of L, weighted; pivots and the entry
-    # between them; two known sides with quotients; u and accelerations
-    "snakeboard": 2 + 3 + 6 + 7 + 12 + 4 + 8 + 9 + 11 + 14 + 16 + 2 + 2 + 18,
+    # functions, l cos; rates of the constraints; free accelerations; both columns of L, equal up to
+    # signs; pivots and the entry between them, of shared squares; two known sides with quotients; u
+    # and accelerations
+    "snakeboard": 3 + 4 + 2 + 6 + 4 + 3 + 5 + 3 + 11 + 12 + 2 + 16,
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
 }
 

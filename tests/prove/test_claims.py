@@ -125,10 +125,12 @@ def test_positive_parameters_stay_positive_in_counterexamples():
 
 
 def test_hidden_zeros_are_supported_numerically_and_say_so():
-    """log(x^2) - 2 log(x) is zero, which the normal form cannot see."""
-    field = Field(["x"], slots=2, positive=["x"])
-    x = field["x"]
-    decision = decide_zero([field.call("log", x**2) - 2 * field.call("log", x)], field)
+    """The square of sqrt(x^2 + 1) + sqrt(y^2 + 2) has a root that no relation here knows."""
+    field = Field(["x", "y"], slots=4)
+    x, y = field["x"], field["y"]
+    a, b = field.call("sqrt", x**2 + 1), field.call("sqrt", y**2 + 2)
+    whole = field.call("sqrt", x**2 + y**2 + 3 + 2 * field.call("sqrt", (x**2 + 1) * (y**2 + 2)))
+    decision = decide_zero([whole - a - b], field)
     assert decision.verdict is Verdict.SUPPORTED
     assert "50-digit" in decision.method
 

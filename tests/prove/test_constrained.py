@@ -7,10 +7,22 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
+from coadjoint.derive.solver import Solve, solution_defects, solver_names
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero
-from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
+from tests.constrained import (
+    APPELL,
+    BALL,
+    PARTICLE,
+    PENDULUM,
+    ROUND,
+    SLEIGH,
+    STRAIGHT,
+    SUSLOV,
+    derived,
+    motion,
+)
 from tests.specs import shipped, spec
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
@@ -185,3 +197,92 @@ def test_routes_that_move_positions_otherwise_are_told_apart():
     assert verdicts([first, second])[same] is Verdict.PROVED
     wrong = spoiled(second, "dGamma1_dt", lambda rate: -rate)
     assert verdicts([first, wrong])[same] is Verdict.REFUTED
+
+
+SAME = "nonholonomic and hamel give the same motion"
+SOLVED = "the kernel solves for the accelerations: L D L^T = B^T M B"
+
+
+def test_the_wheel_of_appell_and_its_heading_are_two_blocks():
+    """Cos sin - sin cos = 0 couples them on no road; one force of the other sign is seen.
+
+    By hand ((M + m) a^2 + m b^2 + I) phi'' = (M + m) a rho psi'^2 - m g b.
+    """
+    first, second = derived(APPELL).values()
+    assert [list(solve.names) for solve in first.exact.solves] == [["dvpsi_dt"], ["dvphi_dt"]]
+    found = verdicts([first, second])
+    assert found[SAME] is found[SOLVED] is Verdict.PROVED
+    f = first.setting.field
+    m, M, inertia, a, b, rho, g, spin = (
+        f[name] for name in ("m", "M", "I", "a", "b", "rho", "g", "vpsi")
+    )
+    known = (M + m) * a * rho * spin**2 - m * g * b
+    mass = (M + m) * a**2 + m * b**2 + inertia
+    for equations in (first, second):
+        block = equations.exact.solves[1]
+        assert f.is_zero(equations.closed(block.matrix[0][0]) - mass)
+        assert f.is_zero(equations.closed(block.known[0]) - known)
+
+
+def whole(equations):
+    """The same linear equations, their blocks written as one."""
+    solves, zero = equations.exact.solves, equations.setting.field.zero
+    block = tuple(place for solve in solves for place in solve.block)
+    entries = {
+        (i, j): entry
+        for solve in solves
+        for i, row in zip(solve.block, solve.matrix, strict=True)
+        for j, entry in zip(solve.block, row, strict=True)
+    }
+    matrix = tuple(tuple(entries.get((i, j), zero) for j in block) for i in block)
+    known = [value for solve in solves for value in solve.known]
+    names = [name for solve in solves for name in solve.names]
+    return Solve(matrix, known, block, names)
+
+
+def with_solves(equations, *solves):
+    """Equations with other linear equations."""
+    exact = dataclasses.replace(equations.exact, solves=solves)
+    return dataclasses.replace(equations, exact=exact)
+
+
+def test_routes_are_compared_entry_by_entry_whatever_their_blocks():
+    """One block of both is the same motion; with a coupling in it, it is another."""
+    first, second = derived(APPELL).values()
+    joined = whole(second)
+    assert verdicts([first, with_solves(second, joined)])[SAME] is Verdict.PROVED
+    one = second.setting.field.one
+    (a, _), (_, d) = joined.matrix
+    coupled = dataclasses.replace(joined, matrix=((a, one), (one, d)))
+    assert verdicts([first, with_solves(second, coupled)])[SAME] is Verdict.REFUTED
+    assert verdicts([with_solves(first, coupled), second])[SAME] is Verdict.REFUTED
+
+
+def test_a_solve_that_is_left_out_is_seen():
+    """A route that forgets a block gives another motion."""
+    first, second = derived(APPELL).values()
+    assert verdicts([first, with_solves(second, second.exact.solves[0])])[SAME] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("text", [STRAIGHT, ROUND], ids=["particle", "body"])
+def test_motions_without_acceleration_are_proved(text):
+    """Everything claimed of them is true; a force of the constraint out of nothing is refuted."""
+    first, second = derived(text).values()
+    assert set(verdicts([first, second]).values()) == {Verdict.PROVED}
+    wrong = spoiled(first, "_u1", lambda value: value + 1)
+    assert verdicts([wrong, second])[SOLVED] is Verdict.REFUTED
+    assert prove(spec(text)).holds
+
+
+@pytest.mark.parametrize("name", ["chaplygin_ball_centred", "snakeboard", "suslov"])
+def test_every_spoiled_line_of_a_shipped_solve_is_seen(name):
+    """Reciprocals, columns and what is left out as zero: double any line, and a defect is left."""
+    first = derive(shipped(name))
+    definitions, (solve, *_) = dict(first.exact.definitions), first.exact.solves
+    own = [line for line in solver_names(solve.block) if line in definitions]
+    assert len(own) > 8
+    field = first.setting.field
+    assert not any(solution_defects(field, solve, definitions))
+    for line in own:
+        wrong = definitions | {line: 2 * definitions[line]}
+        assert any(solution_defects(field, solve, wrong)), line

@@ -86,25 +86,32 @@ def test_a_false_casimir_is_refuted(monkeypatch):
     """The check of Casimirs can fail: one that the search should not have found is refuted."""
     from coadjoint.prove import examination
 
-    def liar(algebra, degree):
-        true = search(algebra, degree)
-        return replace(true, generators=(true.structure.field["J1"],))
+    def liar(structure, algebra, degree):
+        true = search(structure, algebra, degree)
+        wrong = replace(true.summands[0], generators=(true.structure.field["J1"],))
+        return replace(true, summands=(wrong,))
 
-    search = examination.casimirs
-    monkeypatch.setattr(examination, "casimirs", liar)
-    (refuted,) = examine(algebra_by_name("so(3)")).certificate.refuted
+    search = examination.search_summands
+    monkeypatch.setattr(examination, "search_summands", liar)
+    certificate = examine(algebra_by_name("so(3)")).certificate
+    (refuted,) = certificate.refuted
     assert refuted.statement == "J1 is a Casimir"
     assert refuted.counterexample
     assert refuted.defect != "0"
+    assert not any("every Casimir" in claim.statement for claim in certificate.claims)
 
 
 def test_missing_casimirs_are_told():
-    """What a search to degree 1 leaves out is in the certificate, with the reason."""
+    """What a search to degree 1 leaves out is found and not proved, with what was searched."""
     found = examine(algebra_by_name("se(3)"), 1)
     assert found.casimirs.found == ()
-    statement = found.certificate.claims[-1].statement
-    assert statement.startswith("0 of 2 independent Casimirs are known: 2 not found")
-    assert found.casimirs.missing in statement
+    (finding,) = found.certificate.findings
+    assert finding.statement.startswith("0 of 2 independent Casimirs are known: 2 not found")
+    assert found.casimirs.missing in finding.statement
+    assert "probability" in finding.error
+    assert ("found", finding.statement) in [
+        (head, text.partition(", near")[0]) for head, text in found.document().sections[-1].words
+    ]
 
 
 def test_table_and_list_hold_the_same_brackets():

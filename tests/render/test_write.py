@@ -112,16 +112,143 @@ def test_other_systems_stay_in_a_partial_run(folder):
     assert [entries[name]["id"] for name in ("heavy_top", "rigid_body")] == [IDS["new"], IDS["old"]]
 
 
+def with_file(version, file):
+    """The heavy top with one more file."""
+    made = systems(version, ["heavy_top"])["heavy_top"]
+    texts = {**made.texts, file: "! more\n"}
+    return {"heavy_top": GeneratedSystem(texts, made.spec_sha256, made.route)}
+
+
 def test_stale_outputs_are_removed(folder):
-    """Files that a system no longer has go, and in a complete run systems that are gone."""
-    (folder / "heavy_top/kernel.f90").write_text("stale")
+    """Files that only the old manifest lists go, and in a complete run systems that are gone."""
+    write_systems(folder, with_file("new", "kernel.f90"), {"c": "new"})
+    (folder / "rigid_body/__pycache__").mkdir()
+    (folder / "rigid_body/__pycache__/kernel.cpython-312.pyc").write_text("bytecode")
     (folder / "mine").mkdir()
     (folder / "mine/notes.txt").write_text("not generated")
+    assert (folder / "heavy_top/kernel.f90").exists()
     write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"}, keep=["heavy_top"])
     assert not (folder / "heavy_top/kernel.f90").exists()
     assert not (folder / "rigid_body").exists()
     assert (folder / "mine/notes.txt").read_text() == "not generated"
     assert list(read_manifest(folder)["systems"]) == ["heavy_top"]
+
+
+def everything(folder):
+    """Every path below a folder with its bytes, the lock apart."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes() if path.is_file() else None
+        for path in folder.rglob("*")
+        if path.name != LOCK
+    }
+
+
+FOREIGN = {
+    "a file in a system's folder": "heavy_top/notes.txt",
+    "a folder in a system's folder": "heavy_top/mine/notes.txt",
+    "a folder in the place of a file": "heavy_top/kernel.h/notes.txt",
+    "a file in a system that is to go": "rigid_body/notes.txt",
+    "bytecode of others in a system that is to go": "rigid_body/__pycache__/mine.cpython-312.pyc",
+}
+
+
+@pytest.mark.parametrize("path", FOREIGN.values(), ids=FOREIGN.keys())
+def test_what_no_run_wrote_is_refused_by_name_before_the_first_write(folder, path):
+    """The path is named, and not a byte of the tree has changed."""
+    (folder / path).parent.mkdir(exist_ok=True)
+    (folder / path).write_text("somebody's")
+    before = everything(folder)
+    made = with_file("new", "kernel.h")
+    named = "heavy_top/mine" if "mine/" in path else path
+    with pytest.raises(OutputError, match=re.escape(named)) as caught:
+        write_systems(folder, made, {"c": "new"}, keep=["heavy_top"])
+    assert caught.value.found == [named]
+    assert everything(folder) == before
+
+
+def test_a_system_that_is_to_go_and_is_a_link_stays(folder, tmp_path_factory):
+    """The files behind the link are neither followed nor removed."""
+    elsewhere = tmp_path_factory.mktemp("elsewhere") / "rigid_body"
+    (folder / "rigid_body").rename(elsewhere)
+    (folder / "rigid_body").symlink_to(elsewhere)
+    with pytest.raises(OutputError, match="rigid_body"):
+        write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"}, keep=["heavy_top"])
+    assert "old" in (elsewhere / "kernel.c").read_text()
+
+
+@pytest.mark.parametrize(
+    "path", ["__init__.py", "manifest.json", "heavy_top/__init__.py", "heavy_top/kernel.py"]
+)
+def test_a_folder_of_somebody_is_refused(tmp_path, path):
+    """A package, a manifest of another program, a folder that has the name of a system."""
+    (tmp_path / path).parent.mkdir(exist_ok=True)
+    (tmp_path / path).write_text('{"name": "somebody\'s"}')
+    with pytest.raises(OutputError, match=re.escape(path)):
+        put(tmp_path, "new")
+    assert on_disk(tmp_path) == {path: '{"name": "somebody\'s"}'}
+
+
+def test_files_beside_the_systems_stay(tmp_path):
+    """What is not in the way is left alone: a tree may be written into a folder of one's own."""
+    (tmp_path / "README.txt").write_text("mine")
+    put(tmp_path, "new")
+    assert on_disk(tmp_path) == tree("new") | {"README.txt": "mine"}
+
+
+@pytest.mark.parametrize("name", ["../victim", "..", "/tmp/victim", "a/b"])
+@pytest.mark.parametrize("where", ["system", "file"])
+def test_a_manifest_that_leads_elsewhere_is_none(folder, where, name):
+    """A hostile manifest lists files of others: it counts as damaged, and nothing of them goes."""
+    victim = folder.parent / "victim"
+    victim.write_text("precious")
+    manifest = json.loads((folder / MANIFEST).read_text())
+    entry = manifest["systems"].pop("rigid_body")
+    if where == "file":
+        entry["files"][name] = "0"
+    manifest["systems"]["rigid_body" if where == "file" else name] = entry
+    (folder / MANIFEST).write_text(json.dumps(manifest))
+    assert read_manifest(folder)["systems"] == {}
+    write_systems(folder, systems("new", ["heavy_top"]), {"c": "new"}, keep=["heavy_top"])
+    assert victim.read_text() == "precious"
+    assert list(read_manifest(folder)["systems"]) == ["heavy_top"]
+
+
+def test_a_run_that_was_killed_before_its_first_manifest_is_healed(tmp_path):
+    """A folder that no manifest lists is ours if its kernel says so."""
+    put(tmp_path, "old")
+    (tmp_path / MANIFEST).unlink()
+    (tmp_path / "__init__.py").unlink()
+    put(tmp_path, "new")
+    assert on_disk(tmp_path) == tree("new")
+
+
+def test_removing_is_safe_against_a_kill(folder):
+    """A stale file goes before the manifest that no longer lists it comes."""
+    write_systems(folder, with_file("old", "kernel.f90"), {"c": "old"})
+
+    def act():
+        real = os.replace
+
+        def replace(source, target, **options):
+            if target == MANIFEST:
+                os.kill(os.getpid(), signal.SIGKILL)
+            real(source, target, **options)
+
+        os.replace = replace
+        put(folder, "new")
+
+    assert in_child(act) == -signal.SIGKILL
+    put(folder, "new")
+    assert on_disk(folder) == tree("new")
+
+
+def test_the_folder_of_an_installed_package_is_refused(tmp_path):
+    """Site-packages and the package itself belong to the installer."""
+    inside = tmp_path / "lib" / "site-packages" / "thing"
+    for place in (inside, Path(write.__file__).parents[1] / "systems"):
+        with pytest.raises(OutputError, match="installed package"):
+            put(place, "new")
+        assert not place.exists()
 
 
 def test_leftovers_of_killed_runs_are_removed(folder):
@@ -132,12 +259,50 @@ def test_leftovers_of_killed_runs_are_removed(folder):
     assert on_disk(folder) == tree("new")
 
 
-@pytest.mark.parametrize("damage", ["", "{", "[]", '{"schema": 99}'])
+DEEP = "[" * 100_000
+HOSTILE = [
+    "",
+    "{",
+    "[]",
+    "null",
+    DEEP,
+    '{"a":' * 100_000,
+    "\xff",
+    '{"schema": 99}',
+    '{"schema": 1}',
+    '{"schema": 1, "systems": [], "templates": {}}',
+    '{"schema": 1, "systems": {}, "templates": 3}',
+    '{"schema": 1, "systems": {"heavy_top": 3}, "templates": {}}',
+    '{"schema": 1, "systems": {"heavy_top": {"files": null}}, "templates": {}}',
+    '{"schema": 1, "systems": {"heavy_top": {"files": {"kernel.py": 3}, "id": "", "route": "",'
+    ' "spec_sha256": ""}}, "templates": {}}',
+]
+
+
+@pytest.mark.parametrize("damage", HOSTILE, ids=range(len(HOSTILE)))
 def test_a_damaged_manifest_counts_as_none(folder, damage):
     """A manifest that cannot be read is never trusted, and the next run writes it anew."""
-    (folder / MANIFEST).write_text(damage)
+    (folder / MANIFEST).write_text(damage, encoding="latin-1")
     assert read_manifest(folder)["systems"] == {}
     assert not is_intact(folder, "heavy_top")
+    put(folder, "new")
+    assert on_disk(folder) == tree("new")
+
+
+@pytest.mark.parametrize("path", [MANIFEST, "heavy_top/kernel.py", "heavy_top/kernel.c"])
+@pytest.mark.parametrize("kind", ["pipe", "folder", "link"])
+def test_what_is_no_file_in_the_place_of_one_is_replaced(folder, path, kind):
+    """A pipe is never waited for, an empty folder makes room, a link is not followed."""
+    place = folder / path
+    place.unlink()
+    if kind == "pipe":
+        os.mkfifo(place)
+    elif kind == "folder":
+        place.mkdir()
+    else:
+        place.symlink_to("/dev/zero")
+    assert not is_intact(folder, "heavy_top")
+    assert path in {each.path for each in compare_tree(tree("old"), folder)}
     put(folder, "new")
     assert on_disk(folder) == tree("new")
 

@@ -1,8 +1,10 @@
 """The cache: a private folder of compiled kernels by content, each checked whenever it is loaded.
 
 Comes in: the key of a kernel and the bytes of its object. Goes out: the path of an object whose
-hash has been checked. Any damage is a miss. Another process of the same user is trusted, as
-everywhere; other users are not. Read next: `coadjoint.build.library`, which fills it.
+hash has been checked. Any damage is a miss, and is replaced. What was not used for longest is
+removed where the cache grows beyond its bound, and what killed runs left when it is used next.
+Another process of the same user is trusted, as everywhere; other users are not. Read next:
+`coadjoint.build.library`, which fills it, and `coadjoint.build.upkeep`.
 """
 
 from __future__ import annotations
@@ -10,15 +12,17 @@ from __future__ import annotations
 import atexit
 import hashlib
 import os
-import secrets
 import shutil
 import stat
 import tempfile
 import warnings
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
+from coadjoint.build.upkeep import KERNELS, WORK, evict, find_problems
+from coadjoint.build.workplace import keep_folder, remove, sweep, work_file, work_folder
 from coadjoint.errors import OutputError
 
 
@@ -27,31 +31,95 @@ class CacheWarning(UserWarning):
 
 
 def cache_folder() -> Path:
-    """The private cache folder, made if missing.
+    """The private cache folder, made if missing; what killed runs left there is removed.
 
     ``COADJOINT_CACHE``, else ``XDG_CACHE_HOME/coadjoint``, else ``~/.cache/coadjoint``. Where that
     cannot be used, a temporary folder of this process, with a `CacheWarning`.
+
+    Raises:
+        OutputError: No temporary folder can be made either.
     """
+    return _usable(chosen_folder())
+
+
+def chosen_folder() -> Path | None:
+    """Where the cache is to be, by the environment; None where there is no home."""
     chosen = os.environ.get("COADJOINT_CACHE", "")
     if chosen:
-        return _usable(Path(chosen))
+        return Path(chosen)
     home = os.environ.get("XDG_CACHE_HOME", "")
-    return _usable((Path(home) if home else Path.home() / ".cache") / "coadjoint")
+    with suppress(RuntimeError):  # no HOME, and a user whom the system does not know
+        return (Path(home) if home else Path.home() / ".cache") / "coadjoint"
+    return None
 
 
 @cache
-def _usable(folder: Path) -> Path:
+def _usable(folder: Path | None) -> Path:
     """The folder, or a temporary one in its stead."""
     try:
+        if folder is None:
+            raise OutputError(
+                "there is no home folder for the cache. Set HOME, or set COADJOINT_CACHE to a "
+                "folder of your own."
+            )
         check_private(folder)
     except OutputError as error:
-        temporary = Path(tempfile.mkdtemp(prefix="coadjoint-cache-"))
-        atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+        temporary = _temporary(error)
         warnings.warn(
             f"{error} Kernels are compiled anew in this process.", CacheWarning, stacklevel=3
         )
         return temporary
+    sweep(folder / WORK)
     return folder
+
+
+def _temporary(reason: OutputError) -> Path:
+    """A cache for this process alone.
+
+    Raises:
+        OutputError: It cannot be made.
+    """
+    try:
+        base = Path(tempfile.gettempdir())
+        sweep(base)
+        folder = keep_folder(base)
+    except OSError as error:
+        raise OutputError(
+            f"{reason} No temporary folder can be written either: {error.strerror or error}.",
+            **reason.parts,
+        ) from error
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+@contextmanager
+def working_folder() -> Iterator[Path]:
+    """A private folder for the length of a block, in the cache or else among temporary files.
+
+    One whose process is killed is removed when the cache is used next.
+
+    Raises:
+        OutputError: None can be written.
+    """
+    with ExitStack() as stack:
+        yield _entered(stack)
+
+
+def _entered(stack: ExitStack) -> Path:
+    """A working folder that a stack removes at its end."""
+    with suppress(OSError, OutputError):
+        base = cache_folder() / WORK
+        _make_folder(base)
+        return stack.enter_context(work_folder(base))
+    try:
+        base = Path(tempfile.gettempdir())
+        sweep(base)
+        return stack.enter_context(work_folder(base))
+    except OSError as error:
+        raise OutputError(
+            f"no temporary folder can be written: {error.strerror or error}. Free some space, or "
+            "set TMPDIR to a folder of your own."
+        ) from error
 
 
 def check_private(folder: Path) -> None:
@@ -69,13 +137,7 @@ def check_private(folder: Path) -> None:
             "Set COADJOINT_CACHE to a folder of your own.",
             path=str(folder),
         ) from error
-    problem = ""
-    if not stat.S_ISDIR(found.st_mode):
-        problem = "it is not a real folder"
-    elif found.st_uid != os.getuid():
-        problem = f"it belongs to user {found.st_uid}"
-    elif found.st_mode & 0o022:
-        problem = f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})"
+    problem = _refusal(found)
     if problem:
         raise OutputError(
             f"the cache folder {folder} is refused: {problem}. "
@@ -85,17 +147,48 @@ def check_private(folder: Path) -> None:
         )
 
 
+def _refusal(found: os.stat_result) -> str:
+    """Why a folder is not private, or ""."""
+    if not stat.S_ISDIR(found.st_mode):
+        return "it is not a real folder"
+    if found.st_uid != os.getuid():
+        return f"it belongs to user {found.st_uid}"
+    if found.st_mode & 0o022:
+        return f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})"
+    return ""
+
+
+def cache_problems() -> list[str]:
+    """What is wrong with the cache, a sentence each; nothing is made, changed or removed.
+
+    What stands inside the folder heals by itself: damaged objects are compiled anew, and what
+    killed runs left is removed when the cache is used next.
+    """
+    folder = chosen_folder()
+    if folder is None:
+        return ["there is no home folder for the cache; set HOME or COADJOINT_CACHE"]
+    try:
+        refusal = _refusal(folder.lstat())
+    except FileNotFoundError:
+        return []  # it is made when it is needed
+    except OSError as error:
+        return [f"{folder} cannot be used: {error.strerror}"]
+    return [f"{folder} is refused: {refusal}"] if refusal else find_problems(folder)
+
+
 def fetch(key: str) -> Path | None:
     """The object of a key, if it is there and whole; None otherwise.
 
     Args:
         key: Hash of all that the object depends on.
     """
-    folder = cache_folder() / "kernels"
-    with suppress(OSError, UnicodeDecodeError):
+    with suppress(OSError, OutputError, UnicodeDecodeError):
+        folder = cache_folder() / KERNELS
         digest = _read(folder / key).decode("ascii").strip()
         path = folder / f"{digest}.so"
         if digest.isalnum() and hashlib.sha256(_read(path)).hexdigest() == digest:
+            for used in (folder / key, path):
+                os.utime(used)  # what was used last is evicted last
             return path
     return None
 
@@ -109,8 +202,8 @@ def store(key: str, content: bytes) -> Path:
     Raises:
         OutputError: It cannot be written.
     """
-    folder = cache_folder() / "kernels"
-    digest = hashlib.sha256(content).hexdigest()
+    cache = cache_folder()
+    folder, digest = cache / KERNELS, hashlib.sha256(content).hexdigest()
     try:
         replace_file(folder / f"{digest}.so", content)
         replace_file(folder / key, digest.encode("ascii"))
@@ -120,6 +213,7 @@ def store(key: str, content: bytes) -> Path:
             "COADJOINT_CACHE to another folder.",
             path=str(folder),
         ) from error
+    evict(cache)
     return folder / f"{digest}.so"
 
 
@@ -134,16 +228,30 @@ def _read(path: Path) -> bytes:
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Write a file of the cache so that it is old or new and never torn; its folder is made."""
-    path.parent.mkdir(mode=0o700, exist_ok=True)
-    temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
-    handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
-    try:
-        with os.fdopen(handle, "wb") as file:
+    """Write a file of the cache so that it is old or new and never torn; its folder is made.
+
+    Args:
+        path: A file in a folder of the cache, where nothing but files of ours belongs.
+        content: Its bytes.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    work = path.parent.parent / WORK
+    for folder in (path.parent, work):
+        _make_folder(folder)
+    with work_file(work) as (temporary, handle):
+        with os.fdopen(handle, "wb", closefd=False) as file:
             file.write(content)
             file.flush()
-            os.fsync(file.fileno())
+            os.fsync(handle)
+        if path.is_dir() and not path.is_symlink():
+            remove(path)  # a folder that stands where a file belongs
         temporary.replace(path)
-    finally:
-        with suppress(FileNotFoundError):
-            temporary.unlink()
+
+
+def _make_folder(folder: Path) -> None:
+    """A folder of the cache; whatever else stands in its place is removed."""
+    if folder.is_symlink() or not folder.is_dir():
+        remove(folder)
+        folder.mkdir(mode=0o700, exist_ok=True)

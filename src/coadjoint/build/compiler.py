@@ -1,29 +1,31 @@
 """The compiler: found, asked for its version, and run on one kernel within limits.
 
 Comes in: a folder with ``kernel.c`` and ``kernel.h``. Goes out: a shared object in it. Nothing here
-passes through a shell, and ``CC`` is a program's name and nothing more.
+passes through a shell, and ``CC`` is a program's name and nothing more. Compilers end with whoever
+waits for them: at once on Ctrl-C, and when this process is killed (`coadjoint.build.warden`).
 """
 
 from __future__ import annotations
 
 import os
 import re
-import resource
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import warnings
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Lock
 
+from coadjoint.build import warden
 from coadjoint.errors import CompilerError
-from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS
+from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
 
 CANDIDATES = ("cc", "gcc", "clang")
 HOW_TO_GET_ONE = "Install one: `apt install gcc`, or `pip install 'coadjoint[c]'` anywhere."
@@ -44,7 +46,15 @@ _GNU = (
     "-fno-tree-slp-vectorize",
     "--param=vect-epilogues-nomask=0",
 )
-_SHARED = ("-fPIC", "-shared")
+#: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
+_SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
+#: A second file of every object: the name of its build, which the loader reads.
+LABEL = "coadjoint_build"
+_LABEL = 'extern const char {label}[];\nconst char {label}[] = "{build}";\n'
+#: What a driver says of a program that ran out of processor time.
+_OUT_OF_TIME = "CPU time limit exceeded"
+#: Seconds in which a compiler tells its version.
+VERSION_SECONDS = 30
 
 
 class CompilerWarning(UserWarning):
@@ -77,12 +87,26 @@ def find_compiler() -> Compiler:
     Raises:
         CompilerError: ``CC`` is no plain program name or is not there, or no compiler is found.
     """
-    return _find(os.environ.get("CC", ""), os.environ.get("PATH", ""))
+    found = _find(os.environ.get("CC", ""), os.environ.get("PATH", ""))
+    if isinstance(found, CompilerError):
+        raise CompilerError(str(found), **found.parts)
+    return found
 
 
 @cache
-def _find(chosen: str, path: str) -> Compiler:
-    """The search, remembered for each setting of the environment."""
+def _find(chosen: str, path: str) -> Compiler | CompilerError:
+    """What the search ends in, remembered for each setting of the environment.
+
+    A failure is remembered, too: a compiler that hangs is asked once in a process.
+    """
+    try:
+        return _search(chosen, path)
+    except CompilerError as error:
+        return error
+
+
+def _search(chosen: str, path: str) -> Compiler:
+    """The compiler that is chosen, else the first that is there."""
     if chosen:
         if not _PLAIN_PROGRAM.fullmatch(chosen):
             raise CompilerError(
@@ -102,7 +126,7 @@ def _find(chosen: str, path: str) -> Compiler:
     for candidate in CANDIDATES:
         program = shutil.which(candidate, path=path)
         if program is not None:
-            return _compiler((program,))
+            return _compiler((os.path.abspath(program),))  # noqa: PTH100 (as above)
     if find_spec("ziglang") is not None:
         command = (sys.executable, "-I", "-m", "ziglang", "cc")
         return _compiler(command)
@@ -118,7 +142,7 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     Raises:
         CompilerError: It does not answer.
     """
-    status, output = _run((*command, "--version"), Path(tempfile.gettempdir()), seconds=30)
+    status, output = _run((*command, "--version"), Path("/"), VERSION_SECONDS, VERSION_SECONDS)
     if status != 0 or not output.strip():
         raise CompilerError(
             f"{' '.join(command)} --version ended with status {status} and said "
@@ -130,7 +154,7 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
 
 
 def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
-    """Compile ``kernel.c`` in a folder to ``kernel.so`` beside it.
+    """Compile ``kernel.c`` in a folder to ``kernel.so`` beside it, which says its build.
 
     Args:
         compiler: What `find_compiler` returned.
@@ -141,6 +165,8 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
         CompilerError: The compiler failed, hung, or made no shared object.
     """
     result = folder / "kernel.so"
+    label = _LABEL.format(label=LABEL, build=build)
+    (folder / "build.c").write_text(label, encoding="ascii")
     status, output = _attempt(compiler, folder, build, native=True)
     if status != 0 and _attempt(compiler, folder, build, native=False)[0] == 0:
         status = 0  # some compilers and machines do not know -march=native
@@ -171,63 +197,134 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
 _MAGIC = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
 
 
+_FILES = ("kernel.c", "build.c")
+
+
 def _attempt(compiler: Compiler, folder: Path, build: str, *, native: bool) -> tuple[int, str]:
     """One run of the compiler; status and what it said."""
     flags = compiler.flags(build, native=native)
-    return _run((*compiler.command, *flags, "kernel.c", "-o", "kernel.so", "-lm"), folder)
+    return _run((*compiler.command, *flags, *_FILES, "-o", "kernel.so", "-lm"), folder)
+
+
+@contextmanager
+def compilers() -> Iterator[ThreadPoolExecutor]:
+    """Threads in which compilers are waited for; Ctrl-C ends what runs, and the wait with it."""
+    pool = ThreadPoolExecutor()
+    with _lock:
+        _pools.add(pool)
+    try:
+        yield pool
+    except Exception:
+        pool.shutdown(cancel_futures=True)
+        raise
+    except BaseException:  # Ctrl-C
+        _stop()
+        pool.shutdown(cancel_futures=True)
+        raise
+    finally:
+        pool.shutdown()
+        with _lock:
+            _pools.discard(pool)
+            _stopped.intersection_update(_pools)
+
+
+#: Compilers that run, pools that are in use, and those of them that were interrupted.
+_running: set[subprocess.Popen[bytes]] = set()
+_pools: set[ThreadPoolExecutor] = set()
+_stopped: set[ThreadPoolExecutor] = set()
+_lock = Lock()
+
+
+def _stop() -> None:
+    """End every compiler of this process; none starts again until the pools have ended."""
+    with _lock:
+        _stopped.update(_pools)
+        for process in _running:
+            _kill(process)
 
 
 def _run(
-    command: tuple[str, ...], folder: Path, seconds: float = COMPILE_SECONDS
+    command: tuple[str, ...],
+    folder: Path,
+    seconds: int = COMPILE_SECONDS,
+    wall_seconds: int = COMPILE_WALL_SECONDS,
 ) -> tuple[int, str]:
     """Run a program in a folder within limits; status and output, standard error included.
 
+    Args:
+        command: Its absolute path and its arguments.
+        folder: Where it works.
+        seconds: Limit of processor time.
+        wall_seconds: Limit of wall time, for programs that hang.
+
     Raises:
-        CompilerError: It took too long, or could not be started.
+        CompilerError: It took too long, was interrupted, or could not be started.
     """
     kept = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    limits = (str(COMPILE_BYTES), str(seconds))
+    ours, theirs = -1, -1
     try:
-        process = subprocess.Popen(
-            command,
-            cwd=folder,
-            env={**kept, "LC_ALL": "C", "TMPDIR": str(folder)},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
+        theirs, ours = os.pipe()
+        with _lock:
+            if _stopped:
+                raise _interrupted(command)
+            process = subprocess.Popen(
+                (sys.executable, "-I", "-S", warden.__file__, *limits, *command),
+                cwd=folder,
+                env={**kept, "LC_ALL": "C", "TMPDIR": str(folder)},
+                stdin=theirs,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+            _running.add(process)
+        try:
+            output = process.communicate(timeout=wall_seconds)[0].decode(errors="replace")
+        except subprocess.TimeoutExpired:
+            raise _unfinished(command, wall_seconds, "") from None
+        finally:
+            with _lock:
+                _running.discard(process)
+            _kill_group(process)
+        if _stopped:
+            raise _interrupted(command)
     except OSError as error:
         raise CompilerError(
             f"{command[0]} could not be started: {error.strerror}. Set CC to another compiler.",
             found=command[0],
         ) from error
-    _limit_memory(process.pid)
-    try:
-        output, _ = process.communicate(timeout=seconds)
-    except subprocess.TimeoutExpired:
-        raise CompilerError(
-            f"{command[0]} did not end within {seconds:g} s and was stopped. "
-            "Set CC to another compiler.",
-            found=command[0],
-            limit=seconds,
-        ) from None
     finally:
-        _kill_group(process)
-    return process.returncode, output.decode(errors="replace")
+        for end in (ours, theirs):
+            if end >= 0:
+                os.close(end)
+    if process.returncode == 128 + signal.SIGXCPU or _OUT_OF_TIME in output:
+        raise _unfinished(command, seconds, " of processor time")
+    return process.returncode, output
 
 
-def _limit_memory(process: int) -> None:
-    """Bound the address space of a child where the system can do that from outside."""
-    if hasattr(resource, "prlimit"):
-        # It may have ended already, or have inherited a lower limit.
-        with suppress(ProcessLookupError, ValueError, PermissionError):
-            resource.prlimit(process, resource.RLIMIT_AS, (COMPILE_BYTES, COMPILE_BYTES))
+def _unfinished(command: tuple[str, ...], seconds: int, kind: str) -> CompilerError:
+    """The compiler took too long."""
+    return CompilerError(
+        f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped. "
+        "Set CC to another compiler.",
+        found=command[0],
+        limit=seconds,
+    )
+
+
+def _interrupted(command: tuple[str, ...]) -> CompilerError:
+    return CompilerError(f"the compiler {command[0]} was interrupted.", found=command[0])
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """Kill a child and everything it started; its session is its own."""
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
 
 
 def _kill_group(process: subprocess.Popen[bytes]) -> None:
     """End a child and everything it started."""
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
+    _kill(process)
     process.wait()
     if process.stdout is not None:
         process.stdout.close()

@@ -12,16 +12,15 @@ import hashlib
 import json
 import platform
 import shutil
-import tempfile
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from coadjoint import __version__
-from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import Compiler, compile_kernel, find_compiler
+from coadjoint.build.cache import fetch, store, working_folder
+from coadjoint.build.compiler import LABEL, Compiler, compile_kernel, find_compiler
 from coadjoint.errors import CompilerError, OutputError
 
 _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
@@ -36,38 +35,48 @@ class Library:
         path: The shared object.
         name: Name of the system, the prefix of its functions.
         identity: The id that the object must carry.
+        build: The build that it must say it is, ``exact`` or ``fast``.
+        source: SHA-256 of the ``kernel.c`` that it was compiled from.
 
     Raises:
-        CompilerError: It cannot be loaded, or carries another id.
+        CompilerError: It cannot be loaded, carries another id, or is another build.
     """
 
-    def __init__(self, path: Path, name: str, identity: str) -> None:
-        self.name = name
+    def __init__(self, path: Path, name: str, identity: str, build: str, source: str = "") -> None:
+        self.name, self.source = name, source
         try:
             # CDLL, not PyDLL: calls release the interpreter lock.
             self._handle = ctypes.CDLL(str(path))
-            found = ctypes.string_at(ctypes.addressof(self._symbol(f"{name}_id", identity)))
+            carried = {
+                what: self._text(symbol, expected)
+                for what, symbol, expected in (
+                    ("id", f"{name}_id", identity),
+                    ("build", LABEL, build),
+                )
+            }
         except (OSError, ValueError) as error:
             raise CompilerError(
                 f"the compiled kernel of {name} cannot be loaded: {error}. "
                 "Set CC to another compiler.",
                 found=str(error),
             ) from error
-        if found.decode("ascii", "replace") != identity:
-            raise CompilerError(
-                f"the compiled kernel of {name} carries the id {found!r}; expected {identity!r}. "
-                "Run `coadjoint regenerate`.",
-                found=found.decode("ascii", "replace"),
-                expected=identity,
-            )
+        for what, expected in (("id", identity), ("build", build)):
+            if carried[what] != expected:
+                raise CompilerError(
+                    f"the compiled kernel of {name} carries the {what} {carried[what]!r}; expected "
+                    f"{expected!r}. Run `coadjoint regenerate`.",
+                    found=carried[what],
+                    expected=expected,
+                )
 
-    def _symbol(self, symbol: str, identity: str) -> ctypes.Array[ctypes.c_char]:
-        """A character array of the object, one longer than the id."""
-        return (ctypes.c_char * (len(identity) + 1)).in_dll(self._handle, symbol)
+    def _text(self, symbol: str, expected: str) -> str:
+        """A string of the object, no further than one character beyond what is expected."""
+        found = (ctypes.c_char * (len(expected) + 1)).in_dll(self._handle, symbol)
+        return bytes(found).split(b"\0")[0].decode("ascii", "replace")
 
     def function(self, function: str) -> Callable[..., None]:
         """One function of the kernel by its bare name, for plain integers."""
-        found: Any = self._handle[f"{self.name}_{function}"]
+        found: Any = self._found(function)
         found.argtypes, found.restype = _SIGNATURE, None
         return found  # type: ignore[no-any-return]
 
@@ -77,10 +86,25 @@ class Library:
         ctypes passes values of its own types as they are; without ``argtypes`` it does not look
         at them again, which saves 60 of 540 nanoseconds a call (docs/decisions/loading.md).
         """
-        found: Any = self._handle[f"{self.name}_{function}"]
+        found: Any = self._found(function)
         found.restype = None
         pairs = zip(_SIGNATURE, arguments, strict=True)
         return partial(found, *(kind(value) for kind, value in pairs))
+
+    def _found(self, function: str) -> Any:
+        """A function of the object by its bare name.
+
+        Raises:
+            CompilerError: The object has none.
+        """
+        try:
+            return self._handle[f"{self.name}_{function}"]
+        except AttributeError as error:
+            raise CompilerError(
+                f"the compiled kernel of {self.name} has no function {function}. "
+                "Run `coadjoint regenerate`.",
+                found=function,
+            ) from error
 
 
 def load_library(
@@ -96,24 +120,48 @@ def load_library(
         verify: Raises if a fresh library computes something else than the NumPy kernel.
 
     Raises:
-        CompilerError: There is no compiler, it failed, or its object is wrong.
+        CompilerError: There is no compiler, it failed, its object is wrong, or there is no place
+            where it could work.
+        OutputError: The folder has no kernel.
     """
     compiler = find_compiler()
-    sources = {file: (folder / file).read_bytes() for file in ("kernel.c", "kernel.h")}
-    key = _key(compiler, sources, build)
+    sources = _sources(folder)
+    key, source = _key(compiler, sources, build), hashlib.sha256(sources["kernel.c"]).hexdigest()
     cached = fetch(key)
     if cached is not None:
         with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
-            return Library(cached, name, identity)
-    with tempfile.TemporaryDirectory(prefix="coadjoint-build-") as temporary:
-        for file, content in sources.items():
-            (Path(temporary) / file).write_bytes(content)
-        fresh = compile_kernel(compiler, Path(temporary), build)
-        library = Library(fresh, name, identity)
+            return Library(cached, name, identity, build, source)
+    with ExitStack() as stack:
+        try:
+            work = stack.enter_context(working_folder())
+            for file, content in sources.items():
+                (work / file).write_bytes(content)
+            fresh = compile_kernel(compiler, work, build)
+        except (OSError, OutputError) as error:
+            raise CompilerError(
+                f"the kernel of {name} cannot be compiled here: {error}", found=str(error)
+            ) from error
+        library = Library(fresh, name, identity, build, source)
         verify(library)
-        with suppress(OutputError):  # the library in hand is good; the next process compiles again
+        with suppress(OSError, OutputError):  # it is good; the next process compiles again
             store(key, fresh.read_bytes())
         return library
+
+
+def _sources(folder: Path) -> dict[str, bytes]:
+    """The C files of a generated folder.
+
+    Raises:
+        OutputError: One cannot be read.
+    """
+    try:
+        return {file: (folder / file).read_bytes() for file in ("kernel.c", "kernel.h")}
+    except OSError as error:
+        raise OutputError(
+            f"{error.filename} cannot be read: {error.strerror}; expected the C kernel of a "
+            "generated system. Run `coadjoint regenerate`.",
+            path=str(error.filename),
+        ) from error
 
 
 def _key(compiler: Compiler, sources: dict[str, bytes], build: str) -> str:

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coadjoint import limits
-from coadjoint.cli.arguments import is_path, shipped_names, spec_path
-from coadjoint.cli.output import plural, write_text
+from coadjoint.budget import allowed_seconds
+from coadjoint.cli.arguments import is_path, seconds_option, shipped_names, spec_path
+from coadjoint.cli.output import plural, say, write_text
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra
@@ -34,8 +35,11 @@ Keys of --format json:
   center                    its basis
   derived_series            dimensions of g, [g, g], ... until they repeat
   rank                      of the Lie-Poisson tensor, generic
-  casimirs                  {expected, found, missing}; missing says why, or ""
+  casimirs                  {expected, found, missing}; missing says what was
+                            searched, or ""
   claims                    [{statement, kind, verdict, method}]
+  findings                  [{statement, kind, method, scope, error}]: what was
+                            found without a proof; error says how likely it is wrong
 """
 
 
@@ -54,7 +58,7 @@ Keys of --format json:
     type=click.IntRange(1, 12),
     default=4,
     show_default=True,
-    help="Look for polynomial Casimirs up to this degree.",
+    help="Look for polynomial Casimirs up to this degree, or as far as can be searched.",
 )
 @click.option(
     "--generators",
@@ -64,7 +68,15 @@ Keys of --format json:
     help="Refuse an algebra of more generators.",
 )
 @click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
-def command(algebra: str, form: str, degree: int, generators: int, output: Path | None) -> None:
+@seconds_option
+def command(
+    algebra: str,
+    form: str,
+    degree: int,
+    generators: int,
+    output: Path | None,
+    seconds: int | None,
+) -> None:
     """Show brackets, invariants and Casimirs of a Lie algebra, proved.
 
     NAME is an algebra such as so(4), se(3) or "sl(2,R)"; SPEC is a shipped system or the path of a
@@ -74,21 +86,23 @@ def command(algebra: str, form: str, degree: int, generators: int, output: Path 
     from coadjoint.sandbox import run_bounded
 
     request = {"algebra": algebra, "form": form, "degree": degree, "generators": generators}
+    allowed = allowed_seconds(seconds)
     try:
         record = run_bounded(
             "coadjoint.cli.algebra:examination_record",
             request,
-            seconds=limits.WORKER_SECONDS,
+            seconds=allowed,
             memory=limits.WORKER_BYTES,
+            subject=algebra,
         )
     except ResourceError as error:
         raise ResourceError(
-            f"{algebra}: {error} Or ask for fewer generators, or for a lower --degree.",
-            found=algebra,
+            f"{error} Or ask for fewer generators, or for a lower --degree.",
+            **{"found": algebra, **error.parts},
         ) from error
     text = _rendered(record, form)
     if output is None:
-        click.echo(text, nl=False)
+        say(text, end="")
     else:
         write_text(output, text)
 
@@ -107,8 +121,10 @@ def _rendered(record: Mapping[str, Any], form: str) -> str:
 def examination_record(request: Mapping[str, Any]) -> dict[str, Any]:
     """The examination of an algebra as plain JSON values; runs in a bounded child."""
     from coadjoint.prove.examination import examine
+    from coadjoint.sandbox import report_progress
 
     word, most, degree = request["algebra"], request["generators"], request["degree"]
+    report_progress("examine", 0, 1)
     found = examine(_algebra(word, most, degree), degree)
     return found.as_record() if request["form"] == "json" else asdict(found.document())
 

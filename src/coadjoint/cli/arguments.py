@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from coadjoint.budget import MOST
 from coadjoint.errors import SpecError
+from coadjoint.limits import WORKER_SECONDS
 from coadjoint.resources import derivations_folder, systems_folder
 
 if TYPE_CHECKING:
@@ -58,8 +60,12 @@ def spec_path(system: str) -> Path:
     return derivations_folder() / f"{system}.toml"
 
 
-def load_system(system: str) -> System:
+def load_system(system: str, seconds: int | None = None) -> System:
     """The system of a word: a shipped one, or that of a spec, built if it has changed.
+
+    Args:
+        system: The word.
+        seconds: Processor time that deriving may take; see `coadjoint.budget.allowed_seconds`.
 
     Raises:
         CoadjointError: The spec is not in order, or the shipped system has not been generated.
@@ -70,7 +76,7 @@ def load_system(system: str) -> System:
         from coadjoint.loading import load
 
         with progress_bars() as progress:
-            return load(path, progress=progress)
+            return load(path, seconds=seconds, progress=progress)
     from coadjoint.solve.system import load_folder
 
     folder = systems_folder() / path.stem
@@ -94,3 +100,11 @@ def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: 
 
 #: The argument ``SYSTEM|SPEC`` of a command.
 system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete=_complete)
+
+#: The option ``--seconds`` of every command that derives.
+seconds_option = click.option(
+    "--seconds",
+    type=click.IntRange(1, MOST),
+    help="Processor time that deriving one system may take. Default: COADJOINT_SECONDS, else "
+    f"{WORKER_SECONDS}.",
+)

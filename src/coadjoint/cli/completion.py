@@ -8,6 +8,8 @@ from __future__ import annotations
 import click
 from click.shell_completion import get_completion_class
 
+from coadjoint.cli.output import say
+
 
 @click.command("completion")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
@@ -21,4 +23,4 @@ def command(context: click.Context, shell: str) -> None:
     made = get_completion_class(shell)
     assert made is not None, shell
     root = context.find_root()
-    click.echo(made(root.command, {}, "coadjoint", "_COADJOINT_COMPLETE").source())
+    say(made(root.command, {}, "coadjoint", "_COADJOINT_COMPLETE").source())

@@ -14,8 +14,9 @@ from typing import Any
 import click
 
 from coadjoint import limits
-from coadjoint.cli.arguments import load_system, spec_path, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table
+from coadjoint.budget import allowed_seconds
+from coadjoint.cli.arguments import load_system, seconds_option, spec_path, system_argument
+from coadjoint.cli.output import json_option, print_json, print_table, say
 
 
 @click.command("crosscheck")
@@ -27,17 +28,19 @@ from coadjoint.cli.output import json_option, print_json, print_table
     show_default=True,
     help="Points, at the least, at which each function of NumPy and C is compared bit by bit.",
 )
+@seconds_option
 @json_option
-def command(system: str, points: int, as_json: bool) -> None:
+def command(system: str, points: int, seconds: int | None, as_json: bool) -> None:
     """Check the generated kernels against 50 digits and each other."""
     from coadjoint.sandbox import run_bounded
 
-    path, folder = spec_path(system), load_system(system).folder
+    path, folder = spec_path(system), load_system(system, seconds).folder
     report = run_bounded(
         "coadjoint.cli.crosscheck:report_record",
         {"path": str(path), "folder": str(folder), "points": points},
-        seconds=limits.WORKER_SECONDS,
+        seconds=allowed_seconds(seconds),
         memory=limits.WORKER_BYTES,
+        subject=str(path),
     )
     if as_json:
         print_json(report)
@@ -51,12 +54,15 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.derive import derive
     from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
+    from coadjoint.sandbox import report_progress
     from coadjoint.solve.system import load_folder
     from coadjoint.spec import read_spec
 
     folder = Path(argument["folder"])
+    report_progress("derive", 0, 2)
     equations = derive(read_spec(Path(argument["path"])))
     texts = {name: (folder / name).read_text("utf-8") for name in ("kernel.py", "kernel.c")}
+    report_progress("compile and cross-check", 1, 2)
     report = crosscheck(
         lower(equations),
         texts,
@@ -86,5 +92,5 @@ def _print(report: Mapping[str, Any]) -> None:
     columns = ("function", "target", ">k", ">ulp", ">points", ">same bits as NumPy at")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
     for rung, status in report["rungs"].items():
-        click.echo(f"rung {rung}: {status}")
-    click.echo(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
+        say(f"rung {rung}: {status}")
+    say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")

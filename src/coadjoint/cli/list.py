@@ -1,21 +1,24 @@
 """Command ``list``: the systems, and what is known of each.
 
 Comes in: a folder of specs and the generated folder beside it. Goes out: a table. Nothing is
-derived and nothing generated is run: what was proved is read from the certificates.
+derived and nothing generated is run: what was proved is read from the certificates, and the specs
+are read in a bounded child.
 """
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import click
 
+from coadjoint.cli.arguments import seconds_option
 from coadjoint.cli.output import json_option, print_json, print_table
 from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
 from coadjoint.errors import CoadjointError
+from coadjoint.files import read_certificate
 
 
 @dataclass(frozen=True)
@@ -46,11 +49,18 @@ class Entry:
 
 @click.command("list")
 @with_folders
+@seconds_option
 @json_option
-def command(derivations: Path | None, output: Path | None, as_json: bool) -> None:
+def command(
+    derivations: Path | None, output: Path | None, seconds: int | None, as_json: bool
+) -> None:
     """List systems and the state of their certificates."""
+    from coadjoint.bounded import read_all_bounded
+
     source, target = folders(derivations, output)
-    entries = [_entry(path, target) for path in spec_paths(source)]
+    paths = spec_paths(source)
+    declared = read_all_bounded([str(path) for path in paths], seconds=seconds)
+    entries = [_entry(path, target, each) for path, each in zip(paths, declared, strict=True)]
     if as_json:
         print_json([asdict(entry) for entry in entries])
         return
@@ -70,39 +80,31 @@ def command(derivations: Path | None, output: Path | None, as_json: bool) -> Non
     )
 
 
-def _entry(path: Path, output: Path) -> Entry:
+def _entry(path: Path, output: Path, declared: Mapping[str, Any] | CoadjointError) -> Entry:
     """What is known of one system."""
-    from coadjoint.spec import read_spec
-
-    certificate = _certificate(output / path.stem / "certificate.json")
+    certificate = read_certificate(output / path.stem / "certificate.json")
     verdicts = [claim["verdict"] for claim in certificate.get("claims", [])]
     counts = verdicts.count("proved"), verdicts.count("numerically supported"), len(verdicts)
-    try:
-        spec = read_spec(path)
-    except CoadjointError:
+    if isinstance(declared, CoadjointError):
         return Entry(path.stem, 0, (), "", *counts, "spec unreadable")
-    dimension = sum(len(variable.components) for variable in spec.state)
-    state = _state(path, output)
-    return Entry(spec.name, dimension, spec.routes, spec.title, *counts, state)
+    return Entry(
+        declared["name"],
+        len(declared["state"]),
+        tuple(declared["routes"]),
+        declared["title"],
+        *counts,
+        _state(path, output, declared["sha256"]),
+    )
 
 
-def _state(path: Path, output: Path) -> str:
+def _state(path: Path, output: Path, sha256: str) -> str:
     """How the generated files stand to the spec and to the manifest."""
     from coadjoint.render.compare import is_intact
-    from coadjoint.render.write import read_manifest
+    from coadjoint.render.ownership import read_manifest
 
     entry = read_manifest(output)["systems"].get(path.stem)
     if entry is None:
         return "not generated"
-    if entry["spec_sha256"] != sha256(path.read_bytes()).hexdigest():
+    if entry["spec_sha256"] != sha256:
         return "spec changed"
     return "verified" if is_intact(output, path.stem) else "files changed"
-
-
-def _certificate(path: Path) -> dict[str, list[dict[str, str]]]:
-    """A certificate as it stands in its file; empty if it is missing or damaged."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}

@@ -10,6 +10,7 @@ from typing import Final
 
 import click
 
+from coadjoint.cli.output import say
 from coadjoint.errors import OutputError, SpecError
 
 STARTER: Final = """\
@@ -76,4 +77,4 @@ def command(name: str) -> None:
             f"{path}: cannot be written: {error.strerror}. Go to a folder of your own.",
             path=str(path),
         ) from error
-    click.echo(f"{path} written; try `coadjoint prove {path}`")
+    say(f"{path} written; try `coadjoint prove {path}`")

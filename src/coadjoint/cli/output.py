@@ -1,6 +1,7 @@
 """Commands: how they speak. Tables and JSON to standard output, progress to standard error.
 
-Comes in: rows and records. Goes out: text. rich is imported on first use, since it costs as much
+Comes in: rows and records. Goes out: text, without anything that a terminal would obey; a place
+that takes no text is an error that says so. rich is imported on first use, since it costs as much
 time as the rest of a small command.
 """
 
@@ -8,20 +9,56 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import click
 
-from coadjoint.errors import OutputError
+from coadjoint.errors import OutputError, plain
 
 #: Called with system, stage, stages done, stages in all.
 Progress = Callable[[str, str, int, int], None]
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON for programs.")
+
+
+def say(text: str = "", *, err: bool = False, end: str = "\n") -> None:
+    """Print text on standard output, or on standard error; every command speaks through this.
+
+    Characters that a terminal would obey, or that its encoding has not, are shown as escapes.
+
+    Raises:
+        OutputError: Standard output cannot be written. A reader of a pipe who has left is a
+            BrokenPipeError, which click turns into a quiet end.
+    """
+    stream = sys.stderr if err else sys.stdout
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    shown = plain(text).encode(encoding, "backslashreplace").decode(encoding)
+    try:
+        click.echo(shown + end, nl=False, err=err)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        if not err:  # of standard error there is nowhere to complain
+            raise unwritten(error) from error
+
+
+def unwritten(error: OSError) -> OutputError:
+    """What to say of a standard output that takes no text; what was left of it is dropped."""
+    with suppress(OSError, ValueError):  # so that the end of the program does not try again
+        handle = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(handle, sys.stdout.fileno())
+        os.close(handle)
+    return OutputError(
+        f"standard output cannot be written: {error.strerror or error}. Let it go to a place with "
+        "free space.",
+        path="standard output",
+        found=error.strerror or str(error),
+    )
 
 
 def printable(text: str) -> str:
@@ -51,12 +88,12 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
     with console.capture() as text:
         console.print(table)
     lines = [title, *text.get().splitlines()] if title else text.get().splitlines()
-    click.echo("\n".join(line.rstrip() for line in lines if line.strip()))
+    say("\n".join(line.rstrip() for line in lines if line.strip()))
 
 
 def print_json(value: Any) -> None:
     """A record on standard output, as JSON; what is not finite becomes null, as JSON has it."""
-    click.echo(json.dumps(_finite(value), indent=2, allow_nan=False))
+    say(json.dumps(_finite(value), indent=2, allow_nan=False))
 
 
 def _finite(value: Any) -> Any:
@@ -78,9 +115,9 @@ def progress_bars() -> Iterator[Progress]:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = (
-        TextColumn("{task.fields[system]}"),
+        TextColumn("{task.fields[system]}", markup=False),
         BarColumn(),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         TimeElapsedColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
@@ -88,7 +125,7 @@ def progress_bars() -> Iterator[Progress]:
 
         def progress(system: str, stage: str, done: int, total: int) -> None:
             if system not in tasks:
-                tasks[system] = bars.add_task(stage, total=total, system=system)
+                tasks[system] = bars.add_task(stage, total=total, system=printable(system))
             bars.update(tasks[system], description=stage, completed=done, total=total)
 
         yield progress

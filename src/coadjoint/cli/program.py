@@ -5,7 +5,8 @@ standard error, and an exit status:
 
     0    all is well
     1    a check failed: a claim refuted, forms that disagree, generated files that drifted
-    2    the input was wrong: the command line, a spec, a place to write to
+    2    the input was wrong: the command line, a spec, a place to write to; or the machine refuses
+         something: a full disk, a limit, a closed standard output
     70   a fault of coadjoint itself (EX_SOFTWARE); please report it
     130  interrupted from the keyboard
 
@@ -15,16 +16,20 @@ that ``coadjoint --help`` loads click and nothing else. Read next: `coadjoint.cl
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
+from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
 from typing import Any, Final
 
 import click
 
 from coadjoint import __version__
-from coadjoint.errors import CoadjointError
+from coadjoint.cli.output import say, unwritten
+from coadjoint.errors import CoadjointError, OutputError, shortened, system_error
 
 #: Commands in the order of the help; each is the object ``command`` of the module of its name.
 COMMANDS: Final = (
@@ -68,37 +73,95 @@ class Commands(click.Group):
             ctx.fail(f"no command is called {args[0]!r}. {hint}")
         return super().resolve_command(ctx, args)
 
+    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
+        """Run the program; whatever else happens, what a stream refuses is said as what it is."""
+        if sys.stdout is None or sys.stderr is None or sys.stdin is None:
+            _open_closed_streams()
+        try:
+            return super().main(args, *rest, **options)
+        except OSError as error:  # from click's own output, e.g. that of --help
+            say(f"error: {unwritten(error)}", err=True)
+            sys.exit(OutputError.exit_status)
+
     def invoke(self, ctx: click.Context) -> None:
         """Run a command, which returns its exit status or None."""
         try:
             status = super().invoke(ctx)
-            sys.stdout.flush()  # so that a reader who left is noticed here and not at the exit
+            _flush()  # so that a reader who left is noticed here and not at the exit
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise  # click's own: usage errors are 2; a reader of the pipe who left is 1
         except KeyboardInterrupt:
-            click.echo("interrupted", err=True)
+            say("interrupted", err=True)
             status = INTERRUPTED
         except CoadjointError as error:
             status = error.exit_status
             self._report(ctx, f"error: {error}")
-        except Exception as error:  # whatever it is, people get one line and the way to report it
-            status = INTERNAL_FAULT
-            again = f"coadjoint --debug {ctx.invoked_subcommand} ..."
-            self._report(
-                ctx,
-                f"error: a fault of coadjoint itself: {type(error).__name__}: {error}. "
-                f"Please report it with what `{again}` shows.",
-            )
+        except Exception as error:
+            refused = _refused(error) if isinstance(error, OSError) else None
+            if refused is not None:
+                status = refused.exit_status
+                self._report(ctx, f"error: {refused}")
+            else:  # whatever it is, people get one line and the way to report it
+                status = INTERNAL_FAULT
+                again = f"coadjoint --debug {ctx.invoked_subcommand} ..."
+                fault = shortened(f"{type(error).__name__}: {error}")
+                self._report(
+                    ctx,
+                    f"error: a fault of coadjoint itself: {fault}. "
+                    f"Please report it with what `{again}` shows.",
+                )
         ctx.exit(status or 0)
 
     @staticmethod
     def _report(ctx: click.Context, message: str) -> None:
         """An error for people, after its traceback if that is asked for."""
         if ctx.params["debug"]:
-            traceback.print_exc()
+            say(traceback.format_exc(), err=True)
             # What a bounded child found wrong with itself comes with its own traceback.
-            click.echo(getattr(sys.exception(), "traceback", ""), err=True)
-        click.echo(message, err=True)
+            say(getattr(sys.exception(), "traceback", ""), err=True)
+        say(message, err=True)
+
+
+def _flush() -> None:
+    """Hand on what standard output still holds.
+
+    Raises:
+        OutputError: It takes no more.
+    """
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise unwritten(error) from error
+
+
+def _refused(error: OSError) -> OutputError | None:
+    """What the operating system has refused, as an error that is none of ours; else None."""
+    try:
+        _flush()
+    except OutputError as refused:  # the help of a command, which click prints
+        return refused
+    return system_error(error)
+
+
+def _open_closed_streams() -> None:
+    """Put nothing in the place of standard streams that are closed; without an output, end.
+
+    A file that is opened later would otherwise take their number, and get what is printed.
+    """
+    while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(handle)
+    if sys.stderr is None:
+        sys.stderr = Path(os.devnull).open("w")  # noqa: SIM115 (open as long as the program runs)
+    if sys.stdout is None:
+        say(
+            "error: standard output is closed; expected a place to write to. To drop what is "
+            "printed, add >/dev/null",
+            err=True,
+        )
+        sys.exit(OutputError.exit_status)
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

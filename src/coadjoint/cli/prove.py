@@ -12,34 +12,29 @@ from typing import Any
 
 import click
 
-from coadjoint import limits
-from coadjoint.cli.arguments import spec_path, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table
+from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
+from coadjoint.cli.output import json_option, print_json, print_table, say
 
 
 @click.command("prove")
 @system_argument
+@seconds_option
 @json_option
-def command(system: str, as_json: bool) -> int:
+def command(system: str, seconds: int | None, as_json: bool) -> int:
     """Prove every claim about a system, or refute it.
 
     Jacobi identity, Casimirs, conserved quantities, and equality of the routes. The exit status is
     1 if a claim is refuted, or numerically supported where the spec does not accept that.
     """
-    from coadjoint.sandbox import run_bounded
+    from coadjoint.bounded import prove_bounded
 
-    record = run_bounded(
-        "coadjoint.cli.prove:certificate_record",
-        {"path": str(spec_path(system))},
-        seconds=limits.WORKER_SECONDS,
-        memory=limits.WORKER_BYTES,
-    )
+    record = prove_bounded(spec_path(system), seconds=seconds)
     if as_json:
         print_json(record)
     else:
         _print(record)
     for failure in record["failures"]:
-        click.echo(f"error: {failure}", err=True)
+        say(f"error: {failure}", err=True)
     return 0 if record["holds"] else 1
 
 
@@ -47,8 +42,10 @@ def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
     """The certificate of a spec as JSON values, times included; runs in a bounded child."""
     from coadjoint.prove import prove
     from coadjoint.prove.certificate import failure_text
+    from coadjoint.sandbox import report_progress
     from coadjoint.spec import read_spec
 
+    report_progress("prove", 0, 1)
     certificate = prove(read_spec(Path(argument["path"])))
     entries = {
         name: [entry.as_record() | {"seconds": entry.seconds} for entry in found]

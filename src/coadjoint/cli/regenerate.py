@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coadjoint.cli.output import json_option, print_json, print_table, progress_bars
+from coadjoint.cli.arguments import seconds_option
+from coadjoint.cli.output import json_option, print_json, print_table, progress_bars, say
 from coadjoint.errors import CoadjointError, DriftError, SpecError
 from coadjoint.resources import derivations_folder, systems_folder
 
@@ -53,12 +54,14 @@ def with_folders(function: Any) -> Any:
     show_default="processors",
     help="Systems worked on at a time.",
 )
+@seconds_option
 @with_folders
 @json_option
 def command(
     names: tuple[str, ...],
     check: bool,
     jobs: int,
+    seconds: int | None,
     derivations: Path | None,
     output: Path | None,
     as_json: bool,
@@ -67,13 +70,20 @@ def command(
     from coadjoint import regenerate as engine
 
     source, target = folders(derivations, output)
+    if not check:
+        refuse_elsewhere(bool(derivations or output), target)
     paths = spec_paths(source, names)
     complete = not names
     try:
         with progress_bars() as progress:
             if check:
                 outcome = engine.check(
-                    paths, target, jobs=jobs, complete=complete, progress=progress
+                    paths,
+                    target,
+                    jobs=jobs,
+                    complete=complete,
+                    seconds=seconds,
+                    progress=progress,
                 )
             else:
                 outcome = engine.regenerate(
@@ -81,8 +91,9 @@ def command(
                     target,
                     jobs=jobs,
                     complete=complete,
+                    seconds=seconds,
                     progress=progress,
-                    on_wait=lambda: click.echo(f"waiting for another run in {target}", err=True),
+                    on_wait=lambda: say(f"waiting for another run in {target}", err=True),
                 )
     except DriftError as drift:
         show_drift(drift)
@@ -98,6 +109,31 @@ def folders(derivations: Path | None, output: Path | None) -> tuple[Path, Path]:
     source = derivations or (here if here.is_dir() else shipped)
     beside = systems_folder() if source.resolve() == shipped.resolve() else None
     return source, output or beside or source.parent / "generated"
+
+
+def refuse_elsewhere(is_named: bool, target: Path) -> None:
+    """Refuse a run that would write where nobody has asked for it.
+
+    Args:
+        is_named: Whether a folder of specs or a generated folder was named.
+        target: The generated folder that is meant.
+
+    Raises:
+        SpecError: No folder was named, and no folder of specs is at hand.
+        OutputError: The generated folder is part of an installed package.
+    """
+    from coadjoint.render.ownership import refuse_installed
+
+    if not is_named and not Path("derivations").is_dir():
+        raise SpecError(
+            f"{Path.cwd()}: there is no folder `derivations` here, so there is nothing to "
+            "regenerate; the shipped systems are generated already. Go to the folder of your "
+            "project, or name its specs with --derivations FOLDER. A single spec needs no project: "
+            "coadjoint simulate ./my.toml.",
+            path=str(Path.cwd()),
+            found="",
+        )
+    refuse_installed(target)
 
 
 def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
@@ -128,16 +164,16 @@ def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
 def report_failures(failures: Mapping[str, CoadjointError]) -> int:
     """Print what failed on standard error; the highest exit status of all."""
     for error in failures.values():
-        click.echo(f"error: {error}", err=True)
+        say(f"error: {error}", err=True)
     return max((error.exit_status for error in failures.values()), default=0)
 
 
 def show_drift(drift: DriftError) -> None:
     """The differences, with the beginning of each diff."""
     for each in drift.differences:
-        click.echo(f"{each['kind']}: {each['path']}")
+        say(f"{each['kind']}: {each['path']}")
         if each["diff"]:
-            click.echo(each["diff"])
+            say(each["diff"])
 
 
 def _print(outcome: Outcome) -> None:

@@ -13,9 +13,8 @@ from typing import Any
 
 import click
 
-from coadjoint import limits
-from coadjoint.cli.arguments import spec_path, system_argument
-from coadjoint.cli.output import write_text
+from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
+from coadjoint.cli.output import say, write_text
 
 
 @click.command("show")
@@ -30,20 +29,17 @@ from coadjoint.cli.output import write_text
     help="latex is a complete file, html one self-contained page.",
 )
 @click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
-def command(system: str, route: str | None, form: str, output: Path | None) -> None:
+@seconds_option
+def command(
+    system: str, route: str | None, form: str, output: Path | None, seconds: int | None
+) -> None:
     """Show a derivation, step by step."""
+    from coadjoint.bounded import derive_bounded
     from coadjoint.render.document import render_document
-    from coadjoint.sandbox import run_bounded
 
-    record = run_bounded(
-        "coadjoint.cli.show:document_record",
-        {"path": str(spec_path(system)), "route": route},
-        seconds=limits.WORKER_SECONDS,
-        memory=limits.WORKER_BYTES,
-    )
-    text = render_document(record, form)
+    text = render_document(derive_bounded(spec_path(system), route, seconds=seconds), form)
     if output is None:
-        click.echo(text, nl=False)
+        say(text, end="")
     else:
         write_text(output, text)
 
@@ -52,7 +48,9 @@ def document_record(argument: Mapping[str, str | None]) -> dict[str, Any]:
     """A derivation as plain JSON values; runs in a bounded child."""
     from coadjoint.derive import derive
     from coadjoint.derive.document import document
+    from coadjoint.sandbox import report_progress
     from coadjoint.spec import read_spec
 
+    report_progress("derive", 0, 1)
     equations = derive(read_spec(Path(str(argument["path"]))), argument["route"])
     return asdict(document(equations))

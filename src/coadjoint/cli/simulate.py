@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coadjoint.cli.arguments import load_system, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table, write_text
+from coadjoint.cli.arguments import load_system, seconds_option, system_argument
+from coadjoint.cli.output import json_option, print_json, print_table, say, write_text
 
 if TYPE_CHECKING:
     from coadjoint.solve.quantities import Quantities
@@ -82,6 +82,7 @@ def _assignments(
     help="Picture of the path of (x, y) on the plane to write, e.g. trace.png.",
 )
 @click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
+@seconds_option
 @json_option
 def command(
     system: str,
@@ -95,10 +96,11 @@ def command(
     plot: Path | None,
     trace: Path | None,
     table: Path | None,
+    seconds: int | None,
     as_json: bool,
 ) -> int:
     """Integrate a trajectory; show the drift of invariants."""
-    loaded = load_system(system)
+    loaded = load_system(system, seconds)
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy
 
@@ -228,8 +230,8 @@ def _print(system: System, solution: Solution) -> None:
         ],
     )
     for name, drift in solution.attitude_drift.items():
-        click.echo(f"|{name}|^2 - 1 up to {drift:.1e}")
-    click.echo(": ".join(filter(None, ("status", solution.status, solution.message))))
+        say(f"|{name}|^2 - 1 up to {drift:.1e}")
+    say(": ".join(filter(None, ("status", solution.status, solution.message))))
 
 
 def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, float]]:

@@ -7,6 +7,8 @@ Comes in: Programs, the texts printed from them, the equations, and the loaded s
     rung 4   NumPy, exact C and fast C against 50 digits: k <= 4, or 16 with functions beyond sqrt
     rung 5   NumPy equals exact C bit for bit; with functions beyond sqrt, within 2 k
 
+Every rung runs on what was loaded from these very texts, counts what it compared, and fails where
+that is nothing: no kernel stands in for another.
 Rungs 1 and 2, claims and lowering, are exact and come earlier. NumPy agreeing with C proves almost
 nothing by itself: both are printed from one Program.
 Read next: `coadjoint.pipeline`, which runs this before anything is written.
@@ -14,12 +16,12 @@ Read next: `coadjoint.pipeline`, which runs this before anything is written.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
-from coadjoint.build.compiler import find_compiler
+from coadjoint.build.compiler import compilers, find_compiler
 from coadjoint.crosscheck.compare import (
     Figures,
     Subject,
@@ -29,7 +31,7 @@ from coadjoint.crosscheck.compare import (
 )
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_c, check_python
-from coadjoint.errors import CompilerError
+from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.lower.program import LEVELS, Program
 
 TARGETS: Final = ("numpy", "c", "c-fast")
@@ -53,16 +55,25 @@ class Report:
         system: Name of the system.
         rungs: Status by number of the rung: ``"passed"`` or why it was not run.
         threshold: The k that was allowed.
-        figures: By function and target.
+        lines: Lines of Python and C that were read back, by function.
+        figures: By function and target, with the points that were compared.
         equal: Points at which NumPy and exact C have the same bits, by function; none are counted
             with functions beyond sqrt, where NumPy and C libraries may differ in the last bits.
+        together: Points at which NumPy and exact C were compared within 2 k, by function.
     """
 
     system: str
     rungs: Mapping[int, str]
     threshold: float
+    lines: Mapping[str, int]
     figures: Mapping[str, Mapping[str, Figures]]
     equal: Mapping[str, int]
+    together: Mapping[str, int]
+
+    @property
+    def points(self) -> int:
+        """Points compared with the equations, of all functions and targets together."""
+        return sum(each.points for targets in self.figures.values() for each in targets.values())
 
     @property
     def passed(self) -> bool:
@@ -99,37 +110,74 @@ def crosscheck(
         programs: The functions by name.
         texts: The rendered files by name.
         reference: The equations.
-        system: The loaded system: ``name``, ``PARAMETERS``, ``prepare`` and one method per
-            function, called with ``state``, ``parameters`` and ``target``.
+        system: The loaded system: ``name``, ``PARAMETERS``, ``load_kernels`` and one method per
+            function, called with ``state``, ``parameters``, ``target`` and ``out``.
         targets: What to compare; by default all, or NumPy alone without a compiler.
         oracle_points: Points against 50 digits, shared out among the functions.
         bit_points: Points of bitwise comparison for each function.
 
     Raises:
-        CompilerError: The compiler asked for does not work.
+        CompilerError: The compiler does not work, or fails on this kernel.
         CrossCheckError: A rung failed.
     """
     chosen = available_targets() if targets is None else tuple(targets)
+    _require(chosen and programs, system.name, "there is no function, or no target", 3)
     subject = Subject(programs, reference, system, chosen)
-    share = oracle_points // len(programs)
-    with ThreadPoolExecutor(1) as pool:  # compilers work beside us
-        compiled = pool.submit(system.prepare, chosen)
-        for program in programs.values():
-            check_python(program, texts["kernel.py"])
-            check_c(program, texts["kernel.c"], system.name)
+    share = max(1, oracle_points // len(programs))
+    with compilers() as pool:  # compilers work beside us
+        loading = pool.submit(system.load_kernels, chosen)
+        lines = {
+            name: check_python(program, texts["kernel.py"])
+            + check_c(program, texts["kernel.c"], system.name)
+            for name, program in programs.items()
+        }
         exact = [exact_points(subject, name, _share(share, p)) for name, p in programs.items()]
-        compiled.result()
-    figures = {points.function: against_oracle(subject, points) for points in exact}
+        _check_texts(loading.result(), chosen, texts, system.name)
+    agreements = {points.function: against_oracle(subject, points) for points in exact}
+    figures = {name: agreement.figures for name, agreement in agreements.items()}
+    together = {name: agreement.together for name, agreement in agreements.items()}
     largest = max(len(program.outputs) for program in programs.values())
-    points = min(bit_points, BIT_OUTPUTS // largest)
-    equal = equal_bits(subject, points) if "c" in chosen else {}
-    complete = set(TARGETS) <= set(chosen)
-    rungs = {
-        3: "passed",
-        4: "passed" if complete else f"{', '.join(chosen)}; the others {NO_COMPILER}",
-        5: "passed" if "c" in chosen else NO_COMPILER,
+    points = max(1, min(bit_points, BIT_OUTPUTS // largest))
+    bits = {"numpy", "c"} <= set(chosen)
+    equal = equal_bits(subject, points) if bits else dict.fromkeys(programs, 0)
+    rungs = {3: "passed", 4: "passed", 5: "passed" if bits else NO_COMPILER}
+    if not set(TARGETS) <= set(chosen):
+        rungs[4] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
+    report = Report(system.name, rungs, subject.threshold, lines, figures, equal, together)
+    for name in programs:
+        _check_counts(report, name, bits=bits, exactly=not subject.elementary)
+    return report
+
+
+def _check_texts(
+    loaded: Mapping[str, str], targets: Sequence[str], texts: Mapping[str, str], system: str
+) -> None:
+    """The kernel of each target was loaded from the text that is checked."""
+    for target in targets:
+        file = "kernel.py" if target == "numpy" else "kernel.c"
+        same = loaded.get(target) == hashlib.sha256(texts[file].encode()).hexdigest()
+        _require(same, system, f"the target {target} was not loaded from this {file}", 3)
+
+
+def _check_counts(report: Report, function: str, *, bits: bool, exactly: bool) -> None:
+    """Each rung compared something of a function; passing on nothing is failing."""
+    counts = {
+        3: [report.lines[function]],
+        4: [figures.points for figures in report.figures[function].values()],
+        5: [report.equal[function] if exactly else report.together[function]] if bits else [1],
     }
-    return Report(system.name, rungs, subject.threshold, figures, equal)
+    for rung, found in counts.items():
+        _require(found and all(found), report.system, f"nothing of {function} was compared", rung)
+
+
+def _require(held: object, system: str, message: str, rung: int) -> None:
+    """A rung that rests on nothing fails."""
+    if not held:
+        raise CrossCheckError(
+            f"rung {rung}: {system}: {message}. This is a fault of coadjoint, please report it.",
+            rung=rung,
+            system=system,
+        )
 
 
 def _share(share: int, program: Program) -> int:

@@ -1,10 +1,11 @@
 """Cross-check, oracle: equations to 50 digits, with the envelope of their rounding errors.
 
 Comes in: a `Reference`, which evaluates the *equations* in any arithmetic, and exact doubles. Goes
-out: for each output the exact value and its envelope, the value that the same formula would have if
-every addend and factor were replaced by its magnitude. The error of a floating-point kernel is
-measured against the envelope, k = |computed - exact| / (2^-53 envelope): raw ulp say nothing where
-terms cancel. A wrong sign gives k of about 1e16, so the step from 4 to there is unmistakable.
+out: for each output the exact value and its envelope: to first order, the sum of what a relative
+change of 1 in each input and each intermediate result does to it. The error of a floating-point
+kernel is measured against the envelope, k = |computed - exact| / (2^-53 envelope): raw ulp say
+nothing where terms cancel. No formula of d operations one after the other has a k above d, however
+much it cancels (docs/decisions/envelope.md); a wrong sign gives a k of about 1e16.
 Read next: `coadjoint.crosscheck.points`.
 """
 
@@ -29,6 +30,9 @@ DIGITS: Final = 60
 #: bound of first order says nothing about the quotient.
 LARGEST_CONDITION: Final = Decimal(2**40)
 
+#: Above it the exponential, or its reciprocal, leaves the range of doubles.
+LARGEST_EXPONENT: Final = Decimal(700)
+
 # `decimal` is written in C and 10 times as fast as `mpmath`, which is asked for sin and cos alone.
 # Contexts of our own: nobody's precision is changed by a check.
 _CONTEXT: Final = Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)
@@ -39,13 +43,7 @@ _FLOOR: Final = Decimal(2.0**-1074)
 
 
 class Reference(Protocol):
-    """Evaluates the equations, not the Program, in any arithmetic that has ``+ * /`` and ``-u``.
-
-    Attributes:
-        deep: Whether definitions rest on one another over many levels, as those of a solve do.
-    """
-
-    deep: bool
+    """Evaluates the equations, not the Program, in any arithmetic that has ``+ * /`` and ``-u``."""
 
     def evaluate(
         self,
@@ -78,44 +76,18 @@ class Bounded:
         return Bounded(self.value + other.value, self.envelope + other.envelope)
 
     def __mul__(self, other: Bounded) -> Bounded:
-        return Bounded(self.value * other.value, self.envelope * other.envelope)
+        mine, theirs = abs(self.value) * other.envelope, abs(other.value) * self.envelope
+        return Bounded(self.value * other.value, mine + theirs)
 
     def __truediv__(self, other: Bounded) -> Bounded:
         size = abs(other.value)
         if other.envelope >= LARGEST_CONDITION * size:
             raise OutsideDomain
-        condition = other.envelope / size
-        return Bounded(self.value / other.value, self.envelope / size * condition)
+        value = self.value / other.value
+        return Bounded(value, (self.envelope + abs(value) * other.envelope) / size)
 
     def __neg__(self) -> Bounded:
         return Bounded(-self.value, self.envelope)
-
-
-class Tracked(Bounded):
-    """The same to first order: errors of factors add, and their envelopes are not multiplied.
-
-    The product of envelopes is simpler and, over the few levels of most formulas, as good. Through
-    the levels of a solve it grows as a power of a power: of 92 points, 29 were left.
-    """
-
-    __slots__ = ()
-
-    def __add__(self, other: Bounded) -> Tracked:
-        return Tracked(self.value + other.value, self.envelope + other.envelope)
-
-    def __mul__(self, other: Bounded) -> Tracked:
-        mine, theirs = abs(self.value) * other.envelope, abs(other.value) * self.envelope
-        return Tracked(self.value * other.value, mine + theirs)
-
-    def __truediv__(self, other: Bounded) -> Tracked:
-        size = abs(other.value)
-        if other.envelope >= LARGEST_CONDITION * size:
-            raise OutsideDomain
-        value = self.value / other.value
-        return Tracked(value, (self.envelope + abs(value) * other.envelope) / size)
-
-    def __neg__(self) -> Tracked:
-        return Tracked(-self.value, self.envelope)
 
 
 def exact(value: float | Fraction) -> Bounded:
@@ -135,25 +107,18 @@ def call(function: str, argument: Bounded) -> Bounded:
     """``f(u)``, with envelope ``|f(u)| + |f'(u)| envelope(u)``.
 
     Raises:
-        OutsideDomain: The square root or logarithm of a number that rounding may make negative.
+        OutsideDomain: The square root or logarithm of a number that rounding may make negative, or
+            an exponential that no double holds.
     """
     u = argument.value
     if function in ("sqrt", "log") and argument.envelope >= LARGEST_CONDITION * u:
         if function == "sqrt" and argument.envelope == 0:
             return argument
         raise OutsideDomain
+    if function == "exp" and abs(u) > LARGEST_EXPONENT:
+        raise OutsideDomain
     value, slope = _FUNCTIONS[function](u)
     return Bounded(value, abs(value) + abs(slope) * argument.envelope)
-
-
-def tracked(value: float | Fraction) -> Tracked:
-    """The same for formulas of many levels.
-
-    >>> tracked(3.0) * tracked(-2.0)
-    Tracked(value=Decimal('-6'), envelope=Decimal('12'))
-    """
-    taken = exact(value)
-    return Tracked(taken.value, taken.envelope)
 
 
 def _sqrt(u: Decimal) -> tuple[Decimal, Decimal]:
@@ -189,18 +154,10 @@ def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> 
     """
     with localcontext(_CONTEXT):
         try:
-            if reference.deep:
-                own = {name: tracked(value) for name, value in inputs.items()}
-                return [*reference.evaluate(function, own, tracked, _tracked_call)]
             known = {name: exact(value) for name, value in inputs.items()}
             return reference.evaluate(function, known, exact, call)
         except ArithmeticError as error:  # e.g. the exponential of 1e300
             raise OutsideDomain from error
-
-
-def _tracked_call(function: str, argument: Tracked) -> Tracked:
-    found = call(function, argument)
-    return Tracked(found.value, found.envelope)
 
 
 def error_in_envelopes(computed: float, bounded: Bounded) -> float:

@@ -18,23 +18,29 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Add, Call, Divide, Multiply, Negate, Node, Number, Program
 
 
-def check_python(program: Program, text: str) -> None:
+def check_python(program: Program, text: str) -> int:
     """The function of ``program`` in a ``kernel.py`` reads back as the Program.
+
+    Returns:
+        How many lines were compared.
 
     Raises:
         CrossCheckError: It does not; the message names the first difference.
     """
-    _check_same(program, read_python(text, program.name), "kernel.py")
+    return _check_same(program, read_python(text, program.name), "kernel.py")
 
 
-def check_c(program: Program, text: str, system: str) -> None:
+def check_c(program: Program, text: str, system: str) -> int:
     """Both branches of the function of ``program`` in a ``kernel.c`` read back as the Program.
+
+    Returns:
+        How many lines were compared, in all branches together.
 
     Raises:
         CrossCheckError: One does not; the message names the first difference.
     """
-    for body in read_c(text, f"{system}_{program.name}"):
-        _check_same(program, body, "kernel.c")
+    bodies = read_c(text, f"{system}_{program.name}")
+    return sum(_check_same(program, body, "kernel.c") for body in bodies)
 
 
 def as_printed(node: Node) -> Node:
@@ -60,8 +66,12 @@ def as_printed(node: Node) -> Node:
     return node
 
 
-def _check_same(program: Program, body: Body, file: str) -> None:
-    """The body does what the Program says: inputs, statements and outputs, in order."""
+def _check_same(program: Program, body: Body, file: str) -> int:
+    """The body does what the Program says: inputs, statements and outputs, in order.
+
+    Returns:
+        How many lines were compared.
+    """
     rows = {name: ("state", row) for row, name in enumerate(program.state)}
     rows |= {name: ("parameters", row) for row, name in enumerate(program.parameters)}
     wanted = {name: rows[name] for name in sorted(program.used() & rows.keys())}
@@ -70,13 +80,15 @@ def _check_same(program: Program, body: Body, file: str) -> None:
         raise _difference(program, file, "inputs", read, wanted)
     statements = [(each.name, as_printed(each.value)) for each in program.statements]
     outputs = [(row, as_printed(each.value)) for row, each in enumerate(program.outputs)]
-    for found, expected in (
+    lines = [
         *zip_longest(body.statements, statements),
         *zip_longest(sorted(body.outputs, key=itemgetter(0)), outputs),
-    ):
+    ]
+    for found, expected in lines:
         if found != expected:
             what = str((expected or found)[0])
             raise _difference(program, file, f"the line of {what}", found, expected)
+    return len(lines)
 
 
 def _difference(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from fractions import Fraction
+from math import isfinite
 
 from coadjoint.crosscheck.body import Body, failure, joined
 from coadjoint.errors import CrossCheckError
@@ -99,7 +100,10 @@ def read_expression(text: str, name: str) -> Node:
     >>> read_expression("a - 2.0", "rhs")
     Add(left=Symbol(name='a'), right=Negate(operand=Number(value=Fraction(2, 1))))
     """
-    return _Reader(text, name).whole()
+    try:
+        return _Reader(text, name).whole()
+    except RecursionError as error:
+        raise failure(f"kernel.c: {text[:60]!r} is nested too deeply", name) from error
 
 
 class _Reader:
@@ -152,7 +156,8 @@ class _Reader:
     def atom(self) -> Node:
         kind, text = self.tokens[self.at]
         self.at += 1
-        if kind == "number" and not text.isdigit():  # an integer would divide as integers do
+        # An integer would divide as integers do, and 1e999 is no number.
+        if kind == "number" and not text.isdigit() and isfinite(float(text)):
             return Number(Fraction(float(text)))
         if kind == "name" and self.tokens[self.at][1] != "(":
             return Symbol(text)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from fractions import Fraction
+from math import isfinite
 
 from coadjoint.crosscheck.body import Body, failure, joined
 from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
@@ -16,7 +17,11 @@ from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbo
 
 def read_python(text: str, name: str) -> Body:
     """The function ``_name`` of a ``kernel.py``; other forms than our template's fail."""
-    functions = _functions(ast.parse(text), name)
+    try:
+        module = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        raise failure(f"kernel.py is not Python: {error}", name) from error
+    functions = _functions(module, name)
     for wanted in (name, f"_{name}"):
         if wanted not in functions:
             raise failure(f"kernel.py has no function {wanted!r}", name)
@@ -112,7 +117,7 @@ def _node(tree: ast.expr, name: str) -> Node:
     match tree:
         case ast.Name(id=symbol):
             return Symbol(symbol)
-        case ast.Constant(value=float(value)):
+        case ast.Constant(value=float(value)) if isfinite(value):
             return Number(Fraction(value))
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return Negate(_node(operand, name))

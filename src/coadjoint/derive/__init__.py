@@ -103,6 +103,8 @@ def make_setting(spec: Spec) -> Setting:
 def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = None) -> Equations:
     """Derive the equations of motion of a declared system.
 
+    This takes as long as it takes; for a stranger's spec there is `coadjoint.derive_bounded`.
+
     Args:
         spec: What `coadjoint.read_spec` returned.
         route: One of the spec's routes; the first one, which is emitted, by default.

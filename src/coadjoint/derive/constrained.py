@@ -22,6 +22,7 @@ from coadjoint.derive.observables import observables
 from coadjoint.derive.solver import Definition, Solve, solve_in_kernel
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.roots import lifted
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.poisson.ranks import generic_rank
 from coadjoint.spec.model import Section
@@ -52,15 +53,16 @@ class ConstrainedMotion(Kinematics):
         """The linear equations of accelerations and multipliers, block by block.
 
         ``[[mass, A^T], [A, 0]] (eta', u) = (known, k)``, symmetric, with u minus the multipliers.
+        Entries that are identically zero are zero, so that every route finds the same blocks.
         """
-        field, found = self.frame.setting.field, self.distribution
+        field, found, value = self.frame.setting.field, self.distribution, self.decided.value
         rows, carried = self.of_kept()
         none = [field.zero] * len(rows)
         whole = [
-            *((*row, *(a[i] for a in rows)) for i, row in enumerate(mass)),
+            *((*map(value, row), *(a[i] for a in rows)) for i, row in enumerate(mass)),
             *((*row, *none) for row in rows),
         ]
-        sides = [*known, *carried]
+        sides = [*map(value, known), *map(value, carried)]
         names = [
             *map(rate_name, found.independent),
             *map(multiplier_name, range(len(rows))),
@@ -141,20 +143,23 @@ def emission(
     solves = motion.solves(mass, known)
     for solve in solves:
         _check_regular(motion, solve, definitions)
-    solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    solved = [line for solve in solves for line in solve_in_kernel(field, solve, motion.decided)]
     moving = dict(zip(motion.distribution.independent, motion.accelerations, strict=True))
     moving |= motion.position_rates
     rates = tuple(moving[name] for name in setting.state)
     xi = setting.elements(frame.velocities)
     momenta = field.gradient(lagrangian, frame.velocities)
     energy = field.sum(p * x for p, x in zip(momenta, xi, strict=True)) - lagrangian
+    closed = field.substitute(energy, motion.distribution.solved)
+    short = lifted(field, closed)  # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
     along = [
         *reduced_momenta(motion.distribution, lagrangian),
         *section_momenta(motion.distribution, lagrangian),
     ]
     return Exact(
-        (*definitions, *solved, *reactions),
+        (*definitions, *solved, *motion.computed(reactions)),
         rates,
         energy,
         observables(setting, energy, along),

@@ -41,7 +41,7 @@ def derive(given: Spec | Setting) -> Equations:
     momenta = setting.field.gradient(constrained, found.independent)
     mass = tuple(setting.field.gradient(p, found.independent) for p in momenta)
     known = _known(motion, lagrangian, constrained, momenta)
-    exact = emission(motion, lagrangian, motion.kinematics(), mass, known, ())
+    exact = emission(motion, lagrangian, motion.kinematics, mass, known, ())
     steps = _steps(motion, constrained, momenta, mass, known)
     return Equations(setting, "hamel", exact, steps, distribution=found)
 

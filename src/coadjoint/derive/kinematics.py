@@ -3,17 +3,18 @@ r"""Kinematics of a constrained motion: everything that rests on velocities and 
 The kernel computes in the order of a careful hand: moving entries of B (``_b1``), the velocities
 that constraints give, the rates of positions (``dGamma1_dt``), those of square roots (``_g1``) and
 of the entries (``_e1``), and the part :math:`c = \dot B \eta + \dot\beta` of the accelerations
-that needs none (``_c1``).
+that needs none (``_c1``). What is identically zero is left out.
 Comes in: a Distribution. Goes out: these definitions, and what they are called.
 Read next: `coadjoint.derive.constrained`, which solves for the accelerations.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.decided import Decided
 from coadjoint.derive.distribution import Distribution, Row, distribution
 from coadjoint.derive.frames import Frame
 from coadjoint.derive.setting import make_setting
@@ -221,10 +222,10 @@ class Kinematics:
     @cached_property
     def c(self) -> Row:
         """``dB/dt eta + dbeta/dt`` by name, a component for each velocity of the frame."""
-        field = self.frame.setting.field
+        field, computed = self.frame.setting.field, {name for name, _ in self.kinematics}
         names = {place: f"_c{n + 1}" for n, place in enumerate(self.solved)}
         return tuple(
-            field[names[n]] if n in names and self._convected[n] != 0 else field.zero
+            field[names[n]] if names.get(n) in computed else field.zero
             for n in range(len(self.frame.velocities))
         )
 
@@ -255,6 +256,18 @@ class Kinematics:
             for n in self.solved
         ]
 
+    @cached_property
+    def decided(self) -> Decided:
+        """What is known exactly of the definitions so far."""
+        setting = self.frame.setting
+        return Decided(setting.field, setting.state)
+
+    def computed(self, definitions: Iterable[Definition]) -> list[Definition]:
+        """Definitions as the kernel computes them; intermediates that are zero are left out."""
+        lines = [(name, self.decided.define(name, value)) for name, value in definitions]
+        return [(name, value) for name, value in lines if value != 0 or not name.startswith("_")]
+
+    @cached_property
     def kinematics(self) -> list[Definition]:
         """Everything that rests on velocities and positions alone, in order."""
         rates = self.frame_rates
@@ -267,10 +280,6 @@ class Kinematics:
             for name in self.frame.positions
             if not self._is_velocity(name)
         ]
-        convected = [
-            (f"_c{n + 1}", self._convected[place])
-            for n, place in enumerate(self.solved)
-            if self._convected[place] != 0
-        ]
+        convected = [(f"_c{n + 1}", self._convected[place]) for n, place in enumerate(self.solved)]
         roots = self._rates_of_roots()
-        return [*entries, *self.velocities(), *positions, *roots, *moved, *convected]
+        return self.computed([*entries, *self.velocities(), *positions, *roots, *moved, *convected])

@@ -71,7 +71,7 @@ def derive(given: Spec | Setting) -> Equations:
     forces, named = _forces(motion, lagrangian, mass)
     reduced = _projected(motion, mass)
     known = _known(motion, forces)
-    definitions = [*motion.kinematics(), *named]
+    definitions = [*motion.kinematics, *named]
     reactions = motion.reactions(mass, forces)
     exact = emission(motion, lagrangian, definitions, reduced, known, reactions)
     steps = _steps(motion, lagrangian, named, reduced, known, reactions, exact.poisson_tensor)
@@ -139,10 +139,10 @@ def _forces(
     for n, (inertial, slope, force, row, p) in enumerate(parts):
         convected = field.sum(m * c for m, c in zip(row, motion.c, strict=True))
         value = inertial + slope + force - convected - motion.moved(p)
-        if n in motion.solved and value != 0:
-            name = f"_k{n + 1}"
-            named.append((name, value))
-            value = field[name]
+        if n in motion.solved:
+            lines = motion.computed([(f"_k{n + 1}", value)])
+            named += lines
+            value = field[lines[0][0]] if lines else field.zero
         forces.append(value)
     return tuple(forces), named
 
@@ -207,7 +207,7 @@ def _steps(
             r"\dot z = X_\xi z, \qquad c = \dot B \eta + \dot \beta",
             tuple(
                 (symbol(name), value)
-                for name, value in motion.kinematics()
+                for name, value in motion.kinematics
                 if name not in found.solved
             ),
         ),

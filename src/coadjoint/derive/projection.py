@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from coadjoint.derive.decided import Decided
 from coadjoint.derive.equations import Equations, Exact
 from coadjoint.derive.kinematics import (
     Kinematics,
@@ -35,7 +36,7 @@ from coadjoint.exact import Element
 def projected(equations: Equations) -> Equations | None:
     """The nearest state on the constraints, in place of the rates; None where none is kept.
 
-    Definitions are those of the equations that rest on no acceleration, then the solve.
+    Definitions are those of the equations on which matrix and residuals rest, then the solve.
     """
     found = equations.distribution
     if found is None or not found.kept:
@@ -57,8 +58,13 @@ def projected(equations: Equations) -> Equations | None:
     changes = {
         v: field[shifts[rate_name(v)]] for v in found.independent if shifts[rate_name(v)] in moved
     }
-    definitions = [pair for pair in exact.definitions if pair[0] not in equations.kept]
-    definitions += [line for solve in solves for line in solve_in_kernel(field, solve)]
+    needed = [e for solve in solves for row in (*solve.matrix, solve.known) for e in row]
+    needed += [residual for _, residual in exact.residuals]
+    definitions = equations.definitions_of(needed)
+    decided = Decided(field, equations.setting.state)
+    for name, value in definitions:
+        decided.define(name, value)
+    definitions += [line for solve in solves for line in solve_in_kernel(field, solve, decided)]
     state = tuple(field[name] + changes.get(name, field.zero) for name in equations.setting.state)
     nearest = Exact(tuple(definitions), state, None, (), None, solves, exact.residuals)
     return replace(equations, exact=nearest, steps=())

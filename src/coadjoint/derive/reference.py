@@ -2,20 +2,22 @@
 
 Comes in: Equations. Goes out: a `Reference` that computes each function of the kernels straight
 from the field elements, never from the Programs, so that a fault of lowering, printing or compiling
-shows. The Jacobian is the exact derivative of the elements, by the chain rule through the
-definitions, which are evaluated in their order and never put into one another: there may be many
-levels of them where velocities are solved for.
+shows. The Jacobian is the derivative of the rates as they are written: rates are evaluated in
+numbers that carry their slopes, by the product, quotient and chain rules. The derivative as an
+element of the field would be brought to a common denominator, where terms cancel that no formula of
+doubles can cancel without rounding (docs/decisions/envelope.md). Definitions are evaluated in their
+order and never put into one another: there may be many levels of them where velocities are solved
+for.
 Read next: `coadjoint.lower.check` and `coadjoint.crosscheck.oracle`, which supply the arithmetic.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from operator import add, mul
-from typing import TypeVar
+from operator import add, mul, truediv
+from typing import Generic, TypeVar
 
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
@@ -24,7 +26,6 @@ from coadjoint.exact import Element
 Value = TypeVar("Value")
 Number = Callable[[Fraction], Value]
 Apply = Callable[[str, Value], Value]
-ZERO = Fraction(0)
 
 
 class Reference:
@@ -34,7 +35,6 @@ class Reference:
         self.equations = equations
         self.state = equations.setting.state
         self.parameters = equations.setting.parameters
-        self.deep = bool(equations.kept)
         self._functions: dict[str, tuple[Sequence[Element], list[tuple[str, Element]]]] = {}
 
     def evaluate(
@@ -55,6 +55,14 @@ class Reference:
         if function not in self._functions:
             elements = self._elements(function)
             self._functions[function] = elements, self.equations.definitions_of(elements)
+        if function == "jacobian":
+            return self._jacobian(inputs, number, call)
+        return self._values(function, inputs, number, call)
+
+    def _values(
+        self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
+    ) -> list[Value]:
+        """What the elements of a function are, definitions first."""
         elements, definitions = self._functions[function]
         field, known, factors = self.equations.setting.field, dict(inputs), dict[int, Value]()
 
@@ -63,8 +71,6 @@ class Reference:
 
         for name, definition in definitions:
             known[name] = value(definition)
-        if function == "jacobian":
-            return self._jacobian(value, number)
         return [value(element) for element in elements]
 
     def _elements(self, function: str) -> Sequence[Element]:
@@ -87,57 +93,108 @@ class Reference:
                 return [bound.element for bound in bounds(self.equations)]
         raise AssertionError(function)
 
-    def _jacobian(self, value: Callable[[Element], Value], number: Number[Value]) -> list[Value]:
-        """``d rate_i / d x_j`` through the definitions, one after the other."""
-        known: dict[str, dict[int, Value]] = {}
-        for name, slopes in self._definition_slopes:
-            known[name] = _chained(slopes, known, value)
-        rates = [_chained(slopes, known, value) for slopes in self._rate_slopes]
-        places = range(len(self.state))
-        return [rate[j] if j in rate else number(ZERO) for rate in rates for j in places]
+    def _jacobian(
+        self, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
+    ) -> list[Value]:
+        """``d rate_i / d x_j``, row by row."""
+        one, zero = number(Fraction(1)), number(Fraction(0))
+        known = {name: Sloped(value, {}) for name, value in inputs.items()}
+        for j, name in enumerate(self.state):
+            known[name] = Sloped(inputs[name], {j: one})
+
+        def constant(value: Fraction) -> Sloped[Value]:
+            return Sloped(number(value), {})
+
+        def apply(function: str, argument: Sloped[Value]) -> Sloped[Value]:
+            return _applied(function, argument, number, call)
+
+        rates = self._values("jacobian", known, constant, apply)
+        return [rate.slopes.get(j, zero) for rate in rates for j in range(len(self.state))]
 
     @cached_property
     def _projection(self) -> Reference:
         assert self.equations.projection is not None, "asked for only where constraints are kept"
         return Reference(self.equations.projection)
 
-    @cached_property
-    def _definition_slopes(self) -> list[tuple[str, _Slopes]]:
-        definitions = self.equations.definitions_of(self.equations.exact.rates)
-        return [(name, self._slopes(value)) for name, value in definitions]
 
-    @cached_property
-    def _rate_slopes(self) -> list[_Slopes]:
-        return [self._slopes(rate) for rate in self.equations.exact.rates]
+class Sloped(Generic[Value]):
+    """A value with its slopes along the state, and the arithmetic of both.
 
-    def _slopes(self, element: Element) -> _Slopes:
-        """The partial derivatives of an element, zeros left out."""
-        field, reached = self.equations.setting.field, self.equations.setting.field.reach(element)
-        direct = [(j, field.derivative(element, x)) for j, x in enumerate(self.state)]
-        names = [name for name, _ in self.equations.exact.definitions if name in reached]
-        through = [(name, field.derivative(element, name)) for name in names]
-        return _Slopes(
-            tuple((j, slope) for j, slope in direct if slope != 0),
-            tuple((name, slope) for name, slope in through if slope != 0),
+    Args:
+        value: The value, in any arithmetic that has ``+ * /`` and ``-u``.
+        slopes: Derivatives by the place in the state; one that is left out is zero.
+        factors: What the value is the product of, itself by default: the slope of ``1/D^2`` is
+            ``-2 D'/D / D^2``, where the rule for a quotient would say ``-2 D D' / (D^2 D^2)``.
+    """
+
+    __slots__ = ("factors", "slopes", "value")
+
+    def __init__(
+        self,
+        value: Value,
+        slopes: Mapping[int, Value],
+        factors: tuple[Sloped[Value], ...] = (),
+    ) -> None:
+        self.value, self.slopes = value, slopes
+        self.factors = factors or (self,)
+
+    def __add__(self, other: Sloped[Value]) -> Sloped[Value]:
+        return Sloped(add(self.value, other.value), _together(self.slopes, other.slopes))
+
+    def __mul__(self, other: Sloped[Value]) -> Sloped[Value]:
+        slopes = _together(_scaled(self.slopes, other.value), _scaled(other.slopes, self.value))
+        return Sloped(mul(self.value, other.value), slopes, self.factors + other.factors)
+
+    def __truediv__(self, other: Sloped[Value]) -> Sloped[Value]:
+        quotient = truediv(self.value, other.value)
+        slopes = {j: truediv(slope, other.value) for j, slope in self.slopes.items()}
+        for factor in other.factors:
+            part = {
+                j: _negative(mul(quotient, truediv(slope, factor.value)))
+                for j, slope in factor.slopes.items()
+            }
+            slopes = _together(slopes, part)
+        return Sloped(quotient, slopes)
+
+    def __neg__(self) -> Sloped[Value]:
+        return Sloped(
+            _negative(self.value), {j: _negative(slope) for j, slope in self.slopes.items()}
         )
 
 
-@dataclass(frozen=True)
-class _Slopes:
-    """Partial derivatives of an element: by places of the state, and by definitions."""
-
-    direct: tuple[tuple[int, Element], ...]
-    through: tuple[tuple[str, Element], ...]
+def _negative(value: Value) -> Value:
+    return -value  # type: ignore[operator, no-any-return]
 
 
-def _chained(
-    slopes: _Slopes, known: Mapping[str, Mapping[int, Value]], value: Callable[[Element], Value]
-) -> dict[int, Value]:
-    """Total derivatives by the state from those of the definitions, by the chain rule."""
-    total = {j: value(slope) for j, slope in slopes.direct}
-    for name, slope in slopes.through:
-        outer = value(slope)
-        for j, inner in known[name].items():
-            product = mul(outer, inner)
-            total[j] = add(total[j], product) if j in total else product
+def _together(one: Mapping[int, Value], other: Mapping[int, Value]) -> dict[int, Value]:
+    """The sums of two sets of slopes."""
+    total = dict(one)
+    for j, slope in other.items():
+        total[j] = add(total[j], slope) if j in total else slope
     return total
+
+
+def _scaled(slopes: Mapping[int, Value], factor: Value) -> dict[int, Value]:
+    return {j: mul(slope, factor) for j, slope in slopes.items()}
+
+
+def _applied(
+    function: str, argument: Sloped[Value], number: Number[Value], call: Apply[Value]
+) -> Sloped[Value]:
+    """``f(u)`` with the slopes ``f'(u) u'``."""
+    u = argument.value
+    value = call(function, u)
+
+    match function:
+        case "sqrt":
+            slopes = _scaled(argument.slopes, truediv(number(Fraction(1, 2)), value))
+        case "sin":
+            slopes = _scaled(argument.slopes, call("cos", u))
+        case "cos":
+            slopes = _scaled(argument.slopes, _negative(call("sin", u)))
+        case "exp":
+            slopes = _scaled(argument.slopes, value)
+        case _:
+            assert function == "log", function
+            slopes = {j: truediv(slope, u) for j, slope in argument.slopes.items()}
+    return Sloped(value, slopes)

@@ -19,9 +19,10 @@ from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Condition, Element, Field
 from coadjoint.spec import Formula, Spec, tree
 from coadjoint.spec.components import FORMS
+from coadjoint.spec.constrained import Condition as Inequality
 from coadjoint.spec.model import Parameter, Shape, Variable, unpacked
 from coadjoint.spec.poisson import pairing_weights
 from coadjoint.spec.shapes import ELEMENTARY
@@ -231,6 +232,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     names = [name for quantity in quantities for name in quantity.components]
     names += [name for each in spec.reconstruction for name in each.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
+    positive += [name for each in spec.domain if (name := _positive_name(each)) in names]
     # a route, and what a transformation makes of a formula, may call its functions with other
     # arguments than the spec does
     more = len(spec.routes) * bool(symbols) + len(spec.transformations)
@@ -241,7 +243,34 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         values[quantity.name] = whole(quantity, values)
     for each in spec.reconstruction:
         values[each.name] = shaped([values[name] for name in each.components], each.shape)
-    return Setting(spec, field, values)
+    setting = Setting(spec, field, values)
+    field.assume(_conditions(setting))
+    return setting
+
+
+def _positive_name(condition: Inequality) -> str:
+    """The name that a condition such as ``q > 0`` or ``1 < q`` bounds from below; else empty."""
+    smaller, larger = condition.left.tree, condition.right.tree
+    if condition.sign.startswith(">"):
+        smaller, larger = larger, smaller
+    if not isinstance(larger, tree.Name) or not isinstance(smaller, tree.Number):
+        return ""
+    strict = smaller.value > 0 or (smaller.value == 0 and not condition.sign.endswith("="))
+    return larger.name if strict else ""
+
+
+def _conditions(setting: Setting) -> tuple[Condition, ...]:
+    """The declared domain, but for bounds of reactions, which are no functions of the state."""
+    found = []
+    for each in setting.spec.domain:
+        nodes = [node for side in (each.left, each.right) for node in tree.walk(side.tree)]
+        named = {node.name for node in nodes if isinstance(node, tree.Name | tree.Index)}
+        if not named <= setting.values.keys():
+            continue
+        left, right = setting.formula(each.left), setting.formula(each.right)
+        value = left - right if each.sign.startswith(">") else right - left
+        found.append(Condition(value, strict=not each.sign.endswith("=")))
+    return tuple(found)
 
 
 def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:

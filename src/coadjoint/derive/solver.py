@@ -3,17 +3,21 @@ r"""Solving in the kernel: ``A x = b`` as straight-line definitions instead of a
 A symmetric matrix whose leading minors do not vanish is :math:`A = L D L^T` with ones on the
 diagonal of L, so that ``L y = b``, ``D z = y`` and ``L^T x = z`` are solved entry by entry. Each
 entry of L, D, y and z becomes a definition with a leading underscore, which no spec can declare;
-it is never expanded, since the closed form of a sixth velocity would fill a book. What is zero in
-y and z before any number is put in, as behind zeros of b, is left out.
+it is never expanded, since the closed form of a sixth velocity would fill a book. The columns of
+W = L D are computed before they are divided, and a pivot that divides several has one reciprocal.
+What is identically zero in W, y, z or x is left out, and x is then 0.
 Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
-Read next: `coadjoint.derive.legendre`, which solves for velocities.
+Read next: `coadjoint.derive.decided`, which finds the zeros; `coadjoint.derive.legendre`, which
+solves for velocities.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
+from coadjoint.derive.decided import Decided
 from coadjoint.exact import Element, Field
 
 #: A name and its value, in terms of state, parameters and names defined before.
@@ -24,6 +28,16 @@ Rows = Sequence[Sequence[Element]]
 def pivot_name(i: int) -> str:
     """Name of the entry of D in the place ``i``, counted from 0."""
     return f"_d{i + 1}"
+
+
+def reciprocal_name(i: int) -> str:
+    """Name of one over the entry of D in the place ``i``."""
+    return f"_r{i + 1}"
+
+
+def column_name(i: int, j: int) -> str:
+    """Name of the entry of ``W = L D`` in row ``i`` and column ``j`` below the diagonal."""
+    return f"_w{i + 1}_{j + 1}"
 
 
 def factor_name(i: int, j: int) -> str:
@@ -40,11 +54,15 @@ def solver_names(block: Sequence[int]) -> list[str]:
     """Every name that the solve of a block of places may define.
 
     >>> solver_names((0, 2))
-    ['_d1', '_d3', '_l3_1', '_y1', '_y3', '_z1', '_z3']
+    ['_d1', '_d3', '_r1', '_r3', '_w3_1', '_l3_1', '_y1', '_y3', '_z1', '_z3']
     """
-    factors = [factor_name(i, j) for n, i in enumerate(block) for j in block[:n]]
-    of_each = [[make(i) for i in block] for make in (pivot_name, forward_name, scaled_name)]
-    return [*of_each[0], *factors, *of_each[1], *of_each[2]]
+    pairs = [(i, j) for n, i in enumerate(block) for j in block[:n]]
+    of_pairs = [make(*pair) for make in (column_name, factor_name) for pair in pairs]
+    pivots, ones, y, z = (
+        [make(i) for i in block]
+        for make in (pivot_name, reciprocal_name, forward_name, scaled_name)
+    )
+    return [*pivots, *ones, *of_pairs, *y, *z]
 
 
 def scaled_name(i: int) -> str:
@@ -69,7 +87,7 @@ class Solve:
     names: Sequence[str]
 
 
-def solve_in_kernel(field: Field, solve: Solve) -> list[Definition]:
+def solve_in_kernel(field: Field, solve: Solve, decided: Decided | None = None) -> list[Definition]:
     """The definitions that solve ``A x = b``, in the order in which they can be computed.
 
     Where a pivot is zero at run time, the unknowns are infinite or not a number, as with any other
@@ -78,6 +96,7 @@ def solve_in_kernel(field: Field, solve: Solve) -> list[Definition]:
     Args:
         field: Where all names are symbols.
         solve: What to solve.
+        decided: The definitions on which A and b rest; by default they rest on none.
 
     >>> field = Field(["a", "b", "c", "u", "v", "x", "y", *solver_names((0, 1))])
     >>> a, b, c, u, v = (field[name] for name in "abcuv")
@@ -85,105 +104,218 @@ def solve_in_kernel(field: Field, solve: Solve) -> list[Definition]:
     >>> for name, value in solve_in_kernel(field, solve):
     ...     print(name, "=", value)
     _d1 = a
-    _l2_1 = b/_d1
-    _d2 = -_d1*_l2_1**2 + c
+    _r1 = 1/_d1
+    _l2_1 = b*_r1
+    _d2 = -b*_l2_1 + c
     _y1 = u
-    _z1 = _y1/_d1
     _y2 = -_l2_1*_y1 + v
+    _z1 = _r1*_y1
     _z2 = _y2/_d2
     y = _z2
     x = -_l2_1*y + _z1
     """
-    known, block, names = solve.known, solve.block, solve.names
-    definitions, factors = _factorised(field, solve.matrix, block)
-    y: dict[int, Element] = {}
-    size = range(len(block))
-    for i in size:
-        before = field.sum(factors[i, k] * y[k] for k in y if (i, k) in factors)
-        value = known[i] - before
-        if value == 0:
-            continue
-        y[i] = field[forward_name(block[i])]
-        definitions.append((forward_name(block[i]), value))
-        definitions.append((scaled_name(block[i]), y[i] / field[pivot_name(block[i])]))
-    for i in reversed(size):
-        z = field[scaled_name(block[i])] if i in y else field.zero
-        after = (factors[k, i] * field[names[k]] for k in size[i + 1 :] if (k, i) in factors)
-        definitions.append((names[i], z - field.sum(after)))
-    return definitions
+    return _Elimination(field, solve, decided or Decided(field, ())).definitions()
 
 
-def _factorised(
-    field: Field, matrix: Rows, block: Sequence[int]
-) -> tuple[list[Definition], dict[tuple[int, int], Element]]:
-    """Definitions of L and D, and the symbols of those entries of L that are not zero."""
-    definitions: list[Definition] = []
-    factors: dict[tuple[int, int], Element] = {}
-    pivots = [field[pivot_name(i)] for i in block]
-    for j in range(len(block)):
-        for i in range(j, len(block)):
-            shared = [k for k in range(j) if (i, k) in factors and (j, k) in factors]
-            removed = field.sum(factors[i, k] * factors[j, k] * pivots[k] for k in shared)
-            rest = matrix[i][j] - removed
-            if i == j:
-                definitions.append((pivot_name(block[j]), rest))
-            elif rest != 0:
-                name = factor_name(block[i], block[j])
-                definitions.append((name, rest / pivots[j]))
-                factors[i, j] = field[name]
-    return definitions, factors
+class _Elimination:
+    """A solve in the making: column by column of L, then backward.
+
+    Args:
+        field: Where all names are symbols.
+        solve: What to solve.
+        decided: The definitions so far.
+    """
+
+    def __init__(self, field: Field, solve: Solve, decided: Decided) -> None:
+        self.field, self.solve, self.decided = field, solve, decided
+        self.lines: list[Definition] = []
+        self._size = range(len(solve.block))
+        self._w: dict[tuple[int, int], Element] = {}
+        self._l: dict[tuple[int, int], Element] = {}
+        self._y: dict[int, Element] = {}
+        self._z: dict[int, Element] = {}
+
+    def definitions(self) -> list[Definition]:
+        """Every line, in an order in which they can be computed."""
+        for j in self._size:
+            self._eliminate(j)
+        x: dict[int, Element] = {}
+        for i in reversed(self._size):
+            after = self.field.sum(self._l[k, i] * x[k] for k in x if (k, i) in self._l)
+            x[i] = self._define(self.solve.names[i], self._z.get(i, self.field.zero) - after)
+        return self.lines
+
+    def _eliminate(self, j: int) -> None:
+        """``d_j``, then what is divided by it: column j of W, and ``y_j = b_j - w_jk z_k``."""
+        place, before = self.solve.block[j], [k for k in range(j) if (j, k) in self._l]
+        pivot = self._define(pivot_name(place), self._rest(j, j, before))
+        for i in self._size[j + 1 :]:
+            name = column_name(self.solve.block[i], place)
+            value = self.decided.value(self._rest(i, j, before))
+            if value != 0:
+                leaf = _is_leaf(self.field, value)
+                self._w[i, j] = value if leaf else self._entry(name, value)
+        below = [i for i in self._size[j + 1 :] if (i, j) in self._w]
+        taken = self.field.sum(self._w[j, k] * self._z[k] for k in before if k in self._z)
+        y = self.decided.value(self.solve.known[j] - taken)
+        whole = self._cancelled(y, place)
+        if whole is None and not _is_product(self.field, y):
+            y = self._define(forward_name(place), y)
+        share = 1 / pivot
+        if len(below) + (whole is None) > 1:
+            share = self._define(reciprocal_name(place), share)
+        for i in below:
+            name = factor_name(self.solve.block[i], place)
+            self._l[i, j] = self._entry(name, self._w[i, j] * share)
+        if y != 0:
+            self._z[j] = self._define(scaled_name(place), y * share if whole is None else whole)
+
+    def _cancelled(self, y: Element, place: int) -> Element | None:
+        """``y/d`` where that leaves no quotient, as of a mass that forces are multiples of."""
+        found = y / dict(self.lines)[pivot_name(place)]
+        return None if any(each.divisors for each in self.field.quotients(found)) else found
+
+    def _entry(self, name: str, value: Element) -> Element:
+        """An entry of W or L by its name, or by that of an entry it is up to its sign."""
+        value = self.decided.value(value)
+        if _is_leaf(self.field, value):
+            return self._define(name, value)
+        for known, other in self.lines:
+            if value in (other, -other):
+                same = self.field[known] if value == other else -self.field[known]
+                self._define(name, same)
+                return same
+        return self._define(name, value)
+
+    def _rest(self, i: int, j: int, before: Sequence[int]) -> Element:
+        """``a_ij`` without what the columns before j take: ``a_ij - w_ik l_jk``."""
+        shared = (self._w[i, k] * self._l[j, k] for k in before if (i, k) in self._w)
+        return self.solve.matrix[i][j] - self.field.sum(shared)
+
+    def _define(self, name: str, value: Element) -> Element:
+        """Write a line, and return what later lines read: a number, or the name."""
+        value = self.decided.define(name, value)
+        self.lines.append((name, value))
+        return self.decided.numbers.get(name, self.field[name])
+
+
+def factors(
+    field: Field, solve: Solve, definitions: Mapping[str, Element]
+) -> dict[tuple[int, int], Element]:
+    """L below the diagonal, zeros left out, and one over D on it, as the definitions name them."""
+    found = {}
+    for i, row in enumerate(solve.block):
+        pivot, one = definitions[pivot_name(row)], reciprocal_name(row)
+        found[i, i] = field[one] if one in definitions else 1 / pivot
+        for k, column in enumerate(solve.block[:i]):
+            name = factor_name(row, column)
+            if name in definitions:
+                value = definitions[name]
+                found[i, k] = value if _is_leaf(field, value) else field[name]
+    return found
+
+
+def _is_leaf(field: Field, value: Element) -> bool:
+    """Whether a value costs no operation: a number, or a name up to its sign."""
+    if field.as_number(value) is not None:
+        return True
+    names = field.names_in(value)
+    return len(names) == 1 and any(value in (field[name], -field[name]) for name in names)
+
+
+def _is_product(field: Field, value: Element) -> bool:
+    """Whether a value has no sum in it."""
+    divisors = [divisor for each in field.quotients(value) for divisor, _ in each.divisors]
+    return all(len(field.terms(part)) < 2 for part in (value, *divisors))
 
 
 def solution_defects(
     field: Field, solve: Solve, definitions: Mapping[str, Element]
 ) -> list[Element]:
-    """Entries of ``L D L^T - A``, ``L y - b``, ``D z - y``, ``L^T x - z``: 0 for a solution.
+    """Entries of ``W - L D``, ``W L^T - A``, ``W z - b``, ``D z - y``, ``L^T x - z``.
 
-    In each entry, the name that is defined last is replaced by its definition, and no other: that
-    is enough for a proof, and no closed form is ever written out.
+    All are 0 for a solution. In each entry the name that is defined last is replaced by its
+    definition, and reciprocals of pivots are: that is enough for a proof, and no closed form is
+    written out. Only where something was left out as identically zero, all definitions are put in.
     """
-    matrix, known, block, names = solve.matrix, solve.known, solve.block, solve.names
-    factors = _entries_of_factor(field, definitions, block)
-    size = range(len(block))
-    d = [field[pivot_name(i)] for i in block]
-    y, z = (
-        [field[name] if name in definitions else field.zero for name in map(make, block)]
-        for make in (forward_name, scaled_name)
-    )
-
-    def row(i: int, k: int) -> Element:
-        return factors.get((i, k), field.zero)
-
-    left = [
-        (
-            pivot_name(block[j]) if i == j else factor_name(block[i], block[j]),
-            field.sum(row(i, k) * row(j, k) * d[k] for k in size[: j + 1]) - matrix[i][j],
-        )
-        for i in size
-        for j in size[: i + 1]
-    ]
-    left += [
-        (forward_name(block[i]), field.sum(row(i, k) * y[k] for k in size[: i + 1]) - known[i])
-        for i in size
-    ]
-    left += [(scaled_name(block[i]), d[i] * z[i] - y[i]) for i in size]
-    left += [
-        (names[i], field.sum(row(k, i) * field[names[k]] for k in size[i:]) - z[i]) for i in size
-    ]
-    return [
-        field.substitute(defect, {last: definitions[last]}) if last in definitions else defect
-        for last, defect in left
-    ]
+    return _Defects(field, solve, definitions).entries()
 
 
-def _entries_of_factor(
-    field: Field, definitions: Mapping[str, Element], block: Sequence[int]
-) -> dict[tuple[int, int], Element]:
-    """L as the definitions have it: ones on the diagonal, and zero where nothing is defined."""
-    entries = {(i, i): field.one for i in range(len(block))}
-    for i, row in enumerate(block):
-        for j, column in enumerate(block[:i]):
-            name = factor_name(row, column)
-            if name in definitions:
-                entries[i, j] = field[name]
-    return entries
+class _Defects:
+    """The equations of `solution_defects`, with the definitions put in as far as is needed."""
+
+    def __init__(self, field: Field, solve: Solve, definitions: Mapping[str, Element]) -> None:
+        self.field, self.solve, self.definitions = field, solve, definitions
+        self._size = range(len(solve.block))
+        own = {name for name in solver_names(solve.block) if name in definitions}
+        # entries that are others up to their sign, and pivots that are parameters
+        self._same = {name: v for name in own if _is_leaf(field, v := definitions[name])}
+        ones = map(reciprocal_name, solve.block)
+        self._ones = {name: definitions[name] for name in ones if name in definitions}
+        self._d = [self._value(pivot_name(place)) for place in solve.block]
+
+    def _value(self, name: str) -> Element:
+        """The symbol of a name; zero where nothing is defined."""
+        return self.field[name] if name in self.definitions else self.field.zero
+
+    def _l(self, i: int, j: int) -> Element:
+        if i == j:
+            return self.field.one
+        return self._value(factor_name(self.solve.block[i], self.solve.block[j]))
+
+    def _w(self, i: int, j: int) -> Element:
+        """An entry of W by its name; by those of L and D where it has none."""
+        name = column_name(self.solve.block[i], self.solve.block[j])
+        if i == j:
+            return self._d[j]
+        if name in self.definitions:
+            return self.field[name]
+        own = factor_name(self.solve.block[i], self.solve.block[j])
+        return self._reduced(own, self._l(i, j) * self._d[j])
+
+    def entries(self) -> list[Element]:
+        """All defects, row by row."""
+        field, block, size = self.field, self.solve.block, self._size
+        z = [self._value(scaled_name(place)) for place in block]
+        x = [field[name] for name in self.solve.names]
+        found = []
+        for i in size:
+            for j in size[:i]:
+                own = factor_name(block[i], block[j])
+                found.append((own, self._w(i, j) - self._l(i, j) * self._d[j]))
+            for j in size[: i + 1]:
+                total = field.sum(self._w(i, k) * self._l(j, k) for k in size[: j + 1])
+                own = pivot_name(block[i]) if i == j else column_name(block[i], block[j])
+                found.append((own, total - self.solve.matrix[i][j]))
+            y, own = self._d[i] * z[i], scaled_name(block[i])
+            if forward_name(block[i]) in self.definitions:
+                y = field[forward_name(block[i])]
+                found.append((own, self._d[i] * z[i] - y))
+                own = forward_name(block[i])
+            before = field.sum(self._w(i, k) * z[k] for k in size[:i])
+            found.append((own, before + y - self.solve.known[i]))
+            total = field.sum(self._l(k, i) * x[k] for k in size[i:])
+            found.append((self.solve.names[i], total - z[i]))
+        return [self._decided(last, defect) for last, defect in found]
+
+    def _reduced(self, last: str, element: Element) -> Element:
+        """An element with one name and the reciprocals replaced by their definitions."""
+        if last in self._same:
+            element = self.field.substitute(element, {last: self._same[last]})
+            last = next(iter(self.field.reach(self._same[last])), "")
+        own = {last: self.definitions[last]} if last in self.definitions else {}
+        put = self.field.substitute(self.field.substitute(element, own), self._ones)
+        return self.field.substitute(put, self._same)
+
+    def _decided(self, last: str, defect: Element) -> Element:
+        """Zero where the last definition shows it, or all of them do."""
+        value = self._reduced(last, defect)
+        return self.field.zero if self.field.is_zero(value) else self._known.value(value)
+
+    @cached_property
+    def _known(self) -> Decided:
+        """All definitions in their order."""
+        known = Decided(self.field, ())
+        for name, value in self.definitions.items():
+            known.define(name, value)
+        return known

@@ -61,11 +61,17 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
         setting.field, setting.state, tuple(map(equations.closed, equations.exact.rates))
     )
     generators = []
-    for element, value in zip(_elements(setting, symmetry), values, strict=True):
-        X = _generator(setting, structure, symmetry, element, value)
+    for element in _elements(setting, symmetry):
+        resting = equations.closed(_value(setting, symmetry, element))
+        X, is_lifted = _generator(setting, structure, symmetry, element, resting)
         if symmetry.time is not None:
-            tau = _taken(setting, symmetry.time, symmetry, element)
+            energy = equations.exact.energy
+            assert energy is not None, "the values were refused without one"
+            tau = equations.closed(_taken(setting, symmetry.time, symmetry, element))
             X = X - motion.like(scale(tau, motion.components))
+            if is_lifted:  # of positions and time together: the momentum of time is -E
+                turned = structure.hamiltonian_vector_field(tau)
+                X = X - motion.like(scale(equations.closed(energy), turned))
         generators.append(X)
     algebra = symmetry.algebra.over(setting.taken)
     sign = 1 if symmetry.side == "left" else -1
@@ -240,18 +246,30 @@ def _generator(
     structure: PoissonStructure,
     symmetry: Symmetry,
     element: Quantity,
-    value: Element,
-) -> VectorField:
-    """The vector field of one element on the whole state, time standing still."""
+    resting: Element,
+) -> tuple[VectorField, bool]:
+    """The vector field of one element on the whole state, time standing still.
+
+    Args:
+        setting: The spec and its field.
+        structure: The bracket.
+        symmetry: What is declared.
+        element: A basis vector of the algebra.
+        resting: J of it without the part of time.
+
+    Returns:
+        The field, and whether it is lifted from the positions, not declared on the whole state.
+    """
     moves, pairs = _moves(setting, symmetry, element), _pairs(setting)
     if not moves.keys() <= set(positions(setting)):
-        return _whole(setting, moves)
+        return _whole(setting, moves), False
     if pairs:
-        return lifted(structure, pairs, moves)
-    by_map = structure.hamiltonian_vector_field(value)
+        return lifted(structure, pairs, moves), True
+    by_map = structure.hamiltonian_vector_field(resting)
     declared = dict.fromkeys(positions(setting), setting.field.zero) | dict(moves)
     named = dict(zip(setting.state, by_map, strict=True)) | declared
-    return VectorField(setting.field, setting.state, tuple(named[x] for x in setting.state))
+    whole = VectorField(setting.field, setting.state, tuple(named[x] for x in setting.state))
+    return whole, True
 
 
 def _whole(setting: Setting, moves: Moves) -> VectorField:

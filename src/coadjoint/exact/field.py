@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from math import isqrt
 from operator import mul, truediv
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -38,6 +38,19 @@ def _paired(addends: list[Any]) -> Any:
     return addends[0]
 
 
+@dataclass(frozen=True)
+class Condition:
+    """An element that is positive, or not negative, wherever anything in its field is asked for.
+
+    Attributes:
+        element: The element.
+        strict: Whether it is never 0.
+    """
+
+    element: Element
+    strict: bool
+
+
 class Field:
     """Rational functions over Q in named symbols and in elementary functions of them.
 
@@ -45,6 +58,9 @@ class Field:
         names: The symbols, in the order that fixes the normal form.
         slots: How many elementary functions may be adjoined.
         positive: The symbols that may be assumed positive.
+
+    Attributes:
+        conditions: What else may be assumed, as ``cos(phi) > 0``.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
@@ -67,10 +83,18 @@ class Field:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self.adjoined: dict[str, Adjoined] = {}
+        self.conditions: tuple[Condition, ...] = ()
+        #: What `coadjoint.exact.relations` knows of functions, by their generators.
+        self.relations: dict[frozenset[str], object] = {}
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
 
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]
+
+    def assume(self, conditions: Iterable[Condition]) -> None:
+        """Take it that conditions hold, besides those that do."""
+        self.conditions = (*self.conditions, *conditions)
+        self.relations.clear()
 
     def _element(self, p: PolyElement) -> Element:
         return Element(self._factors, [(p, {})])
@@ -147,15 +171,21 @@ class Field:
     def call(self, function: str, argument: Element) -> Element:
         """``function(argument)``, adjoining a generator unless one stands for it already.
 
-        ``tan`` becomes ``sin / cos``; the square root of a square of a rational is that rational.
+        ``tan`` becomes ``sin / cos``, ``sin(-x)`` is ``-sin(x)``, and the square root of a square
+        is its root where that has a declared sign.
         """
+        from coadjoint.exact.values import known_value  # which needs fields
+
         if function == "tan":
             return self.call("sin", argument) / self.call("cos", argument)
-        if function == "sqrt" and (root := self._rational_root(argument)) is not None:
-            return root
+        if function in ("sin", "cos") and argument and argument.parts[0].numer.LC < 0:
+            turned = self.call(function, -argument)
+            return turned if function == "cos" else -turned
         for known in self.adjoined.values():
             if known.function == function and self.is_zero(known.argument - argument):
                 return self[known.generator]
+        if (value := known_value(self, function, argument)) is not None:
+            return value
         if function in ("sin", "cos"):  # always both: each is the derivative of the other
             cosine, sine = self._free[:2]
             self._adjoin("cos", argument, sine)
@@ -169,26 +199,26 @@ class Field:
         self.adjoined[generator] = Adjoined(generator, function, argument, partner)
         return self[generator]
 
-    def _rational_root(self, argument: Element) -> Element | None:
-        """The square root of an element that is the square of a rational number."""
-        value = self.as_number(argument)
-        if value is None or value < 0:
-            return None
-        root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
-        return self.number(root) if root**2 == value else None
-
     def normal(self, element: Element) -> Element:
         """Normal form: even powers of square roots and of sines in the numerator are replaced.
 
-        With functions the element is one quotient: a common denominator brings new squares.
+        With functions the element is one quotient: a common denominator brings new squares. It is
+        0 also where other relations of the functions show that (`coadjoint.exact.relations`).
         """
+        from coadjoint.exact.relations import vanish_by_relations  # which needs fields
+
         if not self.adjoined or self.function_free(element):
             return element
+        called = self.functions_in(element)
         for known in reversed(self.adjoined.values()):
             square = self._square_of(known)
             if square is not None:
-                element = self._reduce(element.combined(), known.generator, square)
-        return element.combined()
+                element = self.reduce_squares(element.combined(), known.generator, square)
+        short = element.combined()
+        if self.function_free(short):
+            return short
+        hidden = vanish_by_relations(self, short, called | self.functions_in(short))
+        return self.zero if hidden else short
 
     def _square_of(self, known: Adjoined) -> Element | None:
         """What the square of an adjoined generator equals, where there is such a relation."""
@@ -198,7 +228,7 @@ class Field:
             return self.one - self[known.partner] ** 2
         return None
 
-    def _reduce(self, element: Element, generator: str, square: Element) -> Element:
+    def reduce_squares(self, element: Element, generator: str, square: Element) -> Element:
         """A single quotient with ``generator ** 2`` replaced in its numerator."""
         place, ring = self._position[generator], self._ring
         if not element or element.parts[0].numer.degree(ring.gens[place]) < 2:
@@ -218,8 +248,8 @@ class Field:
     def is_zero(self, element: Element) -> bool:
         """Whether the normal form is 0: exact for rational functions, and a proof of zero always.
 
-        With adjoined functions a nonzero normal form may still be a hidden zero (``log(x^2) -
-        2 log(x)``); `coadjoint.prove.zero` says so.
+        With adjoined functions a nonzero normal form may still be a hidden zero, such as
+        ``sqrt(3 + 2*sqrt(2)) - 1 - sqrt(2)``; `coadjoint.exact.witness` says what is not zero.
         """
         return bool(self.normal(element) == 0)
 
@@ -278,12 +308,17 @@ class Field:
 
     # -- calculus -----------------------------------------------------------------------
 
+    def slope(self, element: Element, generator: str) -> Element:
+        """Partial derivative by a generator as if functions were symbols."""
+        return element.diff(self._position[generator])
+
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
         result = element.diff(self._position[name])
         for generator in self._needed(element):
-            outer = element.diff(self._position[generator])
-            result += outer * self._derivative_of(self.adjoined[generator], name)
+            result += self.slope(element, generator) * self._derivative_of(
+                self.adjoined[generator], name
+            )
         return result
 
     def _derivative_of(self, known: Adjoined, name: str) -> Element:
@@ -398,6 +433,51 @@ class Field:
     def budget(self, work: int) -> AbstractContextManager[None]:
         """A block in which arithmetic ends after so much work: see `Factors.budget`."""
         return self._factors.budget(work)
+
+    # -- parts, for signs and relations -------------------------------------------------
+
+    @property
+    def generators(self) -> tuple[str, ...]:
+        """The symbols and the slots for functions, in the order of the ring."""
+        return self._names
+
+    def fraction(self, element: Element) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
+        """Numerator and factors of the denominator, with exponents, of a nonzero quotient."""
+        (quotient,) = element.parts
+        return quotient.numer, [(self._factors.known[n], e) for n, e in quotient.powers.items()]
+
+    def from_polynomial(self, p: PolyElement) -> Element:
+        """A polynomial of the ring as an element."""
+        return self._element(p)
+
+    def numerators(self, elements: Iterable[Element]) -> tuple[list[PolyElement], Element]:
+        """Numerators over a common denominator, and its reciprocal."""
+        quotients = [each.combined().parts for each in elements]
+        common: dict[int, int] = {}
+        for quotient, *_ in filter(None, quotients):
+            for number, exponent in quotient.powers.items():
+                common[number] = max(common.get(number, 0), exponent)
+        tops = [
+            parts[0].over(common, self._factors) if parts else self._ring.zero
+            for parts in quotients
+        ]
+        return tops, Element(self._factors, [(self._ring.one, common)])
+
+    def rewritten(
+        self, element: Element, values: Mapping[str, Value], number: Callable[[Fraction], Value]
+    ) -> Value:
+        """The value of an element where each generator, also of a function, has a value given."""
+        factors: dict[int, Value] = {}
+        quotients = [self._quotient(q, values, number, factors) for q in element.parts]
+        return _paired(quotients) if quotients else number(Fraction(0))
+
+    def in_sines(self, p: PolyElement) -> PolyElement:
+        """A polynomial with even powers of cosines written by sines: ``1 - cos^2`` as ``sin^2``."""
+        element = self._element(p)
+        for name, known in self.adjoined.items():
+            if known.function == "cos" and name in self.names_in(element):
+                element = self.reduce_squares(element, name, self.one - self[known.partner] ** 2)
+        return element.parts[0].numer if element.parts else self._ring.zero
 
     # -- parts, for lowering ------------------------------------------------------------
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from coadjoint.derive import Equations
-from coadjoint.derive.solver import Solve, factor_name, pivot_name
+from coadjoint.derive.solver import Solve, factors
 from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
@@ -56,13 +56,20 @@ def residual_slopes(equations: Equations) -> list[ResidualSlope]:
     return found
 
 
+def factors_of_solves(equations: Equations) -> list[dict[tuple[int, int], Element]]:
+    """L and one over D of every solve, by row and column."""
+    field, definitions = equations.setting.field, dict(equations.exact.definitions)
+    return [factors(field, solve, definitions) for solve in equations.exact.solves]
+
+
 def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlope]) -> Program:
     """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program.
 
     Definitions keep their names; temporaries are found anew where they are still shared.
 
     Args:
-        rhs: Its outputs are the rates, and behind them the slopes of the residuals.
+        rhs: Its outputs are the rates, behind them the slopes of the residuals, and then the
+            factors of the solves.
         equations: What it was lowered from.
         residuals: What these are the slopes of.
     """
@@ -71,7 +78,7 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
     slopes: dict[int, Slopes] = {graph.symbol(name): {name: graph.number(1)} for name in rhs.state}
     slopes |= {graph.symbol(name): {} for name in rhs.parameters}
     rows: dict[int, dict[str, int]] = {}
-    for residual, node in zip(residuals, values[n:], strict=True):
+    for residual, node in zip(residuals, values[n:], strict=False):
         rows.setdefault(residual.row, {})[residual.by] = node
     solved: dict[str, Slopes] = {}
     # By the unknowns first, and by the state through them at the very end: carrying the derivatives
@@ -82,12 +89,12 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
             slopes[graph.symbol(name)] = {name: graph.number(1)}
         elif name not in equations.intermediates:
             slopes[graph.symbol(name)] = graph.derivative(value, slopes)
-    first, numbers = 0, equations.numbers
-    entries = {name: graph.named(name, numbers) for name in (*definitions, *numbers)}
-    for solve in equations.exact.solves:
+    first, factors_of = 0, iter(values[n + len(residuals) :])
+    for solve, places in zip(equations.exact.solves, factors_of_solves(equations), strict=True):
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
         columns = [_through(graph, row, slopes, rhs.state) for row in own]
-        solved |= _solved(graph, solve, rhs.state, columns, entries)
+        own_factors = {place: next(factors_of) for place in places}
+        solved |= _solved(graph, solve, rhs.state, columns, own_factors)
         first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
@@ -141,7 +148,7 @@ def _solved(
     solve: Solve,
     state: Sequence[str],
     residuals: Sequence[Sequence[int]],
-    entries: Mapping[str, int],
+    factors: Mapping[tuple[int, int], int],
 ) -> dict[str, Slopes]:
     """``x' = A^-1 r`` by L and D for each component of the state: slopes by unknown.
 
@@ -150,19 +157,9 @@ def _solved(
         solve: What is solved.
         state: Names of the components.
         residuals: r, a row for each unknown, a column for each component of the state.
-        entries: L and D by name, what is zero in L left out.
+        factors: L below the diagonal, zeros left out, and one over D on it.
     """
     size = range(len(solve.names))
-    factors = {
-        (i, k): entries[name]
-        for i in size
-        for k in size[:i]
-        if (name := factor_name(solve.block[i], solve.block[k])) in entries
-    }
-    one = graph.number(1)
-    # No pivot is defined where the unknown is always 0, and none is read there.
-    pivots = [entries.get(name, graph.symbol(name)) for name in map(pivot_name, solve.block)]
-    shares = [graph.divide(one, pivot) for pivot in pivots]
 
     def less(start: int, terms: Iterable[tuple[int, int]]) -> int:
         products = (graph.negate(graph.multiply(a, b)) for a, b in terms)
@@ -177,7 +174,7 @@ def _solved(
         x: dict[int, int] = {}
         for i in reversed(size):
             after = [(factors[k, i], x[k]) for k in size[i + 1 :] if (k, i) in factors]
-            x[i] = less(graph.multiply(y[i], shares[i]), after)
+            x[i] = less(graph.multiply(y[i], factors[i, i]), after)
             if not graph.is_zero(x[i]):
                 slopes[solve.names[i]][component] = x[i]
     return slopes

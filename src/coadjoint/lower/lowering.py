@@ -11,6 +11,7 @@ Read next: `coadjoint.lower.check`, which undoes all this exactly.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -18,10 +19,11 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.solver import forward_name, scaled_name
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
 from coadjoint.lower.graph import Graph
-from coadjoint.lower.jacobian import jacobian, residual_slopes
+from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
@@ -265,7 +267,12 @@ def lower(equations: Equations) -> dict[str, Program]:
     rhs = _program(equations, "rhs", rates)
     slopes = residual_slopes(equations)
     labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
-    wide = _program(equations, "rhs", [*rates, *labelled]) if slopes else rhs
+    labelled += [
+        (f"factor {i} {k}", value)
+        for found in factors_of_solves(equations)
+        for (i, k), value in found.items()
+    ]
+    wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
     programs = {"rhs": rhs, "jacobian": jacobian(wide, equations, slopes)}
     if exact.energy is not None:
         programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
@@ -303,8 +310,9 @@ def _program(
     inputs: tuple[str, ...] | None = None,
 ) -> Program:
     """One Program from labelled elements, of the state or of other inputs."""
-    setting, definitions = equations.setting, equations.exact.definitions
-    outputs = [(label, _shorter(equations, element)) for label, element in outputs]
+    setting = equations.setting
+    shorter = [(label, _shorter(equations, element)) for label, element in outputs]
+    definitions, outputs = _without_single_uses(equations, shorter)
     lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
@@ -312,6 +320,57 @@ def _program(
     size = (len(outputs),) if shape is None else shape
     read = setting.state if inputs is None else inputs
     return naming.program(name, read, setting.parameters, size)
+
+
+#: Names with their values: definitions or outputs.
+_Lines = list[tuple[str, Element]]
+
+
+def _without_single_uses(equations: Equations, outputs: _Lines) -> tuple[_Lines, _Lines]:
+    """Definitions and outputs, with an intermediate product put in where it is used only once.
+
+    ``_b1 = r*cos(phi)`` goes into ``vx = vtheta*_b1``, where ``r*vtheta`` may be shared. What the
+    equations of a solve name stays, since the Jacobian asks for its derivative; so do factors.
+    """
+    field, solves = equations.setting.field, equations.exact.solves
+    rows = [entry for solve in solves for row in (*solve.matrix, solve.known) for entry in row]
+    columns = (make(i) for make in (forward_name, scaled_name) for s in solves for i in s.block)
+    stays = equations.intermediates.difference(columns).union(*map(field.reach, rows))
+    definitions = equations.definitions_of([element for _, element in outputs])
+    uses = Counter[str]()
+    for _, element in (*definitions, *outputs):
+        uses.update(_uses(field, element))
+    put: dict[str, Element] = {}
+    kept: _Lines = []
+    for name, element in definitions:
+        value = field.substitute(element, put)
+        single = uses[name] == 1 and name.startswith("_") and name not in stays
+        if single and len(field.terms(value)) == 1 and not _has_sum_below(field, value):
+            put[name] = value
+        else:
+            kept.append((name, value))
+    return kept, [(label, field.substitute(element, put)) for label, element in outputs]
+
+
+def _has_sum_below(field: Field, element: Element) -> bool:
+    """Whether a denominator of an element has several terms."""
+    divisors = (divisor for each in field.quotients(element) for divisor, _ in each.divisors)
+    return any(len(field.terms(divisor)) > 1 for divisor in divisors)
+
+
+def _uses(field: Field, element: Element) -> Counter[str]:
+    """How often names are factors; what stands in a sum below or in a function counts twice."""
+    uses = Counter[str]()
+    for written in field.quotients(element):
+        for monomial in written.monomials:
+            uses.update(dict(monomial.powers))
+        for divisor, power in written.divisors:
+            in_sum = len(field.terms(divisor)) > 1
+            uses.update(dict.fromkeys(field.reach(divisor), power + in_sum))
+    for generator in field.functions_in(element):
+        argument = field.adjoined[generator].argument
+        uses.update(dict.fromkeys(field.reach(argument), 2))
+    return uses
 
 
 def _shorter(equations: Equations, element: Element) -> Element:

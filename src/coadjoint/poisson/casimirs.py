@@ -1,18 +1,20 @@
 r"""Casimirs, found: polynomial ones up to a degree, then rational ones and matrix invariants.
 
 Comes in: a Poisson structure, or an algebra for its Lie-Poisson bracket. Goes out: a
-`CasimirSearch`, which says how many there must be, which were found and why others were not.
-Read next: `coadjoint.poisson.search`, then `coadjoint.poisson.invariants`.
+`CasimirSearch`, which says how many there can be, which were found and what was searched. Each
+direct summand is searched for itself: its Casimirs are shorter than those of the whole.
+Read next: `coadjoint.poisson.summands`, `coadjoint.poisson.search`, `coadjoint.poisson.invariants`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
 from coadjoint.limits import INVARIANT_TERMS, MONOMIALS
 from coadjoint.poisson.brackets import lie_poisson
@@ -20,8 +22,51 @@ from coadjoint.poisson.invariants import has_trace_form, matrix_invariants
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Polynomial
 from coadjoint.poisson.ranks import generic_rank
-from coadjoint.poisson.search import independent, polynomial_casimirs, quotients
+from coadjoint.poisson.search import independent_polynomials, polynomial_casimirs, quotients
 from coadjoint.poisson.structure import PoissonStructure
+from coadjoint.poisson.summands import restricted_algebra, restricted_structure, summands
+
+#: Coordinates that name a direct summand.
+NAMED = 3
+
+
+@dataclass(frozen=True)
+class SummandSearch:
+    """What was found in one direct summand.
+
+    Attributes:
+        structure: The summand.
+        known: How many independent ones were known before.
+        generators: Casimirs independent of those and of each other, by degree.
+        expected: How many independent ones there can be: dimension - rank.
+        ways: How those that were found were found.
+        searched: Sets of functions that were searched in full.
+        degree: Up to which degree all polynomials were; 0 if they were not.
+        skipped: What was asked for and not searched, and why; else empty.
+        obstacle: Why nothing was searched; None if something was.
+    """
+
+    structure: PoissonStructure
+    known: int
+    generators: tuple[Element, ...]
+    expected: int
+    ways: tuple[str, ...] = ()
+    searched: tuple[str, ...] = ()
+    degree: int = 0
+    skipped: str = ""
+    obstacle: AlgebraError | None = None
+
+    @property
+    def missing(self) -> str:
+        """How many were not found, and among what; empty if none is missing."""
+        number = self.expected - self.known - len(self.generators)
+        if not number:
+            return ""
+        if self.obstacle is not None:
+            return f"{number} not looked for: {self.obstacle}"
+        where = " and ".join([", ".join(self.searched[:-1])] * (len(self.searched) > 1))
+        text = f"{number} not found among {where}{' and ' * bool(where)}{self.searched[-1]}"
+        return f"{text}; {self.skipped}" if self.skipped else text
 
 
 @dataclass(frozen=True)
@@ -30,18 +75,55 @@ class CasimirSearch:
 
     Attributes:
         structure: The Poisson structure that was searched.
-        generators: Functionally independent Casimirs, by degree; every polynomial Casimir up to
-            the degree is a function of them.
-        expected: How many independent ones there are near almost every point: dimension - rank.
-        method: How they were found.
-        missing: How many were not found and why; empty if none is missing.
+        summands: The search in each direct summand.
     """
 
     structure: PoissonStructure
-    generators: tuple[Element, ...]
-    expected: int
-    method: str
-    missing: str
+    summands: tuple[SummandSearch, ...]
+
+    @property
+    def generators(self) -> tuple[Element, ...]:
+        """Functionally independent Casimirs, by summand and degree."""
+        return tuple(c for part in self.summands for c in part.generators)
+
+    @property
+    def expected(self) -> int:
+        """How many independent ones there can be near almost every point: dimension - rank."""
+        return sum(part.expected for part in self.summands)
+
+    @property
+    def method(self) -> str:
+        """How they were found."""
+        return ", then ".join(dict.fromkeys(way for part in self.summands for way in part.ways))
+
+    @property
+    def degree(self) -> int:
+        """Up to which degree every polynomial Casimir is a function of those found; 0 if none is.
+
+        A polynomial Casimir of the whole is a sum of products of such of the summands, whose
+        degrees are no larger.
+        """
+        return min((part.degree for part in self.summands if part.missing), default=0)
+
+    @property
+    def missing(self) -> str:
+        """How many were not found and what was searched; empty if none is missing."""
+        places: dict[str, list[str]] = {}
+        for part in self.summands:
+            if part.missing:
+                names = part.structure.names
+                label = ", ".join(names[:NAMED]) + ", ..." * (len(names) > NAMED)
+                places.setdefault(part.missing, []).append(label)
+        if len(self.summands) == 1:
+            return "".join(places)
+        return "; ".join(f"{_parts(labels)} {text}" for text, labels in places.items())
+
+
+def _parts(labels: list[str]) -> str:
+    """``of the part x1, x2``, or that there are several like it."""
+    if len(labels) == 1:
+        return f"of the direct summand ({labels[0]})"
+    return f"of each of {len(labels)} direct summands such as ({labels[0]})"
 
 
 def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearch:
@@ -49,40 +131,67 @@ def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearc
 
     Args:
         of: Entries must be polynomials with rational coefficients.
-        degree: The largest degree of the polynomials that are searched.
+        degree: The largest degree of the polynomials that are searched; a lower one is taken where
+            there are more than `MONOMIALS` monomials.
 
     Raises:
         AlgebraError: An entry of the tensor is not a polynomial over the rationals, or a structure
             constant is no number.
-        LimitError: More than `MONOMIALS` monomials would be searched, and no matrices help.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> casimirs(algebra_by_name("se(3)"), 2).generators
     (J1*P1 + J2*P2 + J3*P3, P1**2 + P2**2 + P3**2)
     """
-    structure = lie_poisson_dual(of) if isinstance(of, LieAlgebra) else of
-    matrices = of if isinstance(of, LieAlgebra) and has_trace_form(of) else None
-    expected = structure.dimension - structure.generic_rank()
-    count = comb(structure.dimension + degree, degree) - 1
-    if count > MONOMIALS and matrices is None:
-        raise LimitError(_too_many(structure, degree, count), found=count, limit=MONOMIALS)
-    bracket = PolynomialBracket(structure)
-    found: list[Polynomial] = []
-    ways: list[str] = []
-    if count <= MONOMIALS:
-        found = polynomial_casimirs(bracket, degree, expected)
-        ways += [f"exact linear solve over the monomials up to degree {degree}"] if found else []
-    if len(found) < expected and matrices is not None:
-        more = independent([*found, *matrix_invariants(matrices, bracket)], bracket.size, expected)
-        ways += ["invariants of the matrix dual by the trace form"] if more != found else []
-        found = more
-    generators = [p.element(structure.field, structure.names) for p in found]
-    if len(found) < expected and count <= MONOMIALS:
-        rational = _rational(structure, bracket, degree, generators)
-        generators += rational
-        ways += ["quotients of semi-invariants"] if rational else []
-    missing = _missing(expected - len(generators), degree, count <= MONOMIALS, matrices is not None)
-    return CasimirSearch(structure, tuple(generators), expected, ", then ".join(ways), missing)
+    if isinstance(of, LieAlgebra):
+        found = search_summands(lie_poisson_dual(of), of, degree)
+    else:
+        found = search_summands(of, None, degree)
+    for part in found.summands:
+        if part.obstacle is not None:
+            raise part.obstacle
+    return found
+
+
+def search_summands(
+    structure: PoissonStructure,
+    algebra: LieAlgebra | None,
+    degree: int,
+    known: Sequence[Element] = (),
+) -> CasimirSearch:
+    """The Casimirs of each direct summand that can be searched; nothing is raised for the others.
+
+    Args:
+        structure: A Poisson structure.
+        algebra: That whose basis gives its coordinates, in their order; None if there is none.
+        degree: The largest degree of the polynomials that are searched.
+        known: Independent Casimirs; a summand that has all of its own among them is not searched.
+    """
+    found = list[SummandSearch]()
+    for places in summands(structure):
+        part = restricted_structure(structure, places)
+        expected = part.dimension - part.generic_rank()
+        given = [f for f in known if set(structure.gradient(f)) <= set(places)]
+        own = None if algebra is None else restricted_algebra(algebra, places)
+        if len(given) >= expected:
+            found.append(SummandSearch(part, len(given), (), expected))
+            continue
+        try:
+            found.append(_search(part, own, degree, expected, given))
+        except AlgebraError as error:
+            found.append(SummandSearch(part, len(given), (), expected, obstacle=error))
+    return CasimirSearch(structure, tuple(found))
+
+
+def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
+    """Those functions whose gradients are independent of all before them at a generic point."""
+    kept: list[Element] = []
+    slopes: list[dict[int, Element]] = []
+    for function in functions:
+        slope = structure.gradient(function)
+        if generic_rank(structure.field, [*slopes, slope]) == len(slopes) + 1:
+            slopes.append(slope)
+            kept.append(function)
+    return kept
 
 
 def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:
@@ -105,32 +214,90 @@ def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:
     return lie_poisson(algebra, field, algebra.basis)
 
 
-def _rational(
-    structure: PoissonStructure, bracket: PolynomialBracket, degree: int, known: list[Element]
-) -> list[Element]:
-    """Quotients of semi-invariants whose gradients are independent of those of all before them."""
-    kept: list[Element] = []
-    for quotient in quotients(structure, bracket, degree):
-        slopes = [structure.gradient(f) for f in (*known, *kept, quotient)]
-        if generic_rank(structure.field, slopes) == len(slopes):
-            kept.append(quotient)
-    return kept
+# -- one summand ----------------------------------------------------------------------------------
 
 
-def _too_many(structure: PoissonStructure, degree: int, count: int) -> str:
-    return (
-        f"{structure.label}: a search for Casimirs up to degree {degree} in "
-        f"{structure.dimension} coordinates has {count} monomials; expected at most {MONOMIALS} "
-        "(MONOMIALS). Ask for a lower degree, or give the algebra with its matrices."
+def _search(
+    structure: PoissonStructure,
+    algebra: LieAlgebra | None,
+    degree: int,
+    expected: int,
+    known: Sequence[Element],
+) -> SummandSearch:
+    """The Casimirs of a structure without direct summands.
+
+    Matrices come first where the polynomials of the degree that is asked for are too many.
+
+    Raises:
+        AlgebraError: An entry of the tensor is not a polynomial over the rationals.
+    """
+    bracket = PolynomialBracket(structure)
+    reached = _affordable(structure.dimension, degree)
+    found, ways, searched = list[Polynomial](), list[str](), list[str]()
+
+    def search_polynomials() -> None:
+        nonlocal found
+        new = polynomial_casimirs(bracket, reached, expected)
+        more = independent_polynomials([*found, *new], bracket.size, expected)
+        way = f"exact linear solve over the monomials up to degree {reached}"
+        ways.extend([way] * (len(more) > len(found)))
+        searched.append(f"all polynomials of degree <= {reached}")
+        found = more
+
+    def search_matrices() -> None:
+        nonlocal found
+        if algebra is None or not has_trace_form(algebra):
+            return
+        more = independent_polynomials(
+            [*found, *matrix_invariants(algebra, bracket)], bracket.size, expected
+        )
+        ways.extend(["invariants of the matrix dual by the trace form"] * (len(more) > len(found)))
+        bound = f"at most {INVARIANT_TERMS} products of terms (INVARIANT_TERMS)"
+        searched.append(f"invariants of its matrices that take {bound}")
+        found = more
+
+    steps = search_polynomials, search_matrices
+    for search in steps if reached == degree else reversed(steps):
+        if len(found) < expected:
+            search()
+    generators = [p.element(structure.field, structure.names) for p in found]
+    if len(found) < expected and bracket.scalings:
+        count = len(generators)
+        rational = quotients(structure, bracket, reached)
+        generators = independent(structure, [*generators, *rational])
+        ways += ["quotients of semi-invariants"] * (len(generators) > count)
+        searched.append(f"quotients of semi-invariants of degree <= {reached}")
+    skipped = "" if reached == degree else _skipped(structure.dimension, degree, reached)
+    if known:  # long functions; these are independent of each other by now
+        generators = independent(structure, [*known, *generators])[len(known) :]
+    return SummandSearch(
+        structure,
+        len(known),
+        tuple(generators),
+        expected,
+        tuple(ways),
+        tuple(searched),
+        reached,
+        skipped,
     )
 
 
-def _missing(number: int, degree: int, searched: bool, matrices: bool) -> str:
-    """How many Casimirs were not found, and where they were looked for."""
-    if not number:
-        return ""
-    places = [f"no more polynomials up to degree {degree}", "no quotients of semi-invariants"]
-    where = places if searched else [f"degree {degree} has more than {MONOMIALS} monomials"]
-    if matrices:
-        where.append(f"no more invariants of matrices within {INVARIANT_TERMS} products of terms")
-    return f"{number} not found: {', '.join(where)}; they have a higher degree or are not rational"
+def _affordable(dimension: int, degree: int) -> int:
+    """The largest degree up to the one that is asked for with at most `MONOMIALS` monomials."""
+    while degree > 1 and _monomials(dimension, degree) > MONOMIALS:
+        degree -= 1
+    return degree
+
+
+def _monomials(dimension: int, degree: int) -> int:
+    return comb(dimension + degree, degree) - 1
+
+
+def _skipped(dimension: int, degree: int, reached: int) -> str:
+    """What was not searched, and why."""
+    count = _monomials(dimension, reached + 1)
+    text = f"degree {reached + 1}" + (f" to {degree}" if degree > reached + 1 else "")
+    return (
+        f"polynomials of {text} were not searched: {count} monomials up to degree {reached + 1}, "
+        f"more than {MONOMIALS} (MONOMIALS)"
+    )

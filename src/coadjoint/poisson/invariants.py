@@ -27,8 +27,11 @@ Matrix = Mapping[tuple[int, int], Polynomial]
 
 
 def has_trace_form(algebra: LieAlgebra) -> bool:
-    """Whether the algebra has matrices with a nondegenerate trace form."""
-    return bool(algebra.matrices) and not nullspace(_gram(algebra), algebra.dimension)
+    """Whether the algebra has matrices of numbers with a nondegenerate trace form."""
+    entries = (x for matrix in algebra.matrices for x in matrix.values())
+    if not algebra.matrices or not all(isinstance(x, int | Fraction) for x in entries):
+        return False
+    return not nullspace(_gram(algebra), algebra.dimension)
 
 
 def matrix_invariants(algebra: LieAlgebra, bracket: PolynomialBracket) -> list[Polynomial]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from coadjoint.errors import AlgebraError
 from coadjoint.poisson.generating import generating
 from coadjoint.poisson.polynomials import (
     Exponents,
@@ -38,7 +39,7 @@ class PolynomialBracket:
         structure.check_jacobi()
         self.size = structure.dimension
         self.entries = {
-            (i, j): read_polynomial(structure.field, entry, structure.names)
+            (i, j): _read(structure, i, j)
             for i, row in enumerate(structure.tensor)
             for j, entry in enumerate(row)
             if entry
@@ -97,3 +98,16 @@ class PolynomialBracket:
             sum(factor * monomial[j] for j, factor in factors.items())
             for factors in self.scalings.values()
         )
+
+
+def _read(structure: PoissonStructure, i: int, j: int) -> Polynomial:
+    """An entry as a polynomial.
+
+    Raises:
+        AlgebraError: It is none; the message names the pair of coordinates.
+    """
+    try:
+        return read_polynomial(structure.field, structure.tensor[i][j], structure.names)
+    except AlgebraError as error:
+        a, b = structure.names[i], structure.names[j]
+        raise AlgebraError(f"{{{a}, {b}}}: {error}", pair=[a, b], **error.parts) from None

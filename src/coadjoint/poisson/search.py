@@ -42,7 +42,7 @@ def polynomial_casimirs(bracket: PolynomialBracket, degree: int, expected: int) 
         if not any(character)
         for solution in _solutions(bracket, monomials, bracket.generating)
     )
-    return independent(solutions, bracket.size, expected)
+    return independent_polynomials(solutions, bracket.size, expected)
 
 
 def quotients(
@@ -61,7 +61,7 @@ def quotients(
         for character, monomials in monomial_classes(bracket, degree)
         for solution in _solutions(bracket, monomials, others)
     ]
-    kept = independent((solution for _, solution in found), bracket.size, bracket.size)
+    kept = independent_polynomials((solution for _, solution in found), bracket.size, bracket.size)
     characters = [next(c for c, solution in found if solution is p) for p in kept]
     balance = [
         {place: c[n] for place, c in enumerate(characters) if c[n]}
@@ -109,7 +109,9 @@ def _solutions(
     return sorted(found, key=lambda p: (p.degree, len(p.terms)))
 
 
-def independent(solutions: Iterable[Polynomial], size: int, most: int) -> list[Polynomial]:
+def independent_polynomials(
+    solutions: Iterable[Polynomial], size: int, most: int
+) -> list[Polynomial]:
     """Those whose gradients are independent of all before them at a random point, up to a number.
 
     A rank modulo a prime is a lower bound, so that independence is proved.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache, partial
 from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
@@ -280,12 +280,16 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         )
     if energy is not None:
         yield "the energy is conserved", "conserved", partial(drift, first, energy)
+    proved = list[Element]()
     for place, casimir in enumerate(spec.casimirs):
-        statement = f"{casimir.in_one_line} is a Casimir"
-        examined = [(statement, "casimir", partial(_casimir, first, casimir))]
+        decide = cache(partial(_casimir, first, casimir))
+        examined = [(f"{casimir.in_one_line} is a Casimir", "casimir", decide)]
         yield from claimed_by(spec, ("claims", "casimirs", place), examined, field)
+        if decide().verdict is Verdict.PROVED:
+            proved += first.setting.components(casimir)
     if tensor is not None:
-        yield from within_budget(field, "casimir", "Casimirs", _about_completeness(first))
+        searched = _about_completeness(first, proved)
+        yield from within_budget(field, "casimir", "Casimirs", searched)
     for place, claim in enumerate(spec.conserved):
         claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
         yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)
@@ -313,10 +317,11 @@ def _drifts(first: Equations, parts: Sequence[Element]) -> list[Element]:
     return [rate for part in parts for rate in drift(first, part)]
 
 
-def _casimir(first: Equations, casimir: Formula) -> list[Element]:
-    """The brackets of all components of a claimed Casimir."""
+def _casimir(first: Equations, casimir: Formula) -> Decision:
+    """Whether all components of a claimed Casimir commute with the state."""
     parts = first.setting.components(casimir)
-    return [defect for part in parts for defect in casimir_defects(first, part)]
+    defects = [defect for part in parts for defect in casimir_defects(first, part)]
+    return decide_zero(defects, first.setting.field)
 
 
 def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision:
@@ -369,9 +374,9 @@ def _rates(first: Equations, formula: Formula) -> list[Element]:
     return _drifts(first, parts)
 
 
-def _about_completeness(first: Equations) -> Iterator[Examined]:
-    """Casimirs that the spec does not name, and whether these are all."""
-    known = completeness(first)
+def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator[Examined]:
+    """Casimirs beside those claimed and proved, and whether these are all."""
+    known = completeness(first, proved=proved)
     for casimir in known.found:
         yield (
             f"{described(first.setting.field, casimir)} is a Casimir",

@@ -1,25 +1,29 @@
 """Completeness: whether the Casimirs that are known are all that there are.
 
 Comes in: Equations with the Casimirs that their spec claims. Goes out: further ones, found and
-still to be proved, and how many are missing of the number that dimension and rank predict.
+still to be proved, and how many are missing of the number that dimension and rank predict. A
+claimed Casimir is known once it is proved.
 Read next: `coadjoint.poisson.casimirs`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from coadjoint.derive import Equations
-from coadjoint.derive.structure import momentum_algebra
-from coadjoint.errors import CoadjointError
+from coadjoint.derive.structure import momentum_algebra, poisson_structure
+from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure
-from coadjoint.poisson.casimirs import CasimirSearch, casimirs
+from coadjoint.poisson.casimirs import CasimirSearch, independent, search_summands
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import BY_VALUES, MODULO, generic_rank, source_of_ranks
+from coadjoint.poisson.ranks import BY_VALUES, MODULO, source_of_ranks
+from coadjoint.poisson.summands import restricted_algebra
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.zero import Decision
+from coadjoint.prove.identities import casimir_defects
+from coadjoint.prove.zero import Decision, Discovery, decide_zero
 
 #: Casimirs are looked for up to this degree unless told otherwise: every algebra of dimension 11 or
 #: less that books treat has all of its polynomial ones there.
@@ -28,6 +32,10 @@ DEGREE = 4
 SHOWN = 120
 #: What decides the number of independent Casimirs.
 RANKS = "rank of the gradients and of the bracket"
+#: Where a count of independent functions holds.
+ALMOST = "near almost every point"
+#: How a count may be wrong where only one side of a rank is certain.
+LARGER = "a rank at a random point modulo a prime falls short with a probability below 1e-12"
 
 
 @dataclass(frozen=True)
@@ -36,11 +44,14 @@ class Completeness:
 
     Attributes:
         found: Casimirs beyond the claimed ones, independent of them.
-        known: How many independent ones are known, claimed or found.
+        known: How many independent ones are known: proved or found.
         expected: How many there are near almost every point: dimension - rank.
-        missing: Why some are missing; empty if none is.
+        missing: How many of these are not known, and what was searched; empty if none is missing.
         generating: Places of coordinates whose brackets give all others.
         source: How the ranks are known.
+        degree: Where some are missing: every polynomial Casimir up to this degree is a function of
+            those known; 0 if this was not found out.
+        scope: Where all of this holds.
     """
 
     found: tuple[Element, ...]
@@ -49,27 +60,42 @@ class Completeness:
     missing: str
     generating: tuple[int, ...] = ()
     source: str = MODULO
+    degree: int = 0
+    scope: str = ALMOST
 
     @property
-    def decision(self) -> Decision:
-        """Whether the number is proved.
+    def decision(self) -> Decision | Discovery:
+        """How the number is known.
 
         Gradients of some rank at a point bound the number of Casimirs from below, and the rank of
         the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
-        missing, the rank may be larger elsewhere, though that is most unlikely.
+        missing, a rank may be larger than at the points where it was taken, so that it is found.
         """
-        proved = self.known == self.expected and self.source != BY_VALUES
-        return Decision(Verdict.PROVED if proved else Verdict.SUPPORTED, f"{RANKS} {self.source}")
+        method = f"{RANKS} {self.source}"
+        if self.source == BY_VALUES:
+            return Discovery(method, self.scope, "ranks of rounded values, not bounded")
+        if self.known == self.expected:
+            return Decision(Verdict.PROVED, method)
+        return Discovery(method, self.scope, LARGER)
 
     @property
     def statement(self) -> str:
-        """The claim in words."""
+        """What is known, in words."""
         if self.known == self.expected:
-            return {
-                0: "there are no Casimirs but constants",
-                1: "every Casimir is a function of the one known",
-            }.get(self.known, f"every Casimir is a function of the {self.known} known")
-        return f"{self.known} of {self.expected} independent Casimirs are known: {self.missing}"
+            certain = isinstance(self.decision, Decision)  # a finding has a scope of its own
+            text = (
+                _all(self.known, "Casimir") if self.known else "there are no Casimirs but constants"
+            )
+            return f"{text}, {self.scope}" if certain else text
+        text = f"{self.known} of {self.expected} independent Casimirs are known: {self.missing}"
+        follows = _all(self.known, f"polynomial Casimir of degree <= {self.degree}")
+        return f"{text}; {follows}" if self.degree else text
+
+
+def _all(known: int, noun: str) -> str:
+    """That there are no functions beyond those known."""
+    what = {0: "constant", 1: "a function of the one known"}
+    return f"every {noun} is {what.get(known, f'a function of the {known} known')}"
 
 
 def bracket_of(equations: Equations) -> PoissonStructure:
@@ -80,67 +106,83 @@ def bracket_of(equations: Equations) -> PoissonStructure:
     return PoissonStructure(setting.field, setting.state, tensor, f"bracket of {setting.spec.name}")
 
 
-def completeness(equations: Equations, degree: int = DEGREE) -> Completeness:
-    """Count the claimed Casimirs, and look for others where some are missing.
+def is_proved_casimir(equations: Equations, function: Element) -> bool:
+    """Whether ``{x_i, C} = 0`` is proved for every component of the state."""
+    defects = casimir_defects(equations, function)
+    return decide_zero(defects, equations.setting.field).verdict is Verdict.PROVED
 
-    The distinguished functions of a Nambu bracket are known without a search.
+
+def completeness(
+    equations: Equations, degree: int = DEGREE, proved: Sequence[Element] | None = None
+) -> Completeness:
+    """Count the proved Casimirs, and look for others where some are missing.
+
+    A claim that is refuted, or only supported by numbers, counts for nothing. The
+    distinguished functions of a Nambu bracket are known without a search.
+
+    Args:
+        equations: The motion with its bracket.
+        degree: Up to which degree polynomials are searched.
+        proved: Claimed Casimirs that are proved; by default they are proved here.
     """
     setting, structure = equations.setting, bracket_of(equations)
-    claimed = [c for casimir in setting.spec.casimirs for c in setting.components(casimir)]
-    known = independent(structure, claimed)
+    if proved is None:
+        claimed = [c for casimir in setting.spec.casimirs for c in setting.components(casimir)]
+        proved = [c for c in claimed if is_proved_casimir(equations, c)]
+    known = independent(structure, proved)
     expected = structure.dimension - structure.generic_rank()
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
     given = [setting.formula(function) for function in declared]
+    given = [function for function in given if is_proved_casimir(equations, function)]
     found = independent(structure, [*known, *given])[len(known) :]
-    missing, generating = "", list(range(structure.dimension))
+    missing, reached = "", 0
+    generating: Sequence[int] = range(structure.dimension)
     if len(known) + len(found) < expected:
-        results, missing = _search(equations, structure, degree)
-        found = independent(structure, [*known, *found, *results])[len(known) :]
-        # what could be searched has rational coefficients; other tensors have no such table
-        generating = PolynomialBracket(structure).generating if results else generating
+        search = _search(equations, structure, degree, [*known, *found])
+        found = independent(structure, [*known, *found, *search.generators])[len(known) :]
+        missing, reached = search.missing, search.degree
+        generating = _generating(structure) if search.generators else generating
     whole = len(known) + len(found)
-    missing = missing if whole < expected else ""
+    if whole == expected:
+        missing, reached = "", 0
     source = source_of_ranks(
         structure.field,
         ([structure.gradient(casimir) for casimir in (*known, *found)], whole),
         ([dict(enumerate(row)) for row in structure.tensor], structure.dimension - expected),
     )
-    return Completeness(tuple(found), whole, expected, missing, tuple(generating), source)
+    scope = scope_of(structure, (*known, *found))
+    return Completeness(
+        tuple(found), whole, expected, missing, tuple(generating), source, reached, scope
+    )
 
 
-def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
-    """Those functions whose gradients are independent of all before them at a generic point."""
-    kept: list[Element] = []
-    slopes: list[dict[int, Element]] = []
-    for function in functions:
-        slope = structure.gradient(function)
-        if generic_rank(structure.field, [*slopes, slope]) == len(slopes) + 1:
-            slopes.append(slope)
-            kept.append(function)
-    return kept
+def scope_of(structure: PoissonStructure, functions: Sequence[Element]) -> str:
+    """Where a count of Casimirs holds: for almost all parameters, too, if it rests on such."""
+    entries = {id(entry): entry for row in structure.tensor for entry in row if entry}
+    reached = [structure.field.reach(e) for e in (*entries.values(), *functions)]
+    free = frozenset[str]().union(*reached) <= {*structure.names}
+    return ALMOST if free else f"{ALMOST}, for almost all parameters"
+
+
+def _generating(structure: PoissonStructure) -> Sequence[int]:
+    """Places of coordinates whose brackets give all others; all where there is no table of it."""
+    with suppress(AlgebraError):
+        return PolynomialBracket(structure).generating
+    return range(structure.dimension)
 
 
 def _search(
-    equations: Equations, structure: PoissonStructure, degree: int
-) -> tuple[list[Element], str]:
-    """Casimirs of the state, and why others are missing."""
+    equations: Equations, emitted: PoissonStructure, degree: int, known: Sequence[Element]
+) -> CasimirSearch:
+    """Casimirs beyond those known, in the coordinates of the state."""
     setting = equations.setting
-    try:
-        if setting.spec.algebra is None:
-            search = casimirs(structure, degree)
-            return list(search.generators), search.missing
-        search = casimirs(momentum_algebra(setting), degree)
-    except CoadjointError as error:
-        return [], f"they were not looked for: {error}"
-    return [_renamed(search, equations, c) for c in search.generators], search.missing
-
-
-def _renamed(search: CasimirSearch, equations: Equations, casimir: Element) -> Element:
-    """A function of the algebra's dual in the names of the state."""
-    setting = equations.setting
+    if setting.spec.algebra is None:
+        return search_summands(emitted, None, degree, known)
     advected = [name for variable in setting.advected for name in variable.components]
-    names = zip(search.structure.names, (*setting.momenta, *advected), strict=True)
-    return setting.field.adopt(casimir, dict(names))
+    coordinates = [*setting.momenta, *advected]
+    order = [coordinates.index(name) for name in setting.state]
+    algebra = restricted_algebra(momentum_algebra(setting), order)
+    return search_summands(poisson_structure(setting), algebra, degree, known)
 
 
 def described(field: Field, casimir: Element) -> str:

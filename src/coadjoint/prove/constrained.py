@@ -245,28 +245,28 @@ def _solved(first: Equations) -> list[Element]:
 
 
 def _same_solves(first: Equations, other: Equations) -> list[Element]:
-    """Differences of the linear equations of two routes, and of the rates they do not solve for."""
-    defects: list[Element] = []
-    pairs = zip(first.exact.solves, other.exact.solves, strict=True)
-    for one, two in pairs:
-        defects += _differences(first, other, one, two)
+    """Differences of the linear equations of two routes, and of the rates they do not solve for.
+
+    The equations are compared entry by entry, whatever blocks each route has found in them.
+    """
+    one, two = _linear_equations(first), _linear_equations(other)
+    zero = first.setting.field.zero
     solved = {name for solve in first.exact.solves for name in solve.names}
     rates = zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True)
     return [
-        *defects,
+        *(one.get(place, zero) - two.get(place, zero) for place in {**one, **two}),
         *(first.closed(a) - other.closed(b) for x, a, b in rates if rate_name(x) not in solved),
     ]
 
 
-def _differences(first: Equations, other: Equations, one: Solve, two: Solve) -> list[Element]:
-    assert list(one.names) == list(two.names), "both routes solve for the same accelerations"
-    entries = [
-        first.closed(a) - other.closed(b)
-        for rows in zip(one.matrix, two.matrix, strict=True)
-        for a, b in zip(*rows, strict=True)
-    ]
-    sides = zip(one.known, two.known, strict=True)
-    return [*entries, *(first.closed(a) - other.closed(b) for a, b in sides)]
+def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
+    """A and b of all solves in the state: entries by the names of row and column, "" for b."""
+    found = dict[tuple[str, str], Element]()
+    for solve in equations.exact.solves:
+        for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
+            entries = zip((*solve.names, ""), (*row, known), strict=True)
+            found |= {(name, by): equations.closed(entry) for by, entry in entries}
+    return found
 
 
 def _balance_text(first: Equations) -> str:

@@ -8,7 +8,7 @@ Read next: `coadjoint.poisson.casimirs`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from time import perf_counter
@@ -17,13 +17,12 @@ from typing import Any
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive.document import Document, Line, Section, formula, formula_line
 from coadjoint.derive.equations import algebra_bracket, symbol
-from coadjoint.errors import LimitError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure, lie_poisson
-from coadjoint.poisson.casimirs import casimirs
-from coadjoint.prove.certificate import Certificate, Claim, Verdict
-from coadjoint.prove.completeness import DEGREE, Completeness, described
-from coadjoint.prove.zero import CONSTANTS, NORMAL_FORM, Decision, decide_zero
+from coadjoint.poisson.casimirs import search_summands
+from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
+from coadjoint.prove.completeness import DEGREE, LARGER, Completeness, described, scope_of
+from coadjoint.prove.zero import CONSTANTS, NORMAL_FORM, Decision, decide_zero, make_entry
 
 #: Columns of text that a table of brackets may take.
 TABLE = 94
@@ -83,6 +82,7 @@ class Examination:
                 "missing": self.casimirs.missing,
             },
             "claims": self.certificate.as_record()["claims"],
+            "findings": self.certificate.as_record()["findings"],
         }
 
     def brackets(self) -> dict[tuple[int, int], Element]:
@@ -143,27 +143,36 @@ class Examination:
     def _invariants(self) -> Section:
         """Numbers and words, each with the way it was found."""
         signature = (
-            "its signs depend on the parameters"
+            "not counted, since the constants hold parameters"
             if self.signature is None
             else "{} positive, {} negative, {} zero (squares of its diagonal form)".format(
                 *self.signature
             )
         )
+        generic = "" if self.signature else ", for almost all values of the parameters"
         center = ", ".join(map(self._text, self.center)) or "zero"
         properties = ", ".join(self.properties) or "not abelian, solvable or unimodular"
-        generic = "" if self.signature else " (for almost all values of the parameters)"
         facts = {
             "Killing form": signature,
             "properties": properties + generic,
-            "center": f"{center} (exact kernel of ad)",
+            "center": f"{center} (exact kernel of ad{generic})",
             "derived series": f"dimensions {', '.join(map(str, self.derived_series))}"
-            f"{', [g, g] = g' if len(self.derived_series) == 1 else ''}",
-            "Lie-Poisson rank": f"{self.rank} (at random points modulo a prime), so "
-            f"{_counted(self.casimirs.expected, 'independent Casimir')}",
+            f"{', [g, g] = g' if len(self.derived_series) == 1 else ''}{generic}",
+            "Lie-Poisson rank": self._rank(),
         }
         law = "K_ij = tr(ad_e_i ad_e_j) is the Killing form; ad_xi eta = [xi, eta]"
         latex = r"K_{ij} = \operatorname{tr}(\mathrm{ad}_{e_i} \, \mathrm{ad}_{e_j})"
         return Section("Invariants", law, latex, (), tuple(facts.items()))
+
+    def _rank(self) -> str:
+        """The rank: certain where there are as many Casimirs as it leaves room for."""
+        count = _counted(self.casimirs.expected, "independent Casimir")
+        if isinstance(self.casimirs.decision, Decision):
+            return f"{self.rank}, so {count} {self.casimirs.scope}"
+        return (
+            f"{self.rank} at random points modulo a prime, so at most {count} "
+            f"{self.casimirs.scope} ({LARGER})"
+        )
 
     def _casimirs(self) -> Section:
         """The Casimirs, written in the coordinates that the basis gives the dual."""
@@ -183,12 +192,17 @@ class Examination:
         return Section("Casimirs", law, latex, tuple(lines), tuple(words))
 
     def _verdicts(self) -> Section:
-        """The claims with their verdicts."""
-        words = tuple(
+        """The claims with their verdicts, then what was found."""
+        claims = (
             (str(claim.verdict), f"{claim.statement} ({claim.method})")
             for claim in self.certificate.claims
         )
-        return Section("Proofs", "every claim, and how it was decided", "", (), words)
+        findings = (
+            ("found", f"{each.statement}, {each.scope} ({each.method}; {each.error})")
+            for each in self.certificate.findings
+        )
+        law = "every claim and how it was decided, and what was found without a proof"
+        return Section("Proofs", law, "", (), (*claims, *findings))
 
     def _text(self, element: Element) -> str:
         return element_text(self.field, element)
@@ -225,7 +239,8 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     field = Field([*algebra.basis, *_parameters(algebra)])
     local = algebra.over(field.adopt)
     structure = lie_poisson(local, field, local.basis)
-    known = _search(algebra, structure, degree)
+    known = _search(local, structure, degree)
+    claims, findings = _entries(local, structure, known)
     return Examination(
         local,
         field,
@@ -235,22 +250,23 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
         local.derived_series(),
         structure.generic_rank(),
         known,
-        Certificate(algebra.name, tuple(_claims(local, structure, known))),
+        Certificate(algebra.name, claims, findings),
     )
 
 
 def _search(algebra: LieAlgebra, structure: PoissonStructure, degree: int) -> Completeness:
-    """The Casimirs of an algebra; with parameters in the constants there is no search."""
-    expected = structure.dimension - structure.generic_rank()
-    if _parameters(algebra):
-        missing = "the constants hold parameters, so none was looked for"
-        return Completeness((), 0, expected, missing if expected else "")
-    try:
-        search = casimirs(algebra, degree)
-    except LimitError as error:
-        return Completeness((), 0, expected, f"none was looked for: {error}")
-    found = tuple(map(structure.field.adopt, search.generators))
-    return Completeness(found, len(found), expected, search.missing)
+    """The Casimirs of an algebra; a summand whose constants hold parameters is not searched."""
+    search = search_summands(structure, algebra, degree)
+    known = len(search.generators)
+    scope = scope_of(structure, search.generators)
+    return Completeness(
+        search.generators,
+        known,
+        search.expected,
+        search.missing,
+        degree=search.degree,
+        scope=scope,
+    )
 
 
 def _parameters(algebra: LieAlgebra) -> list[str]:
@@ -274,27 +290,33 @@ def _properties(algebra: LieAlgebra) -> tuple[str, ...]:
     return tuple(name for name, holds in tests.items() if holds)
 
 
-def _claims(
+def _entries(
     algebra: LieAlgebra, structure: PoissonStructure, known: Completeness
-) -> Iterator[Claim]:
-    """The claims about an algebra, examined one after the other."""
-    yield _timed(f"{algebra.name} satisfies the Jacobi identity", "algebra", algebra.check_jacobi)
+) -> tuple[tuple[Claim, ...], tuple[Finding, ...]]:
+    """Claims and findings about an algebra."""
+    entries = list(_examined(algebra, structure, known))
+    claims = tuple(entry for entry in entries if isinstance(entry, Claim))
+    return claims, tuple(entry for entry in entries if isinstance(entry, Finding))
+
+
+def _examined(
+    algebra: LieAlgebra, structure: PoissonStructure, known: Completeness
+) -> Iterator[Claim | Finding]:
+    """Everything about an algebra, examined one after the other."""
+    yield _timed(f"{algebra.name} satisfies the Jacobi identity", algebra.check_jacobi)
     if algebra.matrices:
         yield _timed(
-            f"the matrices of {algebra.name} commute like its basis",
-            "algebra",
-            algebra.check_matrices,
+            f"the matrices of {algebra.name} commute like its basis", algebra.check_matrices
         )
+    refuted = 0
     for casimir in known.found:
         start = perf_counter()
         decision = _is_casimir(structure, casimir)
-        yield _claim(
-            f"{described(structure.field, casimir)} is a Casimir",
-            "casimir",
-            decision,
-            perf_counter() - start,
-        )
-    yield _claim(known.statement, "casimir", known.decision, 0.0)
+        refuted += decision.verdict is not Verdict.PROVED
+        statement = f"{described(structure.field, casimir)} is a Casimir"
+        yield make_entry(statement, "casimir", decision, perf_counter() - start)
+    if not refuted:
+        yield make_entry(known.statement, "casimir", known.decision, 0.0)
 
 
 def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
@@ -304,21 +326,9 @@ def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
     return decide_zero(structure.casimir_defects(function), structure.field)
 
 
-def _timed(statement: str, kind: str, check: Any) -> Claim:
-    """A claim whose check raises if it fails."""
+def _timed(statement: str, check: Callable[[], object]) -> Claim | Finding:
+    """A claim about constants whose check raises if it fails."""
     start = perf_counter()
     check()
-    seconds = perf_counter() - start
-    return _claim(statement, kind, Decision(Verdict.PROVED, CONSTANTS), seconds)
-
-
-def _claim(statement: str, kind: str, decision: Decision, seconds: float) -> Claim:
-    return Claim(
-        statement,
-        kind,
-        decision.verdict,
-        decision.method,
-        seconds,
-        decision.point,
-        decision.defect,
-    )
+    decision = Decision(Verdict.PROVED, CONSTANTS)
+    return make_entry(statement, "algebra", decision, perf_counter() - start)

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from coadjoint.render.write import LOCK, read_manifest
+from coadjoint.files import read_regular
+from coadjoint.render.ownership import LOCK, read_manifest
 
 #: Files of the tree that are no output.
 NOT_OURS: Final = frozenset({LOCK})
@@ -49,7 +50,7 @@ def compare_tree(fresh: Mapping[str, str], folder: Path, lines: int = 12) -> lis
     differences = [Difference(name, "missing") for name in fresh.keys() - present.keys()]
     differences += [Difference(name, "extra") for name in present.keys() - fresh.keys()]
     for name in fresh.keys() & present.keys():
-        if present[name].is_symlink() or present[name].read_bytes() != fresh[name].encode():
+        if _content(present[name]) != fresh[name].encode():
             differences.append(
                 Difference(name, "changed", _diff(name, present[name], fresh[name], lines))
             )
@@ -65,11 +66,19 @@ def is_intact(folder: Path, name: str) -> bool:
     """
     entry = read_manifest(folder)["systems"].get(name, {"files": None})
     found = {
-        path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+        path.name: hashlib.sha256(_content(path) or b"").hexdigest()
         for path in (folder / name).glob("*")
-        if path.is_file() and not path.is_symlink()
+        if path.name != "__pycache__"
     }
     return bool(found == entry["files"])
+
+
+def _content(path: Path) -> bytes | None:
+    """The bytes of a regular file; None of anything else, and of what cannot be read."""
+    try:
+        return read_regular(path)
+    except OSError:
+        return None
 
 
 def _is_output(name: str, path: Path) -> bool:
@@ -81,7 +90,10 @@ def _is_output(name: str, path: Path) -> bool:
 
 def _diff(name: str, path: Path, fresh: str, lines: int) -> str:
     """The first lines of a unified diff."""
-    old = path.read_bytes().decode(errors="replace").splitlines()
+    content = _content(path)
+    if content is None:
+        return "this is not a regular file that can be read"
+    old = content.decode(errors="replace").splitlines()
     whole = difflib.unified_diff(
         old, fresh.splitlines(), f"on disk: {name}", f"fresh: {name}", "", "", 1, ""
     )

@@ -122,7 +122,7 @@ class Constraints:
         moved = zip(self.system.STATE.components, state, self.onto(state), strict=True)
         told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
         listed = list(self.system.certificate.get("constraints", {}).items())
-        constraint = " {}, {},".format(*listed[row]) if listed else f" {row + 1}"
+        constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"
         return KernelArgumentError(
             f"{self.system.name}: the constraint{constraint} does not hold at the given state: "
             f"left minus right is {residual:.6g}; expected 0. The nearest state on the constraints "

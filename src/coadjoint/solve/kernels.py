@@ -1,25 +1,25 @@
 """The kernels of a System: NumPy, exact C and fast C, loaded when first asked for.
 
 Comes in: checked arrays. Goes out: results in place. Without a compiler the NumPy kernel stands in
-for C, which is said once.
+for C where a user calls it, which is said once. The cross-check loads kernels by `Kernels.load`,
+where nothing stands in for anything.
 """
 
 from __future__ import annotations
 
+import hashlib
 import math
-import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from importlib.util import module_from_spec, spec_from_file_location
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning
+from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning, compilers
 from coadjoint.build.library import Library, load_library
-from coadjoint.errors import CompilerError, KernelArgumentError, OutputError
+from coadjoint.errors import CompilerError, CrossCheckError, KernelArgumentError, OutputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,11 +93,32 @@ class Kernels:
 
     def prepare(self, targets: Sequence[str]) -> None:
         """Compile and load what targets need, side by side: compilers are programs of their own."""
-        if "numpy" not in self._loaded:
-            self._loaded["numpy"] = self._numpy_module()
-        with ThreadPoolExecutor() as pool:
+        self._numpy_module()
+        with compilers() as pool:
             for done in [pool.submit(self._stand_in, target) for target in targets]:
                 done.result()
+
+    def load(self, targets: Sequence[str]) -> dict[str, str]:
+        """Load the kernels of targets themselves: what is missing or wrong is an error.
+
+        Returns:
+            SHA-256 of the text that each was made from: ``kernel.py`` or ``kernel.c``.
+
+        Raises:
+            CompilerError: A kernel cannot be compiled.
+            CrossCheckError: A compiled kernel differs from the NumPy kernel.
+            OutputError: ``kernel.py`` cannot be loaded.
+        """
+        for target in targets:
+            _check_target(target)
+        numpy = self._numpy_module().SOURCE
+        with compilers() as pool:
+            libraries = [t for t in targets if t != "numpy"]
+            loading = {target: pool.submit(self._load, target) for target in libraries}
+            found = {target: done.result() for target, done in loading.items()}
+        self._loaded |= found
+        sources = {target: library.source for target, library in found.items()}
+        return {target: sources.get(target, numpy) for target in targets}
 
     def _stand_in(self, target: str) -> bool:
         """Whether the NumPy kernel answers for a target.
@@ -105,26 +126,15 @@ class Kernels:
         Raises:
             KernelArgumentError: No such target.
         """
-        if target == "numpy":
-            return True
-        if target not in BUILDS:
-            raise KernelArgumentError(
-                f"target is {target!r}; expected 'c', 'numpy' or 'c-fast'.",
-                found=target,
-                expected=["c", "numpy", "c-fast"],
-            )
-        return self._library(target) is None
+        _check_target(target)
+        return target == "numpy" or self._library(target) is None
 
     def _library(self, target: str) -> Any:
         """The C library of a target, or None, said once, where it cannot be had."""
         if target not in self._loaded:
-            system = self.system
-            verify = partial(self._verify, target)
             try:
-                self._loaded[target] = load_library(
-                    system.folder, system.name, system.id, BUILDS[target], verify
-                )
-            except CompilerError as error:
+                self._loaded[target] = self._load(target)
+            except (CompilerError, CrossCheckError) as error:
                 self._loaded[target] = None
                 if str(error) not in _said:
                     _said.add(str(error))
@@ -135,43 +145,57 @@ class Kernels:
                     )
         return self._loaded[target]
 
+    def _load(self, target: str) -> Library:
+        """The C library of a target, verified."""
+        system, verify = self.system, partial(self._verify, target)
+        return load_library(system.folder, system.name, system.id, BUILDS[target], verify)
+
     def _numpy_function(self, function: str) -> Callable[..., Any]:
         """A function of the NumPy kernel.
 
         Raises:
-            OutputError: The kernel carries another id than the System.
+            OutputError: The kernel cannot be loaded, lacks the function, or carries another id
+                than the System.
         """
-        if "numpy" not in self._loaded:
-            self._loaded["numpy"] = self._numpy_module()
-        found: Callable[..., Any] = getattr(self._loaded["numpy"], function)
+        found: Callable[..., Any] | None = getattr(self._numpy_module(), function, None)
+        if found is None:
+            raise self._broken(f"has no function {function}")
         return found
 
-    def _numpy_module(self) -> Any:
-        path = self.system.folder / "kernel.py"
-        spec = spec_from_file_location(f"_coadjoint_{self.system.name}_kernel", path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = module_from_spec(spec)
-        before, sys.dont_write_bytecode = sys.dont_write_bytecode, True
-        try:
-            spec.loader.exec_module(module)
-        finally:
-            sys.dont_write_bytecode = before
-        if module.ID != self.system.id:  # noqa: SIM300 (not a constant: the id of another file)
-            raise OutputError(
-                f"{path} carries the id {module.ID!r}, its system {self.system.id!r}; expected one "
-                "id. Run `coadjoint regenerate`.",
-                path=str(path),
-                found=module.ID,
-                expected=self.system.id,
-            )
-        return module
+    def _numpy_module(self) -> ModuleType:
+        """``kernel.py``, executed once, with the hash of its text as ``SOURCE``."""
+        if "numpy" not in self._loaded:
+            path = self.system.folder / "kernel.py"
+            module = ModuleType(f"_coadjoint_{self.system.name}_kernel")
+            try:
+                content = path.read_bytes()
+                exec(compile(content, path, "exec"), module.__dict__)  # noqa: S102 (it is a module)
+                found = module.ID
+            except Exception as error:
+                problem = f"cannot be loaded: {type(error).__name__}: {error}"
+                raise self._broken(problem) from error
+            if found != self.system.id:
+                raise self._broken(
+                    f"carries the id {found!r}, its system {self.system.id!r}; expected one id",
+                    found=found,
+                    expected=self.system.id,
+                )
+            module.SOURCE = hashlib.sha256(content).hexdigest()  # type: ignore[attr-defined]
+            self._loaded["numpy"] = module
+        loaded: ModuleType = self._loaded["numpy"]
+        return loaded
+
+    def _broken(self, problem: str, **parts: Any) -> OutputError:
+        """What is wrong with ``kernel.py``."""
+        path = str(self.system.folder / "kernel.py")
+        return OutputError(f"{path} {problem}. Run `coadjoint regenerate`.", path=path, **parts)
 
     def _verify(self, target: str, library: Library) -> None:
         """Compare a fresh library with the NumPy kernel at a few points.
 
         Raises:
-            CompilerError: They differ.
+            CrossCheckError: They differ.
+            OutputError: The NumPy kernel does not run.
         """
         source = np.random.default_rng(0)
         inputs = self.system.inputs
@@ -181,16 +205,53 @@ class Kernels:
         for function, shape in self.system.functions.items():
             state = wide[: inputs(function).size]
             for parameters, stride in ((own, PROBES), (own[:, 0].copy(), 0)):
-                expected = self._numpy_function(function)(state, parameters)
+                expected = self._numpy_values(function, state, parameters, (*shape, PROBES))
                 found = np.full((*shape, PROBES), np.pi)
                 addresses = (state.ctypes.data, PROBES, parameters.ctypes.data, stride)
                 library.function(function)(PROBES, *addresses, found.ctypes.data, PROBES)
                 if not _agree(found, expected, exact=exact):
-                    raise CompilerError(
-                        f"the compiler made a wrong kernel: {self.system.name}.{function} differs "
-                        "from the NumPy kernel. Set CC to another compiler.",
-                        found=function,
+                    raise CrossCheckError(
+                        f"a wrong kernel was compiled: {self.system.name}.{function} of the target "
+                        f"{target} differs from the NumPy kernel. Set CC to another compiler, or "
+                        "run `coadjoint crosscheck` to see whether the files are at fault.",
+                        rung=5,
+                        system=self.system.name,
+                        function=function,
+                        target=target,
                     )
+
+    def _numpy_values(
+        self, function: str, state: NDArray[Any], parameters: NDArray[Any], shape: tuple[int, ...]
+    ) -> NDArray[Any]:
+        """What the NumPy kernel computes.
+
+        Raises:
+            OutputError: It does not run, or its result has another shape.
+        """
+        try:
+            values = np.asarray(self._numpy_function(function)(state, parameters), dtype=np.float64)
+        except OutputError:
+            raise
+        except Exception as error:
+            problem = f"does not run: {function}: {type(error).__name__}: {error}"
+            raise self._broken(problem) from error
+        if values.shape != shape:
+            raise self._broken(f"does not run: {function} has the shape {values.shape}")
+        return values
+
+
+def _check_target(target: str) -> None:
+    """Refuse what is no target.
+
+    Raises:
+        KernelArgumentError: No such target.
+    """
+    if target not in ("numpy", *BUILDS):
+        raise KernelArgumentError(
+            f"target is {target!r}; expected 'c', 'numpy' or 'c-fast'.",
+            found=target,
+            expected=["c", "numpy", "c-fast"],
+        )
 
 
 def _each(pieces: list[Callable[[], None]]) -> None:

@@ -9,7 +9,6 @@ computes.
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
@@ -20,6 +19,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 from coadjoint.errors import OutputError
+from coadjoint.files import read_certificate
 from coadjoint.solve.quantities import Bound, Quantities, Quantity
 
 if TYPE_CHECKING:
@@ -338,6 +338,22 @@ class System:
         """
         self._kernels.prepare(targets)
 
+    def load_kernels(self, targets: Sequence[str]) -> dict[str, str]:
+        """Load the kernels of targets, or fail: unlike in `prepare`, NumPy never stands in for C.
+
+        Args:
+            targets: As in `prepare`.
+
+        Returns:
+            SHA-256 of the text that each kernel was made from.
+
+        Raises:
+            CompilerError: A kernel cannot be compiled.
+            CrossCheckError: A compiled kernel differs from the NumPy kernel.
+            OutputError: ``kernel.py`` cannot be loaded.
+        """
+        return self._kernels.load(targets)
+
     @cached_property
     def _kernels(self) -> Kernels:
         from coadjoint.solve.kernels import Kernels
@@ -346,10 +362,11 @@ class System:
 
     @cached_property
     def certificate(self) -> Mapping[str, Any]:
-        """What was proved: ``certificate.json``, with title, source and docs of the spec."""
-        path = self.folder / "certificate.json"
-        found: dict[str, Any] = json.loads(path.read_text()) if path.is_file() else {}
-        return MappingProxyType(found)
+        """What was proved: ``certificate.json``, with title, source and docs of the spec.
+
+        Empty if the file is missing or damaged; `coadjoint doctor` and `coadjoint list` say so.
+        """
+        return MappingProxyType(read_certificate(self.folder / "certificate.json"))
 
     @property
     def title(self) -> str:
@@ -378,7 +395,14 @@ def load_folder(folder: Path) -> System:
         OutputError: The folder holds no generated system.
     """
     spec = spec_from_file_location(f"_coadjoint_{folder.name}", folder / "__init__.py")
-    module = _execute(folder, spec)
+    try:
+        module = _execute(folder, spec)
+    except Exception as error:
+        raise OutputError(
+            f"{folder / '__init__.py'} cannot be loaded: {type(error).__name__}: {error}. "
+            "Run `coadjoint regenerate`.",
+            path=str(folder),
+        ) from error
     if not isinstance(getattr(module, "system", None), System):
         raise OutputError(
             f"{folder} holds no generated system; expected an __init__.py written by "

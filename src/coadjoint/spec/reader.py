@@ -76,6 +76,10 @@ from coadjoint.spec.validate import validate
 def read_spec(path: str | os.PathLike[str]) -> Spec:
     """Read a spec from a file.
 
+    What the text may ask for is limited (docs/limits.md); the time that reading takes is not, and
+    nor is that of `coadjoint.derive` and `coadjoint.prove`. For a file of a stranger there are
+    `coadjoint.read_bounded`, `derive_bounded` and `prove_bounded`.
+
     Args:
         path: A regular file in TOML; its stem names the system.
 

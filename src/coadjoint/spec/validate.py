@@ -26,8 +26,8 @@ from coadjoint.spec.positions import KeyPath, Span
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source, joined, shown
 
-#: Faults that one message shows at the most.
-MOST_FAULTS = 20
+#: Faults that one message shows at the most; each takes three rows of a screen.
+MOST_FAULTS = 6
 _KINDS = MappingProxyType(
     {
         "model_type": "a table",

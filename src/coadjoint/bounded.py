@@ -1,0 +1,174 @@
+"""Bounded forms: read, derive and prove a stranger's spec without trust in what it costs.
+
+Comes in: the path of a spec. Goes out: plain JSON values, from a child process whose processor time
+and memory are limited; `coadjoint.read_spec`, `coadjoint.derive` and `coadjoint.prove` do the same
+work in the caller's process and take as long as they take. docs/limits.md says what is bounded.
+Read next: `coadjoint.sandbox`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any
+
+from coadjoint.budget import allowed_seconds
+from coadjoint.errors import CoadjointError, ResourceError, from_record
+from coadjoint.limits import WORKER_BYTES
+from coadjoint.sandbox import report_progress, run_bounded
+
+if TYPE_CHECKING:
+    from coadjoint.spec import Spec
+
+
+def read_bounded(
+    path: str | PathLike[str], *, seconds: float | None = None, memory: int = WORKER_BYTES
+) -> dict[str, Any]:
+    """What a spec declares, read in a bounded child.
+
+    Args:
+        path: A spec in TOML.
+        seconds: Processor time; see `coadjoint.budget.allowed_seconds`.
+        memory: Limit of address space, bytes.
+
+    Returns:
+        ``name``, ``title``, ``source``, ``description`` and ``license`` as they stand in the spec,
+        ``routes``, the ``state`` and ``parameters`` by component, and ``sha256`` of its bytes.
+
+    Raises:
+        CoadjointError: What `coadjoint.read_spec` raises.
+        ResourceError: The child ran out of time or memory.
+    """
+    (found,) = read_all_bounded([fspath(path)], seconds=seconds, memory=memory)
+    if isinstance(found, CoadjointError):
+        raise found
+    return found
+
+
+def derive_bounded(
+    path: str | PathLike[str],
+    route: str | None = None,
+    *,
+    seconds: float | None = None,
+    memory: int = WORKER_BYTES,
+) -> dict[str, Any]:
+    """The derivation of a spec, step by step, made in a bounded child.
+
+    Args:
+        path: A spec in TOML.
+        route: One of its routes; by default the first.
+        seconds: Processor time; see `coadjoint.budget.allowed_seconds`.
+        memory: Limit of address space, bytes.
+
+    Returns:
+        The fields of a `coadjoint.derive.document.Document`, for
+        `coadjoint.render.document.render_document`.
+
+    Raises:
+        CoadjointError: What `coadjoint.derive` raises.
+        ResourceError: The child ran out of time or memory.
+    """
+    argument = {"path": fspath(path), "route": route}
+    return _run("coadjoint.cli.show:document_record", argument, seconds, memory)
+
+
+def prove_bounded(
+    path: str | PathLike[str], *, seconds: float | None = None, memory: int = WORKER_BYTES
+) -> dict[str, Any]:
+    """The certificate of a spec, made in a bounded child; what is refuted raises nothing.
+
+    Args:
+        path: A spec in TOML.
+        seconds: Processor time; see `coadjoint.budget.allowed_seconds`.
+        memory: Limit of address space, bytes.
+
+    Returns:
+        What ``coadjoint prove --json`` prints: ``system``, ``holds``, and ``claims`` with
+        statement, verdict and method of each.
+
+    Raises:
+        CoadjointError: What `coadjoint.prove` raises.
+        ResourceError: The child ran out of time or memory.
+    """
+    return _run("coadjoint.cli.prove:certificate_record", {"path": fspath(path)}, seconds, memory)
+
+
+def _run(
+    target: str, argument: Mapping[str, Any], seconds: float | None, memory: int
+) -> dict[str, Any]:
+    """A function of one spec in a bounded child."""
+    found: dict[str, Any] = run_bounded(
+        target,
+        argument,
+        seconds=allowed_seconds(seconds),
+        memory=memory,
+        subject=str(argument["path"]),
+    )
+    return found
+
+
+def read_all_bounded(
+    paths: Sequence[str], *, seconds: float | None = None, memory: int = WORKER_BYTES
+) -> list[dict[str, Any] | CoadjointError]:
+    """What each of many specs declares, or the error of reading it, in the order of the paths.
+
+    One child reads them all. Where it is lost, the spec that it was reading is to blame; those
+    before are read again, and another child goes on behind it, so that one hostile spec keeps
+    nobody from the others.
+
+    Args:
+        paths: Specs in TOML.
+        seconds: Processor time for each child; see `coadjoint.budget.allowed_seconds`.
+        memory: Limit of address space, bytes.
+    """
+    allowed, done = allowed_seconds(seconds), 0
+
+    def note(_stage: str, number: int, _total: int) -> None:
+        nonlocal done
+        done = number
+
+    try:
+        found = run_bounded(
+            "coadjoint.bounded:read_records",
+            list(paths),
+            seconds=allowed,
+            memory=memory,
+            on_progress=note,
+            subject=paths[0] if len(paths) == 1 else f"{len(paths)} specs",
+        )
+    except ResourceError as error:
+        if len(paths) == 1:
+            return [error]
+        parts = (paths[:done], paths[done : done + 1], paths[done + 1 :])
+        again = [read_all_bounded(part, seconds=allowed, memory=memory) for part in parts if part]
+        return [each for part in again for each in part]
+    return [from_record(each["error"]) if "error" in each else each for each in found]
+
+
+def read_records(paths: Sequence[str]) -> list[dict[str, Any]]:
+    """What specs declare, as plain JSON values; runs in a bounded child."""
+    from coadjoint.spec import read_spec  # SymPy loads here, in the child, and never in the parent
+
+    records: list[dict[str, Any]] = []
+    for number, path in enumerate(paths):
+        report_progress(f"read {path}", number, len(paths))
+        try:
+            records.append(_declared(read_spec(path)))
+        except CoadjointError as error:
+            records.append({"error": error.as_record()})
+    return records
+
+
+def _declared(spec: Spec) -> dict[str, Any]:
+    """What a spec declares."""
+    return {
+        "name": spec.name,
+        "title": spec.title,
+        "source": spec.source,
+        "description": spec.description,
+        "license": spec.license,
+        "routes": list(spec.routes),
+        "state": [name for each in spec.state for name in each.components],
+        "parameters": [name for each in spec.parameters for name in each.components],
+        "sha256": spec.sha256,
+    }

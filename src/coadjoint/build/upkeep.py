@@ -1,0 +1,113 @@
+"""Upkeep of the cache: its bound, and what is wrong with it.
+
+Comes in: the folder of the cache. Goes out: a folder within its bound, or a list of problems for
+people. Read next: `coadjoint.build.cache`, which calls `evict` after each new object.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from coadjoint.build.workplace import abandoned, remove
+from coadjoint.limits import CACHE_BYTES
+
+#: Folders of the cache: objects by key, what was verified, systems of one's own, work in progress.
+KERNELS, VERIFIED, SYSTEMS, WORK = "kernels", "verified", "systems", "work"
+#: Seconds for which a system of one's own stays, whatever the bound: a program may be reading it.
+IN_USE = 24 * 3600
+#: What a file takes on a disk, at the least.
+PAGE = 4096
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """Something that can be removed by itself.
+
+    Attributes:
+        path: A file, or the folder of a system.
+        size: Bytes on the disk, about.
+        used: When it was written or used last.
+    """
+
+    path: Path
+    size: int
+    used: float
+
+
+def evict(folder: Path, most: int = CACHE_BYTES) -> None:
+    """Remove what was not used for longest until the cache is within its bound.
+
+    Args:
+        folder: The cache.
+        most: Its bound in bytes.
+    """
+    entries = sorted(_entries(folder), key=lambda entry: entry.used)
+    total = sum(entry.size for entry in entries)
+    for entry in entries:
+        if total <= most:
+            return
+        fresh = entry.used > time.time() - IN_USE
+        if entry.path.parent.name == SYSTEMS and fresh:
+            continue
+        with suppress(OSError):
+            remove(entry.path)
+            total -= entry.size
+
+
+def _entries(folder: Path) -> Iterator[_Entry]:
+    """Everything that may be evicted."""
+    for name in (KERNELS, VERIFIED, SYSTEMS):
+        with suppress(OSError):
+            for path in (folder / name).iterdir():
+                with suppress(OSError):
+                    yield _entry(path)
+
+
+def _entry(path: Path) -> _Entry:
+    """A file, or a folder with all that is in it."""
+    found = [path.lstat()]
+    if path.is_dir() and not path.is_symlink():
+        found += [inner.lstat() for inner in path.rglob("*")]
+    size = sum(-(-each.st_size // PAGE) * PAGE for each in found)
+    return _Entry(path, size, max(each.st_mtime for each in found))
+
+
+def find_problems(folder: Path) -> list[str]:
+    """What is wrong with a cache, a sentence each; nothing is changed.
+
+    All of it is harmless: what is damaged is compiled anew, and what killed runs left is removed
+    when the cache is used next.
+
+    Args:
+        folder: The cache, which need not exist.
+    """
+    problems = [f"{path} was left by a run that was killed" for path in abandoned(folder / WORK)]
+    for name in (KERNELS, VERIFIED):
+        with suppress(OSError):
+            for path in sorted((folder / name).iterdir()):
+                problems += _problem(path)
+    total = sum(entry.size for entry in _entries(folder))
+    if total > CACHE_BYTES:
+        problems.append(
+            f"{folder} takes {total // 2**20} MiB, more than its bound of {CACHE_BYTES // 2**20}"
+        )
+    return problems
+
+
+def _problem(path: Path) -> list[str]:
+    """What is wrong with one file of the cache."""
+    if path.is_symlink() or not path.is_file():
+        return [f"{path} is not a file"]
+    if path.suffix == ".so":
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            return [f"{path} cannot be read: {error.strerror}"]
+        if hashlib.sha256(content).hexdigest() != path.stem:
+            return [f"{path} is damaged"]
+    return []

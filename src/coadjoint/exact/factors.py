@@ -1,0 +1,103 @@
+"""Factors: elements as products of powers, and what signs of such products follow from others.
+
+Comes in: polynomials and numbers. Goes out: their factors with exponents; for signs, rows over the
+field of two elements. Read next: `coadjoint.exact.relations`, which takes square roots of products.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from math import isqrt
+from typing import Any
+
+from sympy import factorint
+from sympy.polys.rings import PolyElement
+
+#: Largest polynomial that is factored: terms and degree.
+LARGEST_FACTORED = 40
+LARGEST_DEGREE = 16
+#: Primes up to here are split off numbers.
+PRIMES = 1000
+#: A factor: a prime, -1, or a monic polynomial.
+Factor = Any
+#: Exponents of factors, none of them 0.
+Powers = dict[Factor, int]
+#: Factors the signs of which have a product that is known, and whether that is negative.
+SignRow = tuple[frozenset[Factor], int]
+
+
+def factors_of(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
+    """A nonzero polynomial as a rational number times powers of monic factors.
+
+    Large ones stay whole: to factor them could take long.
+    """
+    least = tuple(map(min, zip(*p, strict=True)))
+    gens = [(gen, e) for gen, e in zip(p.ring.gens, least, strict=True) if e]
+    p = p.quo_term((least, p.ring.domain.one))
+    small = len(p) <= LARGEST_FACTORED and max(map(sum, p)) <= LARGEST_DEGREE
+    content, found = p.factor_list() if small and len(p) > 1 else (p.ring.domain.one, [(p, 1)])
+    for factor, exponent in found:
+        content *= factor.LC**exponent
+    return content, [*gens, *((f.monic(), e) for f, e in found if not f.is_ground)]
+
+
+def exact(number: Any) -> Fraction:
+    """A rational number of SymPy's domains as one of Python."""
+    return Fraction(int(number.numerator), int(number.denominator))
+
+
+def number_factors(number: Fraction) -> Powers:
+    """A rational number as powers of -1, of small primes and of what is left of the rest."""
+    vector: Powers = {-1: 1} if number < 0 else {}
+    for whole, power in ((abs(number.numerator), 1), (number.denominator, -1)):
+        for factor, exponent in factorint(
+            whole, limit=PRIMES, use_rho=False, use_pm1=False
+        ).items():
+            root = isqrt(factor)
+            base, count = (root, 2 * exponent) if root**2 == factor else (factor, exponent)
+            if base > 1:
+                vector = multiply(vector, {int(base): count * power})
+    return vector
+
+
+def odd_factors(vector: Powers) -> frozenset[Factor]:
+    """The factors with odd exponents."""
+    return frozenset(f for f, e in vector.items() if e % 2)
+
+
+def multiply(a: Powers, b: Mapping[Factor, int]) -> Powers:
+    """The product of two products of powers."""
+    result = dict(a)
+    for factor, exponent in b.items():
+        result[factor] = result.get(factor, 0) + exponent
+    return {f: e for f, e in result.items() if e}
+
+
+def eliminate_signs(
+    rows: Iterable[SignRow], wanted: Sequence[Factor]
+) -> list[tuple[Factor, frozenset[Factor], int]]:
+    """Rows each with a factor that no other row has, one that is not wanted where there is one."""
+    found: list[tuple[Factor, frozenset[Factor], int]] = []
+    for factors, number in rows:
+        left, negative = reduce_signs(factors, found)
+        negative ^= number
+        if not left:
+            continue
+        pivot = min(left, key=lambda f: (f in wanted, str(f)))
+        found = [
+            (p, row ^ left, n ^ negative) if pivot in row else (p, row, n) for p, row, n in found
+        ]
+        found.append((pivot, left, negative))
+    return found
+
+
+def reduce_signs(
+    factors: frozenset[Factor], rows: Sequence[tuple[Factor, frozenset[Factor], int]]
+) -> tuple[frozenset[Factor], int]:
+    """A product of signs by rows that are 1 or -1, each with the factor that it removes."""
+    number = 0
+    for pivot, row, negative in rows:
+        if pivot in factors:
+            factors, number = factors ^ row, number ^ negative
+    return factors, number

@@ -1,0 +1,95 @@
+"""Values of elementary functions that need no function: ``sqrt(4*m^2)`` is ``2*m`` for positive m.
+
+Comes in: a function and its argument. Goes out: the value without that function, where the declared
+signs give one. What two functions have to do with each other is for `coadjoint.exact.relations`.
+Read next: `coadjoint.exact.signs`.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import reduce
+from math import isqrt
+from operator import mul
+
+from coadjoint.exact.element import Element
+from coadjoint.exact.factors import exact, factors_of
+from coadjoint.exact.field import Field
+from coadjoint.exact.signs import sign
+
+#: Values at 0, but for the logarithm.
+_AT_ZERO = {"sqrt": 0, "sin": 0, "cos": 1, "exp": 1}
+
+
+def known_value(field: Field, function: str, argument: Element) -> Element | None:
+    """The value of a function where it is an element without it; else None.
+
+    >>> field = Field(["m", "q"], slots=1, positive=["m"])
+    >>> known_value(field, "sqrt", 4 * field["m"] ** 2), known_value(field, "sqrt", field["q"] ** 2)
+    (2*m, None)
+    """
+    if function in _AT_ZERO and argument == 0:
+        return field.number(_AT_ZERO[function])
+    match function:
+        case "sqrt":
+            return _root(field, argument)
+        case "log":
+            return field.zero if argument == 1 else _exponent(field, argument)
+        case "exp":
+            return _power(field, argument)
+    return None
+
+
+def rational_root(value: Fraction) -> Fraction | None:
+    """The square root of the square of a rational number; None for other numbers."""
+    if value < 0:
+        return None
+    root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
+    return root if root**2 == value else None
+
+
+def _root(field: Field, argument: Element) -> Element | None:
+    """The square root of a square whose root has a declared sign."""
+    whole = field.normal(argument).combined()
+    if whole == 0:
+        return whole
+    top, bottom = field.fraction(whole)
+    content, factors = factors_of(top)
+    number = rational_root(exact(content))
+    if number is None:
+        return None
+    powers = list(factors)
+    for divisor, power in bottom:
+        content, inner = factors_of(divisor)
+        assert content == 1, divisor  # divisors are monic
+        powers += [(f, -e * power) for f, e in inner]
+    if any(e % 2 for _, e in powers):
+        return None
+    parts = (field.from_polynomial(f) ** (e // 2) for f, e in powers)
+    root = reduce(mul, parts, field.number(number))
+    found = sign(field, root, strict=False)
+    return root * found if found else None
+
+
+def _exponent(field: Field, argument: Element) -> Element | None:
+    """The argument of the exponential that an element is."""
+    for name in field.functions_in(argument):
+        if field.adjoined[name].function == "exp" and argument == field[name]:
+            return field.adjoined[name].argument
+    return None
+
+
+def _power(field: Field, argument: Element) -> Element | None:
+    """``exp(n*log(u) + v) = u^n*exp(v)`` for whole and half n."""
+    for name in sorted(field.names_in(argument) & field.adjoined.keys()):
+        known = field.adjoined[name]
+        if known.function != "log":
+            continue
+        slope = field.as_number(field.slope(argument, name))
+        if slope is None or (2 * slope).denominator != 1:
+            continue
+        rest = field.call("exp", argument - slope * field[name])
+        if slope.denominator == 1:
+            return rest * known.argument ** int(slope)
+        return rest * field.call("sqrt", known.argument) ** int(2 * slope)
+    return None

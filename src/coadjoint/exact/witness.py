@@ -1,0 +1,250 @@
+"""Witness points: proof that an element is not zero, by interval arithmetic at a rational point.
+
+Comes in: an element. Goes out: a rational point inside the domain at which bounds of the value
+exclude zero, or nothing. A normal form that is not 0 proves nothing where functions occur, since
+their field does not know every relation; a witness does. The points are the same in every run.
+Read next: `coadjoint.exact.signs`, which knows signs at all points of a domain.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import islice
+from typing import Any
+
+import mpmath
+
+from coadjoint.exact.element import Element
+from coadjoint.exact.field import Field
+
+#: A value for each symbol.
+Point = dict[str, Fraction]
+
+#: Binary digits of interval bounds.
+PRECISION = 200
+#: Points at which a value is tried, and how many are drawn to find each.
+TRIES = 12
+DRAWN = 12
+#: Steps from a point outside a domain towards it.
+STEPS = 40
+#: Largest argument of exp, sin and cos; of more, numbers would have millions of digits.
+LARGEST = 10**6
+#: Where a value is undefined: poles, roots and logarithms of what is not positive, huge numbers.
+UNDEFINED = (ZeroDivisionError, ValueError, OverflowError)
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosure:
+    """An interval that contains a real value, with what evaluation in a `Field` needs.
+
+    Attributes:
+        bounds: The interval of mpmath.
+    """
+
+    bounds: Any
+
+    @staticmethod
+    def of(number: Fraction | int) -> Enclosure:
+        """The smallest interval around a rational number."""
+        exact = Fraction(number)
+        return Enclosure(mpmath.iv.mpf(exact.numerator) / mpmath.iv.mpf(exact.denominator))
+
+    @property
+    def sign(self) -> int:
+        """+1 or -1 where the whole interval has that sign, else 0."""
+        if self.bounds.a > 0:
+            return 1
+        return -1 if self.bounds.b < 0 else 0
+
+    def __add__(self, other: Enclosure) -> Enclosure:
+        return Enclosure(self.bounds + other.bounds)
+
+    def __mul__(self, other: Enclosure) -> Enclosure:
+        return Enclosure(self.bounds * other.bounds)
+
+    def __truediv__(self, other: Enclosure) -> Enclosure:
+        if not other.sign:
+            raise ZeroDivisionError("a divisor that may be zero")
+        return Enclosure(self.bounds / other.bounds)
+
+
+def enclosed_function(function: str, argument: Enclosure) -> Enclosure:
+    """Bounds of an elementary function.
+
+    Raises:
+        ValueError: The argument may be outside the open real domain, or is huge.
+    """
+    if function in ("sqrt", "log") and argument.sign <= 0:
+        raise ValueError(f"{function} of {argument.bounds}, which may not be positive")
+    if function in ("exp", "sin", "cos") and not abs(argument.bounds) < LARGEST:
+        raise ValueError(f"{function} of {argument.bounds}")
+    return Enclosure(getattr(mpmath.iv, function)(argument.bounds))
+
+
+def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> Enclosure:
+    """Bounds of an element at a point.
+
+    Raises:
+        ZeroDivisionError: It may have a pole there.
+        ValueError: A function in it may be undefined there.
+    """
+    before, mpmath.iv.prec = mpmath.iv.prec, PRECISION
+    try:
+        numbers = {name: Enclosure.of(value) for name, value in point.items()}
+        return field.evaluate(element, numbers, Enclosure.of, enclosed_function)
+    finally:
+        mpmath.iv.prec = before
+
+
+def witness_nonzero(
+    field: Field, element: Element, defined: Iterable[Element] = (), *, tries: int = TRIES
+) -> Point | None:
+    """A point of the domain at which an element is certainly not zero.
+
+    Args:
+        field: Where the element lives; its declared signs and conditions hold at the point.
+        element: What should not be zero.
+        defined: What else has to have a value at the point.
+        tries: At how many points.
+
+    Returns:
+        Values of the symbols that the element depends on; None where no point was found, which
+        proves nothing.
+
+    >>> field = Field(["q"], slots=2)
+    >>> double, single = field.call("exp", 2 * field["q"]), field.call("exp", field["q"])
+    >>> witness_nonzero(field, double - single**2)
+    >>> witness_nonzero(field, double - single)
+    {'q': Fraction(-3, 5)}
+    """
+    names = field.reach(element)
+    for point in islice(points_inside(field, [element, *defined], tries * DRAWN), tries):
+        with suppress(*UNDEFINED):
+            if enclosure(field, element, point).sign:
+                return {name: value for name, value in point.items() if name in names}
+    return None
+
+
+def is_nonzero(field: Field, element: Element) -> bool:
+    """Whether an element is certainly not identically zero.
+
+    Without functions the normal form decides; with them a witness point does.
+    """
+    if field.is_zero(element):
+        return False
+    return field.function_free(element) or witness_nonzero(field, element) is not None
+
+
+def points_inside(
+    field: Field, elements: Iterable[Element], drawn: int = TRIES * DRAWN
+) -> Iterator[Point]:
+    """Rational points at which elements are defined and the conditions of the field hold.
+
+    Random points of several sizes; one outside the domain is moved towards it first.
+
+    Args:
+        field: Where the elements live.
+        elements: What should be defined.
+        drawn: How many points are drawn; there may be none inside the domain.
+    """
+    domain = Domain(field, tuple(elements))
+    for start in islice(_starts(field, domain.names), drawn):
+        point = domain.moved_inside(start)
+        if point is not None:
+            yield point
+
+
+def _starts(field: Field, names: Iterable[str]) -> Iterator[Point]:
+    """Endless nonzero rationals with the declared signs: small ones first, then of any size."""
+    source, names = random.Random(1), list(names)  # noqa: S311 (not for secrets)
+    for count in range(10**9):
+        scale = Fraction(10) ** (0 if count < TRIES else source.choice((-2, -1, 0, 1, 2, 3)))
+        sizes = [scale * Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
+        signs = [1 if name in field.positive else source.choice((-1, 1)) for name in names]
+        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Where elements are defined and the conditions of their field hold.
+
+    Attributes:
+        field: Where they live.
+        elements: What should be defined.
+    """
+
+    field: Field
+    elements: tuple[Element, ...]
+
+    @cached_property
+    def positive(self) -> tuple[Element, ...]:
+        """What must be positive: arguments of roots and logarithms, inner ones first; conditions.
+
+        A condition that allows 0 is asked for more, so that points lie inside.
+        """
+        conditions = [condition.element for condition in self.field.conditions]
+        reached = (*self.elements, *conditions)
+        called = frozenset[str]().union(*map(self.field.functions_in, reached))
+        inner = [
+            known.argument
+            for name, known in self.field.adjoined.items()
+            if name in called and known.function in ("sqrt", "log")
+        ]
+        return (*inner, *conditions)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The symbols that the elements and the conditions depend on, in the field's order."""
+        reached = map(self.field.reach, (*self.elements, *self.positive))
+        present = frozenset[str]().union(*reached)
+        return tuple(name for name in self.field.names if name in present)
+
+    @cached_property
+    def slopes(self) -> tuple[tuple[Element, ...], ...]:
+        """The gradients of what must be positive."""
+        return tuple(self.field.gradient(each, self.names) for each in self.positive)
+
+    def contains(self, point: Mapping[str, Fraction]) -> bool:
+        """Whether all that must be positive certainly is."""
+        with suppress(*UNDEFINED):
+            return all(enclosure(self.field, each, point).sign > 0 for each in self.positive)
+        return False
+
+    def moved_inside(self, start: Point) -> Point | None:
+        """The point itself where it is inside, else one that steps along gradients lead to."""
+        if self.contains(start):
+            return start
+        place = {name: float(value) for name, value in start.items()}
+        with suppress(*UNDEFINED):
+            for _ in range(STEPS):
+                if (step := self._step(place)) is None:
+                    break
+                place = {name: place[name] + step[name] for name in self.names}
+            point = {name: Fraction(x).limit_denominator(1000) for name, x in place.items()}
+            signed = all(x > 0 for name, x in point.items() if name in self.field.positive)
+            return point if signed and self.contains(point) else None
+        return None
+
+    def _step(self, place: Mapping[str, float]) -> dict[str, float] | None:
+        """Towards the side where the first value that is not positive is; None without one."""
+        for each, slopes in zip(self.positive, self.slopes, strict=True):
+            value = _float(self.field, each, place)
+            if value <= 0:
+                gradient = [_float(self.field, slope, place) for slope in slopes]
+                target = max(abs(value) / 4, 0.01)
+                factor = (target - value) / sum(x * x for x in gradient)
+                return dict(zip(self.names, (factor * x for x in gradient), strict=True))
+        return None
+
+
+def _float(field: Field, element: Element, place: Mapping[str, float]) -> float:
+    """The value of an element to double precision."""
+    return field.evaluate(
+        element, place, float, lambda function, x: float(getattr(math, function)(x))
+    )

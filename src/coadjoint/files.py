@@ -1,0 +1,109 @@
+"""Files: what stands on a disk, read without trust in what it is.
+
+Comes in: a path. Goes out: the bytes of a regular file, or the JSON object in it. A named pipe, a
+device, a folder, a link, a file without end and a text nested to any depth are each an `OSError` or
+an empty object, never a program that hangs or ends with a fault of ours.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import stat
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final
+
+#: Bytes of a file of ours at the most; the manifest of 50 systems has 35 000.
+MOST_BYTES: Final = 64 * 1024**2
+
+
+def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
+    """The bytes of a regular file; links are not followed, and nothing is waited for.
+
+    Raises:
+        OSError: It cannot be read, is no regular file, or has more than ``most`` bytes.
+    """
+    handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    with os.fdopen(handle, "rb") as file:
+        if not stat.S_ISREG(os.fstat(handle).st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise OSError(errno.EFBIG, f"more than {most} bytes", str(path))
+    return content
+
+
+#: What opening a path says where no regular file of ours stands.
+_ABSENT: Final = frozenset(
+    {errno.ENOENT, errno.ENOTDIR, errno.EINVAL, errno.ELOOP, errno.EISDIR, errno.ENXIO, errno.EFBIG}
+)
+
+
+def read_present(path: Path) -> bytes:
+    """The bytes of a regular file; none if something else or nothing stands there.
+
+    Raises:
+        OSError: Something may stand there, and the system refuses to read it.
+    """
+    try:
+        return read_regular(path)
+    except OSError as error:
+        if error.errno not in _ABSENT:
+            raise
+        return b""
+
+
+def read_object(path: Path) -> dict[str, Any]:
+    """The JSON object in a file; an empty one if there is none that can be read."""
+    with suppress(OSError):
+        return parsed(read_regular(path))
+    return {}
+
+
+def parsed(content: bytes) -> dict[str, Any]:
+    """The JSON object that bytes hold; an empty one if they hold none."""
+    with suppress(ValueError, RecursionError):
+        found = json.loads(content)
+        if isinstance(found, dict):
+            return found
+    return {}
+
+
+def read_certificate(path: Path) -> dict[str, Any]:
+    """A certificate as a run writes it; what is not of its form is left out.
+
+    Programs index what comes back, so each known key holds what it should: texts, tables of texts,
+    and claims that have at least a statement, a verdict and a method.
+    """
+    found = read_object(path)
+    for key in ("title", "source", "description"):
+        if not isinstance(found.get(key), str):
+            found.pop(key, None)
+    for key in ("docs", "definitions", "constraints", "domain"):
+        if not is_table_of_texts(found.get(key)):
+            found.pop(key, None)
+    for key in ("casimirs", "routes"):
+        if not _is_list_of(found.get(key), str):
+            found.pop(key, None)
+    for key, needed in (
+        ("claims", ("statement", "verdict", "method")),
+        ("findings", ("statement", "method")),
+    ):
+        if not _is_list_of(found.get(key), dict) or not all(
+            isinstance(entry.get(part), str) for entry in found[key] for part in needed
+        ):
+            found.pop(key, None)
+    return found
+
+
+def is_table_of_texts(value: Any) -> bool:
+    """Whether a JSON value is a table whose values are texts."""
+    return isinstance(value, Mapping) and all(isinstance(entry, str) for entry in value.values())
+
+
+def _is_list_of(value: Any, kind: type) -> bool:
+    """Whether a JSON value is a list of one kind."""
+    return isinstance(value, list) and all(isinstance(entry, kind) for entry in value)

@@ -1,0 +1,264 @@
+"""Each rung runs on kernels that were loaded from the very texts, compares something, or fails."""
+
+from __future__ import annotations
+
+import dataclasses
+import stat
+
+import numpy as np
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.build import compiler
+from coadjoint.build.compiler import CompilerWarning, find_compiler
+from coadjoint.crosscheck import ladder
+from coadjoint.crosscheck.compare import (
+    UNTOUCHED,
+    Agreement,
+    Figures,
+    Subject,
+    against_oracle,
+    exact_points,
+)
+from coadjoint.crosscheck.ladder import TARGETS, crosscheck
+from coadjoint.errors import CompilerError, CrossCheckError, OutputError
+from coadjoint.regenerate import regenerate
+from coadjoint.render.kernels import render_system
+from coadjoint.solve.system import load_folder
+from tests.kernels import COMPILER, ProgramReference, TextSystem
+from tests.programs import PENDULUM
+from tests.specs import RIGID_BODY, spec
+
+pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+#: Everything but the version is refused.
+FAILS_ON_KERNELS = '[ "$1" = --version ] && exec {real} --version\nexit 1'
+#: A macro that shortens every loop, behind the definitions of the template.
+MACRO = "#define COADJOINT_INDEPENDENT\n#endif"
+SHORTER = "\n#undef COADJOINT_INDEPENDENT\n#define COADJOINT_INDEPENDENT count -= count > 1;"
+
+
+@pytest.fixture(autouse=True)
+def fresh(monkeypatch, tmp_path):
+    """An empty cache, and a search for a compiler of its own."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    compiler._find.cache_clear()
+    yield
+    compiler._find.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def rendered():
+    """The rigid body as text."""
+    return pipeline.render(spec())
+
+
+def script(folder, body):
+    """A compiler that is a shell script."""
+    path = folder / "compiler"
+    path.write_text("#!/bin/sh\n" + body.format(real=find_compiler().command[0]) + "\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    compiler._find.cache_clear()
+    return str(path)
+
+
+def spoiled(rendered, file, good, bad):
+    """The system with a piece of one text replaced."""
+    assert good in rendered.texts[file]
+    texts = {**rendered.texts, file: rendered.texts[file].replace(good, bad)}
+    return dataclasses.replace(rendered, texts=texts)
+
+
+def test_the_rigid_body_passes_in_earnest(rendered):
+    """Three targets, every rung passed, and a count for each of them."""
+    report = pipeline.verify(rendered)
+    assert report.passed
+    assert report.targets == TARGETS
+    assert report.points == sum(f.points for t in report.figures.values() for f in t.values()) > 500
+    assert min(report.lines.values()) > 2
+    assert min(report.equal.values()) > 100_000
+    assert min(report.together.values()) >= 50
+    record = report.as_record()
+    assert record["lines"] == report.lines
+    assert record["together"] == report.together
+
+
+def test_a_compiler_that_fails_on_every_kernel_fails_regenerate(monkeypatch, tmp_path):
+    """NumPy does not stand in for C: nothing is written, and the failure names the compiler."""
+    monkeypatch.setenv("CC", script(tmp_path, FAILS_ON_KERNELS))
+    path = tmp_path / "sample.toml"
+    path.write_text(RIGID_BODY)
+    outcome = regenerate([path], tmp_path / "out")
+    assert not outcome.rows
+    assert isinstance(outcome.failures["sample"], CompilerError)
+    assert "failed on kernel.c with status 1" in str(outcome.failures["sample"])
+    assert not (tmp_path / "out" / "sample").exists()
+
+
+def test_a_user_has_numpy_in_its_place(monkeypatch, tmp_path, rendered):
+    """The same compiler, when a user calls a kernel: NumPy answers, which is said."""
+    monkeypatch.setenv("CC", script(tmp_path, FAILS_ON_KERNELS))
+    for name, text in rendered.texts.items():
+        (tmp_path / name).write_text(text)
+    system = load_folder(tmp_path)
+    with pytest.warns(CompilerWarning, match="NumPy kernels are used"):
+        found = system.rhs([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])
+    # dPi1/dt = (1/I3 - 1/I2) Pi2 Pi3 and cyclic
+    assert found.tolist() == [-1.5, 2.25, -1.0]
+
+
+def test_an_include_that_is_not_there_fails(rendered):
+    """The compiler's message is the failure."""
+    bad = spoiled(rendered, "kernel.c", "#include <math.h>", "#include <no_such_file.h>")
+    with pytest.raises(CompilerError, match=r"no_such_file\.h"):
+        pipeline.verify(bad)
+
+
+@pytest.mark.parametrize(
+    ("file", "good", "bad", "message"),
+    [
+        ("kernel.c", "_n < count;", "_n + 1 < count;", "rung 3.*no loop over the members"),
+        (
+            "kernel.c",
+            MACRO,
+            MACRO + SHORTER,
+            "wrong kernel was compiled|rung [45]",
+        ),
+        ("kernel.py", "members, CHUNK)", "members - 1, CHUNK)", "rung [45]|wrong kernel"),
+        ("kernel.py", "out = np.empty(shape + batch)", "out = missing", "kernel.py does not run"),
+    ],
+    ids=["C loop", "C macro", "Python loop", "Python name"],
+)
+def test_templates_that_leave_something_out_fail(rendered, file, good, bad, message):
+    """The last member left out, in one language or by a macro that no reader sees."""
+    with pytest.raises((CrossCheckError, OutputError), match=message):
+        pipeline.verify(spoiled(rendered, file, good, bad))
+
+
+@pytest.mark.parametrize("file", ["kernel.c", "kernel.py"])
+def test_kernels_of_other_texts_are_refused(rendered, tmp_path, file):
+    """What was loaded is what is checked, or rung 3 fails, whatever it computes."""
+    other = spoiled(rendered, file, "Generated by", "Written by")
+    for name, text in other.texts.items():
+        (tmp_path / name).write_text(text)
+    reference = pipeline.Reference(rendered.equations)
+    with pytest.raises(CrossCheckError, match=rf"rung 3: .*not loaded from this {file}"):
+        crosscheck(rendered.programs, rendered.texts, reference, load_folder(tmp_path))
+
+
+def test_a_python_kernel_that_cannot_be_loaded_is_named(rendered):
+    """Not the compiler's fault, and not a fault without a name."""
+    with pytest.raises(CrossCheckError, match=r"rung 3: kernel\.py is not Python"):
+        pipeline.verify(spoiled(rendered, "kernel.py", "import math\n", "import math (\n"))
+    with pytest.raises(OutputError, match=r"kernel\.py cannot be loaded: .*no_such_module"):
+        pipeline.verify(spoiled(rendered, "kernel.py", "import math\n", "import no_such_module\n"))
+    with pytest.raises(OutputError, match=r"__init__\.py cannot be loaded: SyntaxError"):
+        pipeline.verify(spoiled(rendered, "__init__.py", "simulate =", "simulate ="[:-1]))
+
+
+def compared_nothing(**changes):
+    """A report in which one count is zero."""
+    figures = {"rhs": {"numpy": Figures(1.0, 1.0, 10), "c": Figures(1.0, 1.0, 10)}}
+    rungs = {3: "passed", 4: "passed", 5: "passed"}
+    parts = {"lines": {"rhs": 3}, "figures": figures, "equal": {"rhs": 9}, "together": {"rhs": 10}}
+    return ladder.Report("sample", rungs, 4.0, **{**parts, **changes})
+
+
+def test_counts_are_checked():
+    """A report whose counts are all positive passes."""
+    for exactly in (True, False):
+        ladder._check_counts(compared_nothing(), "rhs", bits=True, exactly=exactly)
+
+
+@pytest.mark.parametrize(
+    ("rung", "exactly", "changes"),
+    [
+        (3, True, {"lines": {"rhs": 0}}),
+        (4, True, {"figures": {"rhs": {"numpy": Figures(0.0, 0.0, 10), "c": Figures(0, 0, 0)}}}),
+        (4, True, {"figures": {"rhs": {}}}),
+        (5, True, {"equal": {"rhs": 0}}),
+        (5, False, {"together": {"rhs": 0}}),
+    ],
+)
+def test_comparing_nothing_fails(rung, exactly, changes):
+    """Zero comparisons of any rung are a failure that names the rung and the function."""
+    with pytest.raises(CrossCheckError, match=f"rung {rung}: sample: nothing of rhs") as caught:
+        ladder._check_counts(compared_nothing(**changes), "rhs", bits=True, exactly=exactly)
+    assert caught.value.rung == rung
+
+
+def test_no_function_and_no_target_fail(rendered, tmp_path):
+    """A ladder without programs or targets does not pass."""
+    for name, text in rendered.texts.items():
+        (tmp_path / name).write_text(text)
+    system, reference = load_folder(tmp_path), pipeline.Reference(rendered.equations)
+    with pytest.raises(CrossCheckError, match="no function, or no target"):
+        crosscheck({}, rendered.texts, reference, system, TARGETS)
+    with pytest.raises(CrossCheckError, match="no function, or no target"):
+        crosscheck(rendered.programs, rendered.texts, reference, system, ())
+
+
+def test_a_rung_that_compares_nothing_stops_the_ladder(monkeypatch, rendered):
+    """The counts are looked at by the ladder itself, after all rungs."""
+    for name, nothing in (
+        ("check_python", lambda *_: 0),
+        (
+            "against_oracle",
+            lambda subject, _: Agreement(dict.fromkeys(TARGETS, Figures(0, 0, 0)), 0),
+        ),
+        ("equal_bits", lambda subject, _: dict.fromkeys(subject.programs, 0)),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(ladder, name, nothing)
+            if name == "check_python":
+                patch.setattr(ladder, "check_c", nothing)
+            with pytest.raises(CrossCheckError, match="nothing of rhs was compared"):
+                pipeline.verify(rendered)
+
+
+def test_a_member_that_is_not_written_is_seen_by_rung_4(tmp_path):
+    """Results begin as a number of our own, not as what another kernel left in memory."""
+    texts = render_system(PENDULUM)
+    system = TextSystem(PENDULUM, texts, tmp_path)
+    seen = []
+    whole = system._call
+
+    def all_but_the_last(function, state, parameters, target, out):
+        kept = out[..., -1].copy()
+        whole(function, state, parameters, target, out)
+        out[..., -1] = kept
+        seen.append(kept)
+        return out
+
+    system._call = all_but_the_last
+    programs = {each.name: each for each in PENDULUM.programs}
+    reference = ProgramReference(PENDULUM.programs)
+    with pytest.raises(CrossCheckError, match="rung 4"):
+        crosscheck(programs, texts, reference, system, TARGETS, 100, 100)
+    assert np.all(np.concatenate([np.ravel(each) for each in seen]) == UNTOUCHED)
+
+
+def test_points_lie_where_the_equations_have_values(tmp_path):
+    """An observable log(Pi1 - 3) has a value at one point in six, and is compared at most of them.
+
+    Points are found by the equations, not by the kernel: one that returns NaN there is caught.
+    """
+    observable = '[observables]\nfar = "log(Pi[1] - 3)"\n\n[claims]'
+    found = pipeline.render(spec(RIGID_BODY, ("[claims]", observable)))
+    for name, content in found.texts.items():
+        (tmp_path / name).write_text(content)
+    reference = pipeline.Reference(found.equations)
+
+    def report(system):
+        return crosscheck(found.programs, found.texts, reference, system, ("numpy",), 600)
+
+    figures = report(load_folder(tmp_path)).figures["observables"]["numpy"]
+    assert figures.points > 60
+    text = found.texts["kernel.py"].replace("Pi1 - 3.0", "1.0 - 3.0")
+    assert text != found.texts["kernel.py"]
+    found.texts["kernel.py"] = text
+    (tmp_path / "kernel.py").write_text(text)
+    with pytest.raises(CrossCheckError, match="rung 3"):
+        report(load_folder(tmp_path))
+    subject = Subject(found.programs, reference, load_folder(tmp_path), ("numpy",))
+    with pytest.raises(CrossCheckError, match=r"rung 4.*nan"):
+        against_oracle(subject, exact_points(subject, "observables", 60))
