@@ -33,6 +33,8 @@ from tests.adversary.reader import (
 STEP = mpf(10) ** -16
 #: How far a point found by iteration may be from its set, relative to the point.
 ON_SET = mpf(10) ** -40
+#: How far inside a strict condition a point must be: iteration may end on an edge but for rounding.
+EDGE = mpf(10) ** -15
 #: Steps of Newton's method; it converges within ten where the set is smooth.
 STEPS = 16
 PAIR = re.compile(r"\{(.*),(.*)\}")
@@ -197,7 +199,7 @@ class Motion:
         for left, sign, right in self.domain:
             (difference,) = self.at(("-", left, right), point)
             difference = difference if ">" in sign else -difference
-            if difference < 0 or (difference == 0 and "=" not in sign):
+            if difference < (0 if "=" in sign else EDGE):
                 return False
         return True
 

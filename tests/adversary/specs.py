@@ -180,17 +180,16 @@ class Author:
 
     def on_set(self):
         """A claim where a function of integrals vanishes, with branches."""
-        f, g = self.one(self.draft.integrals), self.one(self.draft.integrals)
-        x, c = self.one(self.draft.moving), self.one(("1", "2", "1/3"))
-        a = self.one(self.draft.positive or ["2"])
+        f, g = self.level(), self.level()
+        x, a = self.one(self.draft.moving), self.one(self.draft.positive or ["2"])
         integral, where = self.one(
             (
                 (f"{x}*({f})", [f"{f}"]),
-                (f"{x}*({f} + {c})", [f"{f}"]),
-                (f"{x}*({f})", [f"({f})*({g} - {c})"]),
-                (f"{x}*({f})*({g} - {c})", [f"({f})*({g} - {c})"]),
-                (f"{x}*({g} - {c})", [f"({f})*({g} - {c})"]),
-                (f"{x}*({f} - {c})", [f"{a}*({f}) - {c}*{a}"]),
+                (f"{x}*({f} + 1)", [f"{f}"]),
+                (f"{x}*({f})", [f"({f})*({g} - 1/3)"]),
+                (f"{x}*({f})*({g} - 1/3)", [f"({f})*({g} - 1/3)"]),
+                (f"{x}*({g} - 1/3)", [f"({f})*({g} - 1/3)"]),
+                (f"{x}*({f})", [f"{a}*({f} + 1) - {a}"]),
                 (f"{x}*({f})", [f"({f})^2"]),
                 (f"{x}", [f"{x}*({f})"]),
                 (f"{x}*({f}) + ({self.zero()})", [f"{f}"]),
@@ -198,6 +197,11 @@ class Author:
             )
         )
         return integral, where
+
+    def level(self):
+        """An integral that vanishes somewhere: a sum of squares less a number."""
+        f = self.one(self.draft.integrals)
+        return f if f.isalnum() and f != "energy" else f"{f} - {self.one(('3', '5', '9/2'))}"
 
     def claims(self, count, deep):
         """The table [claims], with about so many claims; one hidden deeply if wanted."""
