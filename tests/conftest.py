@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import signal
 from fractions import Fraction
 from pathlib import Path
 
@@ -29,6 +30,27 @@ def rational_points(names, count, seed=0):
         }
         for _ in range(count)
     ]
+
+
+#: Seconds of processor time that one test may take in its own process. Children have limits of
+#: their own; time by the clock decides nothing, since the machine may be busy with other work.
+PROCESSOR_SECONDS = 300
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """End a test that computes for too long."""
+
+    def stop(_signal, _frame):
+        pytest.fail(f"{item.name} took more than {PROCESSOR_SECONDS} s of processor time")
+
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, PROCESSOR_SECONDS)
+    try:
+        return (yield)
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -53,7 +53,8 @@ def test_intervals_enclose_the_value():
 def test_a_pole_is_no_value():
     """A division by what may be zero, a root or a logarithm outside its domain: no bounds."""
     field = Field(["x", "y"], slots=4)
-    pole = field.one / (field.call("sin", field["x"]) ** 2 + field.call("cos", field["x"]) ** 2 - 1)
+    root = field.call("sqrt", field["x"])
+    pole = field.one / (field.call("sqrt", field["x"] + 1 + 2 * root) - 1 - root)
     with pytest.raises(ZeroDivisionError):
         enclosure(field, pole, {"x": Fraction(1)})
     assert witness_nonzero(field, pole) is None
@@ -111,3 +112,13 @@ def test_the_sign_of_an_interval_around_zero_is_none():
     assert (third + Enclosure.of(-1) * third).sign == 0
     with pytest.raises(ZeroDivisionError):
         third / (third + Enclosure.of(-1) * third)
+
+
+def test_an_empty_domain_hides_no_analytic_function():
+    """With conditions that contradict each other, x - 1 is shown not to be zero all the same."""
+    field = Field(["x"], slots=2)
+    x = field["x"]
+    field.assume([Condition(x, strict=True), Condition(-x, strict=True)])
+    assert witness_nonzero(field, x - 1)["x"] != 1
+    assert witness_nonzero(field, field.call("exp", x) - 1)
+    assert witness_nonzero(field, field.call("sqrt", x) - 1) is None

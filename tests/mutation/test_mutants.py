@@ -34,6 +34,10 @@ JUDGES = {
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",
     ),
+    "src/coadjoint/poisson/casimirs": (
+        "tests/poisson/test_casimirs.py",
+        "tests/prove/test_completeness.py",
+    ),
     "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
     "src/coadjoint/prove/charts": ("tests/prove/test_charts.py",),
@@ -96,7 +100,9 @@ def mutate(folder, mutant):
 
 
 def judges_of(mutant):
-    """The tests that judge a mutant; the book alone those of every run."""
+    """The tests that judge a mutant: its own, else the book alone in every run."""
+    if mutant.tests:
+        return mutant.tests
     if mutant.always:
         return (EQUATIONS,)
     return next(tests for start, tests in JUDGES.items() if mutant.file.startswith(start))

@@ -7,7 +7,7 @@ import pytest
 from coadjoint.exact import Field
 from coadjoint.prove import Verdict
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import decide_zero
+from coadjoint.prove.zero import UndecidedError, decide_zero
 
 NAMES = ("P1", "P2", "P3", "G1", "G2", "G3")
 
@@ -68,25 +68,36 @@ def test_relation_that_is_linear_in_nothing_still_proves():
     assert c_value**3 - c_value == pytest.approx(float(refuted.defect), abs=1e-14)
 
 
-def test_real_zero_sets_may_be_smaller_than_ideals_tell():
-    """Where x^2 + y^2 = 0 both vanish, though the ideal holds neither: supported, not refuted."""
+def test_where_a_sum_of_squares_vanishes_each_square_does():
+    """The ideal of x^2 + x*y + y^2 holds neither x nor y, but its only real point is the origin."""
     field = Field(["x", "y"])
     x, y = field["x"], field["y"]
-    point = Ideal(field, [x**2 + y**2], "x^2 + y^2 = 0")
-    decision = decide_zero([x], field, point)
-    assert decision.verdict is Verdict.SUPPORTED
-    assert "points where x^2 + y^2 = 0" in decision.method
+    point = Ideal(field, [x**2 + x * y + y**2], "x^2 + x*y + y^2 = 0")
+    assert not point.contains(x)
+    assert decide_zero([x, y], field, point).verdict is Verdict.PROVED
     assert decide_zero([x + 1], field, point).verdict is Verdict.REFUTED
 
 
-def test_empty_zero_set_proves_nothing():
-    """Nothing real satisfies x^2 + 1 = 0, and a remainder is shown."""
+def test_real_zero_sets_may_be_smaller_than_ideals_tell():
+    """A definite quartic vanishes at the origin alone, and no sign tells: supported, no more."""
+    field = Field(["x", "y"])
+    x, y = field["x"], field["y"]
+    point = Ideal(field, [x**4 + x**2 * y**2 + x * y**3 + y**4], "that = 0")
+    decision = decide_zero([x], field, point)
+    assert decision.verdict is Verdict.SUPPORTED
+    assert "points where that = 0" in decision.method
+    assert decide_zero([x + 1], field, point).verdict is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("constant", [1, Fraction(1, 10**6)])
+@pytest.mark.parametrize("power", [2, 4])
+def test_empty_zero_sets_decide_nothing(power, constant):
+    """Nothing real satisfies x^2 + 1 = 0; neither is x zero there, nor is it not."""
     field = Field(["x"])
-    empty = Ideal(field, [field["x"] ** 2 + 1], "x^2 + 1 = 0")
-    decision = decide_zero([field["x"]], field, empty)
-    assert decision.verdict is Verdict.REFUTED
-    assert "no real point" in decision.method
-    assert decision.defect == "x"
+    empty = Ideal(field, [field["x"] ** power + constant], "x^2 + 1 = 0")
+    for element in (field["x"], field.zero, field["x"] ** power + constant):
+        with pytest.raises(UndecidedError, match=r"x\^2 \+ 1 = 0"):
+            decide_zero([element], field, empty)
 
 
 def test_several_relations_are_reduced_together():

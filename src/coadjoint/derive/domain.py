@@ -5,17 +5,20 @@ minus the other, then, for constrained motions, one for each pivot of the solves
 the sign that it has for a positive kinetic energy: plus for accelerations, minus for multipliers,
 since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A M^-1 A^T``. It is one place for every
 route, since conditions are the spec's and pivots those of the emitted solves.
+Claims are looked at in the same domain, which is a `Region` of the field.
 Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what becomes of it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.kinematics import multiplier_name
 from coadjoint.derive.solver import pivot_name
-from coadjoint.exact import Element
+from coadjoint.exact import Condition, Element, Region
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,40 @@ def bounds(equations: Equations) -> tuple[Bound, ...]:
         inputs = _inputs(equations, value)
         found.append(Bound(condition.name, "condition", value, strict, inputs))
     return (*found, *_pivots(equations))
+
+
+def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyType({})) -> Region:
+    """Where claims about a system are looked at: where its bounds hold and its motion has values.
+
+    Args:
+        equations: By the emitted route.
+        momenta: The momenta in terms of velocities, for what is written in these.
+    """
+    found = [Condition(each.element, each.strict) for each in bounds(equations)]
+    return replace(
+        equations.setting.field.region,
+        conditions=(*found, *_arguments(equations)),
+        definitions=dict(equations.exact.definitions),
+        momenta=momenta,
+    )
+
+
+def _arguments(equations: Equations) -> list[Condition]:
+    """Arguments of square roots and logarithms in the energy and the rates: they are positive.
+
+    A root has no slope where its argument is zero.
+    """
+    field, exact = equations.setting.field, equations.exact
+    written = [value for _, value in exact.definitions] + list(exact.rates)
+    written += [exact.energy] if exact.energy is not None else []
+    called = {name for each in written for name in field.functions_in(each)}
+    return [
+        Condition(known.argument, strict=True)
+        for known in field.adjoined.values()
+        if known.generator in called
+        and known.function in ("sqrt", "log")
+        and field.as_number(known.argument) is None
+    ]
 
 
 def _pivots(equations: Equations) -> list[Bound]:

@@ -63,10 +63,29 @@ def restricted(setting: Setting, route: Route) -> Equations:
     whole, rates = restriction.whole, restriction.rates
     assert whole.exact.energy is not None, "the reader asks for a Hamiltonian"
     energy = restriction(whole.exact.energy)
+    _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
     section = tuple(restriction.section.items())
     exact = Exact(section, kept, energy, observables(setting, energy), None)
     return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
+
+
+def _check_regular(restriction: Restriction, energy: Element) -> None:
+    """The section does not lie where the motion of the whole system has a pole."""
+    field = restriction.setting.field
+    for name, value in {"the energy": energy, **restriction.rates}.items():
+        try:
+            field.substitute(value, restriction.section)
+        except ZeroDivisionError as error:
+            what = name if name == "the energy" else f"the rate of {name}"
+            raise refusal(
+                restriction.setting,
+                restriction.whole.route,
+                f"{what} has a pole everywhere on the section",
+                what,
+                "a section on which the motion of the whole system is defined",
+                "Correct [reduction], or the Hamiltonian.",
+            ) from error
 
 
 def whole_equations(setting: Setting, route: Route) -> Equations:

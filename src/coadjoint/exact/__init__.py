@@ -7,6 +7,7 @@ SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
 from coadjoint.exact.element import BudgetSpent, Element
 from coadjoint.exact.field import Condition, Field
 from coadjoint.exact.jets import JetField
+from coadjoint.exact.region import Region
 from coadjoint.exact.text import element_text
 
-__all__ = ["BudgetSpent", "Condition", "Element", "Field", "JetField", "element_text"]
+__all__ = ["BudgetSpent", "Condition", "Element", "Field", "JetField", "Region", "element_text"]

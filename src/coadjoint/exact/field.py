@@ -23,6 +23,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.region import Region
 from coadjoint.exact.written import Adjoined, Monomial, Written
 
 Value = TypeVar("Value")
@@ -71,11 +72,14 @@ class Field:
     def __init__(self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()) -> None:
         self.names = tuple(names)
         self.positive = frozenset(positive)
+        #: Where values are looked at.
+        self.region = Region()
         # A spec name cannot begin with an underscore, so a slot cannot meet one.
         # Two for each function: sine and cosine come together.
         self._free = [f"_f{n + 1}" for n in range(2 * slots)]
         self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
         self._factors = Factors(self._ring, len(self._free))
+        self._factors.is_hidden_zero = self._is_hidden_zero
         self._names = (*names, *self._free)
         self._position = {name: n for n, name in enumerate(self._names)}
         self._generators = {
@@ -173,6 +177,9 @@ class Field:
 
         ``tan`` becomes ``sin / cos``, ``sin(-x)`` is ``-sin(x)``, and the square root of a square
         is its root where that has a declared sign.
+
+        Raises:
+            OverflowError: There are more functions than the field has room for.
         """
         from coadjoint.exact.values import known_value  # which needs fields
 
@@ -186,6 +193,8 @@ class Field:
                 return self[known.generator]
         if (value := known_value(self, function, argument)) is not None:
             return value
+        if len(self._free) < 2:
+            raise OverflowError(f"no room left for {function}")
         if function in ("sin", "cos"):  # always both: each is the derivative of the other
             cosine, sine = self._free[:2]
             self._adjoin("cos", argument, sine)
@@ -193,8 +202,12 @@ class Field:
             return self[sine if function == "sin" else cosine]
         return self._adjoin(function, argument)
 
+    @property
+    def room(self) -> int:
+        """How many generators are left for functions; sines and cosines take two."""
+        return len(self._free)
+
     def _adjoin(self, function: str, argument: Element, partner: str = "") -> Element:
-        assert self._free, f"no slot left for {function}"
         generator = self._free.pop(0)
         self.adjoined[generator] = Adjoined(generator, function, argument, partner)
         return self[generator]
@@ -252,6 +265,12 @@ class Field:
         ``sqrt(3 + 2*sqrt(2)) - 1 - sqrt(2)``; `coadjoint.exact.witness` says what is not zero.
         """
         return bool(self.normal(element) == 0)
+
+    def _is_hidden_zero(self, divisor: Element) -> bool:
+        """Whether a divisor that is a single quotient is zero by the relations of its functions."""
+        if not self.adjoined or len(divisor.parts[0].numer) == 1:
+            return False
+        return self.is_zero(divisor)
 
     def function_free(self, element: Element) -> bool:
         """Whether no adjoined function occurs, so that the normal form decides both ways."""

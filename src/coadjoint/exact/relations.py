@@ -52,6 +52,10 @@ EXPANDED = 64
 SPARE = 3
 
 
+#: What a term costs to rewrite, in products of two terms.
+WORK = 20
+
+
 class Relations:
     """Some functions of a field in independent ones.
 
@@ -263,31 +267,28 @@ class Relations:
         return reduce(mul, signs, self.ring.number((-1) ** number))
 
     def _sign_generator(self, factor: Factor) -> Element:
-        """The sign of a factor; a sign is its own."""
-        for known in self._signs.values():
-            if factor == _numerator(known):
-                return known
+        """The sign of a factor."""
         if factor not in self._signs:
             self._signs[factor] = self._new(square=self.ring.one)
         return self._signs[factor]
 
     def _plain_signs(self, factors: frozenset[Factor]) -> tuple[frozenset[Factor], int]:
         """The factors without a sign of their own, and how many others are negative."""
-        left, number = set[Factor](), 0
+        left, number = frozenset[Factor](), 0
+        signs = {_numerator(sign): factor for factor, sign in self._signs.items()}
         for factor in factors:
             found = self._own_sign(factor)
-            if found:
-                number += found < 0
-            else:
-                left.add(factor)
-        return frozenset(left), number % 2
+            number += found < 0
+            if not found:
+                left ^= {signs.get(factor, factor)}  # a sign has that of its factor
+        return left, number % 2
 
     def _own_sign(self, factor: Factor) -> int:
         """The sign of a factor that its terms show; of one that may be 0, its other values'."""
         if isinstance(factor, int):
             return 1 if factor > 0 else -1
         generators = self.ring.generators
-        return sign_of_sum(factor, lambda n: int(generators[n] in self._positive), strict=False)
+        return sign_of_sum(factor, lambda n: 2 * (generators[n] in self._positive), strict=False)
 
     def _note_positive(self, vector: Powers) -> None:
         """Remember that a product of powers of factors is positive."""
@@ -379,7 +380,11 @@ def relations_of(field: Field, names: frozenset[str]) -> Relations | None:
     for asked in (frozenset(field.adjoined), names):
         if asked not in field.relations:
             field.relations[asked] = None  # for what the arguments themselves ask
-            field.relations[asked] = _found_relations(field, asked)
+            try:
+                field.relations[asked] = _found_relations(field, asked)
+            except BaseException:  # a budget that is spent says nothing of relations
+                del field.relations[asked]
+                raise
         if field.relations[asked] is None:
             return None
     known = field.relations[names]
@@ -405,6 +410,8 @@ def vanish_by_relations(field: Field, element: Element, called: frozenset[str]) 
             defined, its radicand is not negative.
     """
     known = relations_of(field, called)
+    if known is not None:
+        element.factors.spend(WORK * len(field.terms(element)))
     defined = [field[name] for name in sorted(called)]
     if known is None or witness_nonzero(field, element, defined, tries=1) is not None:
         return False

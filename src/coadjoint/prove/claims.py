@@ -7,21 +7,22 @@ Read next: `coadjoint.prove.identities` for what must be zero, `coadjoint.prove.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache, partial
 from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.domain import region
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.reconstruction import fixed_row
 from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Element
-from coadjoint.prove.almost_poisson import about_reduced_bracket
+from coadjoint.exact import Element, Field, Region
+from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
 from coadjoint.prove.candidates import about_candidates, known_integrals
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
@@ -54,6 +55,7 @@ from coadjoint.prove.zero import (
     Decision,
     Discovery,
     Examined,
+    UndecidedError,
     claimed_by,
     decide_zero,
     make_entry,
@@ -74,16 +76,16 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
 
     Raises:
         DerivationError: A route cannot be followed.
+        UndecidedError: No point is found at which a claim has a value.
     """
     if not routes:
         setting = make_setting(spec)
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
     field = routes[0].setting.field
+    field.region = _region(routes[0])
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
-        found = examine()
-        if not isinstance(found, Decision | Discovery):
-            found = decide_zero(found, field)
+        found = _examined(spec, statement, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
         entry = make_entry(statement, kind, found, seconds)
         if isinstance(entry, Claim):
@@ -91,6 +93,32 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         else:
             findings.append(entry)
     return Certificate(spec.name, tuple(claims), tuple(findings))
+
+
+def _examined(
+    spec: Spec,
+    statement: str,
+    examine: Callable[[], Sequence[Element] | Decision | Discovery],
+    field: Field,
+) -> Decision | Discovery:
+    """What becomes of one claim.
+
+    Raises:
+        UndecidedError: No point is found at which it could fail; with the claim.
+    """
+    try:
+        found = examine()
+        return found if isinstance(found, Decision | Discovery) else decide_zero(found, field)
+    except UndecidedError as error:
+        raise UndecidedError(
+            f"{spec.name}: undecided: {statement}: {error}", system=spec.name, found=statement
+        ) from error
+
+
+def _region(first: Equations) -> Region:
+    """Where claims are looked at: the domain of the spec."""
+    momenta = LegendreMap(first).momenta if LegendreMap.applies(first) else {}
+    return region(first, momenta)
 
 
 def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
@@ -110,6 +138,7 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
                     first.spec, ("claims", "conserved", place), claimed, motion.field
                 )
         yield from about_momenta(motion)
+        yield from about_reduced_bracket(motion)
         yield from _searched(motion, _emitted(first))
         return
     yield from _about_bracket(first)
@@ -127,7 +156,7 @@ def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iter
     """What is found out about a constrained motion, each search with a budget of its own."""
     searches: dict[tuple[str, str], Iterator[Examined]] = {
         ("integrability", "the growth vector"): about_integrability(motion.equations),
-        ("bracket", "the bracket of the reduced momenta"): about_reduced_bracket(motion),
+        ("jacobi", "the Jacobi identity of the reduced bracket"): about_reduced_jacobi(motion),
         ("transformation", "the reversal of time"): about_reversal(motion),
         ("integrals", "integrals"): _integrals(motion, emitted),
         ("measure", "invariant measures"): about_measure(motion),
@@ -190,10 +219,11 @@ def _constants(algebra: LieAlgebra) -> Decision:
 
 def _about_legendre(routes: Sequence[Equations], pulled: LegendreMap) -> Iterator[Examined]:
     """The Legendre transform and its energy, on every route."""
+    found = pulled.invertible
     yield (
-        "the Legendre transform is invertible for generic parameters",
+        f"the Legendre transform is invertible {found.where}",
         "legendre",
-        lambda: _invertible(pulled),
+        lambda: Decision(Verdict.PROVED, found.method),
     )
     for equations in routes:
         yield from about_duality(equations)
@@ -217,12 +247,6 @@ def _about_legendre(routes: Sequence[Equations], pulled: LegendreMap) -> Iterato
                 "legendre",
                 partial(pulled.velocity_defects, equations),
             )
-
-
-def _invertible(pulled: LegendreMap) -> Decision:
-    """That no block of the mass matrix is singular everywhere."""
-    assert pulled.is_invertible(), "legendre_transform refuses these"
-    return Decision(Verdict.PROVED, "nonzero determinants of the blocks of d2l/dxi2")
 
 
 def _about_equality(
@@ -321,26 +345,24 @@ def _casimir(first: Equations, casimir: Formula) -> Decision:
     """Whether all components of a claimed Casimir commute with the state."""
     parts = first.setting.components(casimir)
     defects = [defect for part in parts for defect in casimir_defects(first, part)]
-    return decide_zero(defects, first.setting.field)
+    return decide_zero(defects, first.setting.field, None, in_velocities(first, parts))
 
 
-def _integral(first: Equations, claim: Integral) -> Sequence[Element] | Decision:
+def _integral(first: Equations, claim: Integral) -> Decision:
     """The rates of all components of a claimed integral: zero everywhere, or on its level set.
 
     The motion must stay on the level set, too: there the functions that define it keep the value 0.
     """
+    names, field = _emitted(first), first.setting.field
     rates = _rates(first, claim.formula)
+    parts = in_velocities(first, first.setting.components(claim.formula, names))
     if not claim.where:
-        return rates
-    names = _emitted(first)
+        return decide_zero(rates, field, None, parts)
     functions = [g for f in claim.where for g in first.setting.components(f, names)]
     level = in_velocities(first, functions)
     kept = [rate for formula in claim.where for rate in _rates(first, formula)]
-    field = first.setting.field
-    ideal = Ideal(field, level, _vanishing(claim))
-    if ideal.contains(field.one):  # on an empty set anything is conserved
-        return Decision(Verdict.REFUTED, f"{ideal.text} holds nowhere", {}, "1")
-    return decide_zero([*kept, *rates], field, ideal)
+    where = Ideal(field, level, _vanishing(claim))
+    return decide_zero([*kept, *rates], field, where, parts)
 
 
 def _statement(claim: Integral) -> str:
@@ -355,12 +377,9 @@ def _constrained_integral(motion: ConstrainedRates, claim: Integral) -> Decision
     parts = first.setting.components(claim.formula, names)
     level = [g for f in claim.where for g in first.setting.components(f, names)]
     rates = [motion.rate(part) for part in (*level, *parts)]
-    functions = [*map(motion.in_state, level), *motion.where.relations]
     text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
-    ideal = Ideal(motion.field, functions, text)
-    if claim.where and ideal.contains(motion.field.one):  # on an empty set anything is conserved
-        return Decision(Verdict.REFUTED, f"{ideal.text} holds nowhere", {}, "1")
-    return decide_zero(rates, motion.field, ideal)
+    where = motion.where.also(list(map(motion.in_state, level)), text)
+    return decide_zero(rates, motion.field, where, list(map(motion.in_state, parts)))
 
 
 def _vanishing(claim: Integral) -> str:

@@ -52,10 +52,15 @@ class ConstrainedRates:
 
     @cached_property
     def where(self) -> Ideal:
-        """The constraints that are kept, as relations of the state."""
+        """The constraints that are kept, as relations of the state.
+
+        No motion is defined where they depend on each other, as where one has no velocity left:
+        ``q*u == q*v`` at q = 0. There a claim says nothing, and the certificate says so.
+        """
         kept = self.distribution.kept
         text = ", ".join(f"{equation.name} = 0" for equation, _ in kept)
-        return Ideal(self.field, [residual for _, residual in kept], text)
+        nonzero = _rank_drops(self.distribution)
+        return Ideal(self.field, [residual for _, residual in kept], text, nonzero=nonzero)
 
     @cached_property
     def rates(self) -> dict[str, Element]:
@@ -225,13 +230,25 @@ def _gram(found: Distribution) -> Element | None:
     Over the real numbers it is zero exactly where these depend on each other. None of more than
     three, whose determinant would fill a page.
     """
-    field, rows = found.setting.field, [row[:-1] for row in kept_rows(found)]
-    if len(rows) > LARGEST_BLOCK:
+    products = _products(found)
+    if len(products) > LARGEST_BLOCK:
         return None
-    products = tuple(
+    return found.setting.field.normal(determinant(products))
+
+
+def _rank_drops(found: Distribution) -> list[Element]:
+    """What is zero where the constraints that are kept depend on each other."""
+    products = _products(found)
+    rows = [row[n] for n, row in enumerate(products)]
+    return [*rows, determinant(products)] if 1 < len(products) <= LARGEST_BLOCK else rows
+
+
+def _products(found: Distribution) -> tuple[Row, ...]:
+    """``A A^T`` of the constraints that are kept, in the velocities of the state."""
+    field, rows = found.setting.field, [row[:-1] for row in kept_rows(found)]
+    return tuple(
         tuple(field.sum(x * y for x, y in zip(a, b, strict=True)) for b in rows) for a in rows
     )
-    return field.normal(determinant(products))
 
 
 def _solved(first: Equations) -> list[Element]:
@@ -245,18 +262,20 @@ def _solved(first: Equations) -> list[Element]:
 
 
 def _same_solves(first: Equations, other: Equations) -> list[Element]:
-    """Differences of the linear equations of two routes, and of the rates they do not solve for.
+    """Differences of the linear equations of two routes, and of the rates.
 
     The equations are compared entry by entry, whatever blocks each route has found in them.
     """
     one, two = _linear_equations(first), _linear_equations(other)
-    zero = first.setting.field.zero
+    field = first.setting.field
+    defects = [one.get(at, field.zero) - two.get(at, field.zero) for at in {**one, **two}]
     solved = {name for solve in first.exact.solves for name in solve.names}
-    rates = zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True)
-    return [
-        *(one.get(place, zero) - two.get(place, zero) for place in {**one, **two}),
-        *(first.closed(a) - other.closed(b) for x, a, b in rates if rate_name(x) not in solved),
-    ]
+    for x, a, b in zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True):
+        if rate_name(x) in solved:  # each is what its own equations are solved for
+            defects += [a - field[rate_name(x)], b - field[rate_name(x)]]
+        else:
+            defects.append(first.closed(a) - other.closed(b))
+    return defects
 
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:

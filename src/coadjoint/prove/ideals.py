@@ -1,28 +1,44 @@
-"""Ideals: what is zero where given relations hold, such as ``Pi . Gamma = 0``.
+r"""Ideals: what is zero where given relations hold, such as ``Pi . Gamma = 0``.
 
 Comes in: the relations, as elements of the field. Goes out: remainders modulo the ideal that their
-numerators generate, and points where all of them vanish. A remainder of zero proves that an element
-vanishes wherever the relations do and its denominator does not; a counter-example on the zero set
-refutes it. Read next: `coadjoint.prove.zero`.
+numerators generate, and the branches of their zero set. A remainder of zero proves that an element
+vanishes wherever the relations do and its denominator does not. One that is not zero proves
+nothing: ``x y = 0`` holds where x = 0, and where y = 0, and there each relation is looked at anew.
+
+.. math:: Z(f g, r) = Z(f, r) \cup Z(g, r), \qquad
+    Z(s x + t, r) = Z(x + t/s, r) \setminus Z(s) \;\cup\; Z(s, t, r)
+
+A factor that a declared sign or inequality keeps from zero is dropped. So is one of parameters
+alone, since claims hold for almost all parameters, and the text says so.
+Read next: `coadjoint.prove.zero`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 from typing import Any
 
-import mpmath
 from sympy.polys.groebnertools import groebner
-from sympy.polys.orderings import grevlex
+from sympy.polys.orderings import grevlex, lex
 from sympy.polys.rings import PolyElement, PolyRing
 
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.prove.points import Branch, Points, Values, real_function
+from coadjoint.prove.signs import Signs
 
-#: Steps of Newton's method; it halves an error at least, also where the zero set is singular.
-STEPS = 150
+#: Branches of a zero set that are told apart; beyond them relations stay as they are.
+BRANCHES = 32
+#: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
+SLOPE = 4
+
+#: Addends of a relation that is factored; larger ones may take minutes.
+FACTORED = 400
+
+_Numerators = dict[tuple[int, ...], PolyElement]
 
 
 class Ideal:
@@ -32,13 +48,17 @@ class Ideal:
         field: Where the elements live.
         relations: What is zero.
         text: The relations for people, ``dot(Pi, Gamma) = 0``.
-        variables: Symbols that `solved` may solve for; by default all.
+        variables: Symbols that may be solved for; by default all but parameters.
+        nonzero: What is not zero where the relations are looked at, beside what has a declared
+            sign: where the rows of constraints vanish, no motion is defined.
 
     >>> field = Field(["x", "y", "z"])
     >>> x, y, z = field["x"], field["y"], field["z"]
     >>> ideal = Ideal(field, [x * y - z], "x*y = z")
     >>> ideal.contains(x**2 * y / z - x), ideal.contains(x - y)
     (True, False)
+    >>> [dict(branch.solved) for branch in Ideal(field, [x * y]).branches]
+    [{'x': 0}, {'y': 0}]
     """
 
     def __init__(
@@ -47,12 +67,22 @@ class Ideal:
         relations: Sequence[Element],
         text: str = "",
         variables: Sequence[str] = (),
+        nonzero: Sequence[Element] = (),
     ) -> None:
         self.field = field
-        self._variables = frozenset(variables or field.names)
-        self.relations = tuple(map(field.normal, relations))
         self.text = text
-        numerators = [_numerator(each) for each in self.relations if each != 0]
+        self.nonzero = tuple(nonzero)
+        self._signs = Signs(field)
+        parameters = field.region.parameters
+        self._variables = frozenset(variables or field.names) - parameters
+        self._declared: Sequence[Element] | None = None  # relations of parameters, once these split
+        self.excluded: list[Element] = []  # factors that nothing declared keeps from zero
+        found = [each for each in map(field.normal, relations) if each != 0]
+        self.given = tuple(found)
+        self._between_parameters = [each for each in found if self._is_generic(each)]
+        self.relations = tuple(map(self._stripped, found))
+        numerators = list(map(_numerator, self.relations))
+        numerators += map(_numerator, self._of_functions())
         self._places = sorted(
             {n for p in numerators for exponents in p for n, e in enumerate(exponents) if e}
         )
@@ -60,24 +90,45 @@ class Ideal:
             whole = numerators[0].ring
             symbols = [whole.symbols[n] for n in self._places]
             self._ring = PolyRing(symbols, whole.domain, grevlex)  # half the time of lex
-        own = [poly for p in numerators for poly in self._coefficients(p).values()]
-        self._basis = _groebner_basis(own)
+        self._basis = _groebner_basis(
+            [poly for p in numerators for poly in self._coefficients(p).values()]
+        )
+
+    def also(self, relations: Sequence[Element], text: str) -> Ideal:
+        """The ideal with further relations, under a text for all; what is not zero stays so."""
+        whole = Ideal(self.field, [*relations, *self.relations], text, nonzero=self.nonzero)
+        whole.excluded += [each for each in self.excluded if each not in whole.excluded]
+        return whole
+
+    @property
+    def scope(self) -> str:
+        """The relations for people, and what is not zero beside them."""
+        shown = sorted(element_text(self.field, each) for each in self.excluded)
+        return ", ".join([*filter(None, [self.text]), *(f"{each} not 0" for each in shown)])
+
+    # -- the ideal ------------------------------------------------------------------------
 
     def remainder(self, element: Element) -> Element:
-        """The remainder of an element's numerator; 0 if and only if the ideal contains it."""
+        """The remainder of an element's numerator; 0 only if the ideal contains it."""
         combined = self.field.normal(element).combined()
         if combined == 0 or not self._basis:
             return combined
         terms: dict[tuple[int, ...], Any] = {}
-        for outer, inner in self._coefficients(_numerator(combined)).items():
+        numerator = _numerator(combined)
+        for outer, inner in self._coefficients(numerator).items():
             for exponents, value in inner.rem(self._basis).terms():
                 whole = list(outer)
                 for place, exponent in zip(self._places, exponents, strict=True):
                     whole[place] = exponent
                 terms[tuple(whole)] = value
-        return self.field.polynomial(self.field.names, terms)
+        names = [str(symbol) for symbol in numerator.ring.symbols]  # functions among them
+        return self.field.normal(self.field.polynomial(names, terms))
 
-    def _coefficients(self, numerator: PolyElement) -> dict[tuple[int, ...], PolyElement]:
+    def contains(self, element: Element) -> bool:
+        """Whether an element vanishes wherever the relations do, as the ideal shows."""
+        return bool(self.remainder(element) == 0)
+
+    def _coefficients(self, numerator: PolyElement) -> _Numerators:
         """A polynomial as one in the symbols that no relation has; its coefficients by exponents.
 
         Each is reduced by itself, among the few symbols of the relations: for two coupled bodies,
@@ -90,92 +141,219 @@ class Ideal:
             parts.setdefault(tuple(outer), {})[inner] = value
         return {outer: self._ring.from_dict(terms) for outer, terms in parts.items()}
 
-    def contains(self, element: Element) -> bool:
-        """Whether an element vanishes wherever the relations do, as the ideal shows."""
-        return bool(self.remainder(element) == 0)
+    def _of_functions(self) -> list[Element]:
+        """The relations of the functions that the relations have: ``s^2 + c^2 = 1``."""
+        field, found = self.field, list[Element]()
+        called = {g for each in self.relations for g in field.functions_in(each)}
+        for known in field.adjoined.values():
+            own = field[known.generator]
+            if known.generator in called and known.function == "sqrt":
+                found.append(own**2 - known.argument)
+            if known.function == "sin" and {known.generator, known.partner} & called:
+                found.append(own**2 + field[known.partner] ** 2 - 1)
+        return found
+
+    def _stripped(self, relation: Element) -> Element:
+        """A relation without factors that are not zero; those that only we exclude are noted."""
+        factors = self._factors(relation)
+        generic = [] if self._between_parameters else list(filter(self._is_generic, factors))
+        kept = [factor for factor in factors if factor not in generic]
+        if not kept:  # a relation between parameters, or one that holds nowhere
+            return relation
+        for factor in factors:
+            if factor not in kept:
+                self._exclude(factor)
+        return _product(kept)
+
+    def may_vanish(self, element: Element) -> bool:
+        """Whether a polynomial in what moves may vanish, as far as we know, beside what does."""
+        moves = not self.field.reach(element) <= self.field.region.parameters
+        return moves and not self._signs.is_nonzero(element, self.excluded)
+
+    # -- branches of the zero set ---------------------------------------------------------
 
     @cached_property
-    def solved(self) -> Mapping[str, Element]:
-        """Some symbols in terms of the others, on the zero set.
+    def branches(self) -> tuple[Branch, ...]:
+        """Parts of the zero set that are all of it, but for what is excluded; none if it is empty.
 
-        A relation is solved for the first symbol in which it is linear; one that is linear in none
-        is left, and then these are fewer than the relations.
+        What holds on each of them, and has no pole there, holds on the zero set.
         """
-        known: dict[str, Element] = {}
-        for relation in self.relations:
-            value = self.field.substitute(relation, known)
-            for name in sorted(self.field.names_in(value) & self._variables):
-                slope = self.field.derivative(value, name)
-                if not self.field.is_zero(slope) and name not in self.field.reach(slope):
-                    root = -self.field.substitute(value, {name: self.field.zero}) / slope
-                    known = {n: self.field.substitute(v, {name: root}) for n, v in known.items()}
-                    known[name] = root
-                    break
-        return known
+        self._count, own = 0, self._between_parameters
+        others = [each for each in self.relations if each not in own]
+        found = list[Branch]()
+        for first in self._split(own, Branch()):
+            self._declared = first.rest
+            start = Branch(first.solved, (), first.nonzero)
+            found += self._split([*first.rest, *others], start)
+        return tuple(found)
+
+    @cached_property
+    def some_points(self) -> tuple[tuple[Points, Values], ...]:
+        """A point of the zero set, in the assumed region; none if none is found."""
+        return tuple(islice(self.points(), 1))
+
+    def points(self, defined: Sequence[Element] = ()) -> Iterator[tuple[Points, Values]]:
+        """Points of the zero set; the first ones near the defaults, where none need be solved for.
+
+        Args:
+            defined: Functions that must have values there.
+        """
+        functions = (*self.given, *defined)
+        whole = Points(self.field, (), Branch(rest=self.relations), functions)
+        yield from ((whole, point) for point in whole.near_defaults())
+        for branch in self.branches:
+            with suppress(ZeroDivisionError):
+                points = Points(self.field, (), branch, functions)
+                yield from ((points, point) for point in points)
+
+    def _split(self, relations: Sequence[Element], branch: Branch) -> Iterator[Branch]:
+        """The branches of some relations below what is solved for already."""
+        try:
+            left = [self.field.normal(self._on(branch, each)) for each in relations]
+        except ZeroDivisionError:  # where that vanishes is a branch of its own
+            return
+        left = [each for each in left if each != 0]
+        if self._count >= BRANCHES:
+            yield Branch(branch.solved, tuple(left), branch.nonzero)
+            return
+        for n, relation in enumerate(left):
+            factors = [f for f in self._factors(relation, branch.nonzero) if self._may_vanish(f)]
+            if len(factors) != 1:
+                others = [*left[:n], *left[n + 1 :]]
+                for count, factor in enumerate(factors):
+                    self._count += count > 0
+                    yield from self._split([factor, *others], branch)
+                return
+            left[n] = factors[0]
+        squares = [self._signs.squares(relation) for relation in left]
+        if any(squares):
+            parts = (s or [r] for s, r in zip(squares, left, strict=True))
+            yield from self._split([each for part in parts for each in part], branch)
+            return
+        yield from self._solve(left, branch)
+
+    def _solve(self, left: list[Element], branch: Branch) -> Iterator[Branch]:
+        """The branches of irreducible relations: one is solved, and the others are looked at."""
+        choices = sorted(self._linear(left, branch), key=lambda choice: choice[0])
+        if not choices:
+            yield Branch(branch.solved, tuple(left), branch.nonzero)
+            return
+        (divides, size, *_), n, name, slope = choices[0]
+        field, relation = self.field, left[n]
+        # An irreducible relation alone generates a prime ideal, on all of which vanishes what does
+        # where the slope is not 0; with functions it need not be irreducible.
+        factored = len(_numerator(relation)) <= FACTORED
+        alone = len(left) == 1 and factored and field.function_free(relation)
+        if divides and not alone and size > SLOPE:
+            yield Branch(branch.solved, tuple(left), branch.nonzero)
+            return
+        rest = field.substitute(relation, {name: field.zero})
+        root, others = -rest / slope, [*left[:n], *left[n + 1 :]]
+        try:
+            known = {x: field.substitute(v, {name: root}) for x, v in branch.solved.items()}
+        except ZeroDivisionError:
+            return
+        nonzero = (*branch.nonzero, slope) if divides else branch.nonzero
+        yield from self._split(others, Branch({**known, name: root}, (), nonzero))
+        if divides and not alone:
+            self._count += 1
+            yield from self._split([slope, rest, *others], branch)
+
+    def _linear(
+        self, left: Sequence[Element], branch: Branch
+    ) -> Iterator[tuple[tuple[Any, ...], int, str, Element]]:
+        """Symbols for which relations can be solved, with their slopes; keys sort the best first.
+
+        The best slope is one that vanishes nowhere, then one of few addends.
+        """
+        for n, relation in enumerate(left):
+            names = self.field.reach(relation)
+            between_parameters = names <= self.field.region.parameters
+            allowed = names if between_parameters else names & self._variables
+            for name in sorted(allowed, key=self.field.names.index):
+                if not self._has_room(name):
+                    continue
+                slope = self.field.derivative(relation, name)
+                if slope == 0 or name in self.field.reach(slope):
+                    continue
+                divides = not self._signs.is_nonzero(slope, branch.nonzero)
+                size = len(self.field.terms(slope))
+                yield (divides, size, n, self.field.names.index(name)), n, name, slope
+
+    def _has_room(self, name: str) -> bool:
+        """Whether the functions of a symbol can be called with another argument."""
+        called = [a for a in self.field.adjoined.values() if name in self.field.reach(a.argument)]
+        return 2 * len(called) <= self.field.room
+
+    def _factors(self, relation: Element, nonzero: Sequence[Element] = ()) -> list[Element]:
+        """The irreducible factors of a numerator that may vanish, each once."""
+        numerator, found = _numerator(relation), list[Element]()
+        if len(numerator) > FACTORED:
+            return [relation]
+        for names, factor in _irreducible(numerator):
+            element = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
+            if self._signs.is_nonzero(element, nonzero):
+                continue
+            if self._signs.is_factor(element, self.nonzero):
+                self._exclude(element)
+                continue
+            root = self._signs.argument(element)  # sqrt(u) = 0 where u = 0
+            found += self._factors(root, nonzero) if root is not None else [element]
+        return [each for n, each in enumerate(found) if each not in found[:n]]
+
+    def _may_vanish(self, factor: Element) -> bool:
+        """Whether a factor is no relation between parameters that only the others bring about."""
+        if self._declared is not None and self._is_generic(factor, self._declared):
+            self._exclude(factor)
+            return False
+        return True
+
+    def _is_generic(self, element: Element, but: Sequence[Element] = ()) -> bool:
+        """Whether an element has symbols, and these are parameters; some are declared to vanish."""
+        reached = self.field.reach(element)
+        return bool(reached) and reached <= self.field.region.parameters and element not in but
+
+    def _exclude(self, factor: Element) -> None:
+        if factor not in self.excluded:
+            self.excluded.append(factor)
+
+    def _on(self, branch: Branch, element: Element) -> Element:
+        return self.field.substitute(element, branch.solved)
+
+    # -- one branch for what is said of almost all points ----------------------------------
+
+    @property
+    def solved(self) -> Mapping[str, Element]:
+        """Some symbols in terms of the others, on the first branch: at its generic points."""
+        return self.branches[0].solved if self.branches else {}
 
     @property
     def is_solved(self) -> bool:
-        """Whether `solved` gives all of the zero set, but for where its denominators vanish."""
-        return len(self.solved) == len(self.relations)
+        """Whether there is one branch, and `solved` gives all of it but for poles."""
+        return len(self.branches) == 1 and not self.branches[0].rest
 
     def on_zero_set(self, element: Element) -> Element:
         """An element with the solved symbols replaced."""
         return self.field.substitute(element, self.solved)
 
     def completed(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
-        """A point of the zero set from values of the symbols that are free.
+        """A point of the zero set from values of the symbols that are free, without functions.
 
         Raises:
             ZeroDivisionError: The solved symbols are not defined there.
         """
         values = {
-            name: self.field.evaluate(root, point, Fraction, _no_call)
+            name: self.field.evaluate(root, point, Fraction, real_function)
             for name, root in self.solved.items()
         }
         return {**point, **values}
 
-    def near(self, starts: Iterable[Mapping[str, Fraction]]) -> Iterator[dict[str, Any]]:
-        """Points of the zero set, to the working precision of mpmath, near rational ones.
 
-        Newton's method along the gradients of the relations; starts from which it does not
-        converge, or leaves the domain of a function, are passed over.
-        """
-        slopes = [self.field.gradient(relation, self.names) for relation in self.relations]
-        for start in starts:
-            point = {name: mpmath.mpf(x.numerator) / x.denominator for name, x in start.items()}
-            with suppress(ZeroDivisionError, ValueError):
-                for _ in range(STEPS):
-                    rest = mpmath.matrix([self._value(each, point) for each in self.relations])
-                    if mpmath.norm(rest, mpmath.inf) < mpmath.mpf(10) ** -(mpmath.mp.dps - 5):
-                        yield point
-                        break
-                    turn = mpmath.matrix([[self._value(s, point) for s in row] for row in slopes])
-                    step = turn.T * mpmath.lu_solve(turn * turn.T, rest)
-                    moved = zip(self.names, step, strict=True)
-                    point = point | {name: point[name] - by for name, by in moved}
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """The variables that occur in the relations, in the order of the field."""
-        present = frozenset[str]().union(*map(self.field.reach, self.relations))
-        return tuple(name for name in self.field.names if name in present & self._variables)
-
-    def _value(self, element: Element, point: Mapping[str, Any]) -> Any:
-        """The value of an element at a real point, functions included."""
-        return self.field.evaluate(
-            element, point, lambda x: mpmath.mpf(x.numerator) / x.denominator, real_function
-        )
-
-
-def real_function(function: str, argument: Any) -> Any:
-    """A real elementary function, to the working precision of mpmath.
-
-    Raises:
-        ValueError: The argument is outside the real domain.
-    """
-    if (argument < 0 and function in ("sqrt", "log")) or (argument == 0 and function == "log"):
-        raise ValueError(f"{function} of {argument}")
-    return getattr(mpmath, function)(argument)
+def _product(factors: Sequence[Element]) -> Element:
+    first, *others = factors
+    for factor in others:
+        first = first * factor
+    return first
 
 
 def _numerator(element: Element) -> PolyElement:
@@ -184,12 +362,20 @@ def _numerator(element: Element) -> PolyElement:
     return quotient.numer
 
 
+def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
+    """The irreducible factors, with the names of their symbols: of those that occur alone."""
+    places = [n for n, degree in enumerate(polynomial.degrees()) if degree > 0]
+    symbols = [polynomial.ring.symbols[n] for n in places]
+    if not symbols:
+        return
+    small = PolyRing(symbols, polynomial.ring.domain, lex)
+    terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
+    for factor, _ in small.from_dict(terms).factor_list()[1]:
+        yield list(map(str, symbols)), factor
+
+
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:
     """A Groebner basis; of one polynomial it is that polynomial."""
     if len(polynomials) < 2:
         return list(polynomials)
     return list(groebner(list(polynomials), polynomials[0].ring))
-
-
-def _no_call(function: str, argument: Fraction) -> Fraction:
-    raise ZeroDivisionError(f"{function}({argument}) is not rational")

@@ -16,7 +16,6 @@ from collections.abc import Iterator
 from coadjoint.derive.followed import arm
 from coadjoint.groups.vectors import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Examined, decide_zero
 
 
@@ -39,11 +38,8 @@ def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
         "rolling",
         lambda: decide_zero([first.closed(x) for x in slip], motion.field, motion.where),
     )
-    unit = Ideal(
-        motion.field,
-        [dot(normal, normal) - 1, *motion.where.relations],
-        " and ".join(filter(None, [f"|{Gamma}| = 1", motion.where.text])),
-    )
+    text = " and ".join(filter(None, [f"|{Gamma}| = 1", motion.where.text]))
+    unit = motion.where.also([dot(normal, normal) - 1], text)
     yield (
         f"the body stays on the plane: dot({Gamma}, d({text})/dt) = 0 where |{Gamma}| = 1",
         "rolling",

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 
 from coadjoint.exact import BudgetSpent, Field
 from coadjoint.limits import SEARCH_WORK
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, UndecidedError, decide_zero
 
 #: The method of a search that ended early.
 ENDED = "the search ended after {work} operations of exact arithmetic"
@@ -40,7 +40,9 @@ def within_budget(
                 if not isinstance(result, Decision | Discovery):
                     result = decide_zero(result, field)
                 found.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
-    except BudgetSpent:
-        end = Discovery(ENDED.format(work=work), "no statement beyond those above")
+    except (BudgetSpent, UndecidedError) as error:
+        spent = isinstance(error, BudgetSpent)
+        method = ENDED.format(work=work) if spent else f"undecided: {error}"
+        end = Discovery(method, "no statement beyond those above")
         found.append((f"{subject}: not searched further", kind, lambda: end))
     yield from found

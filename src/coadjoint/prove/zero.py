@@ -1,37 +1,50 @@
-"""Deciding that elements are zero: by normal form, and where that cannot tell, by 50 digits.
+"""Deciding that elements are zero: by normal form, and where that cannot tell, at points.
 
-Comes in: elements that should be zero. Goes out: a verdict, a method, and a counter-example point
-for what is not zero. Points are small rationals from a fixed sequence, so that every run gives the
-same certificate.
+Comes in: elements that should be zero, everywhere or where relations hold. Goes out: a verdict, a
+method, and a counter-example point for what is not zero. Points lie in the domain that is declared
+and on the zero set of the relations. A value refutes if interval arithmetic keeps it from zero.
+Where no point is found, nothing is decided and an error says so. Points are the same in every run,
+so that every run gives the same certificate.
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
-from itertools import islice
 from typing import Any
 
 import mpmath
 
+from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import enclosure
 from coadjoint.prove.certificate import Claim, Finding, Verdict
-from coadjoint.prove.ideals import Ideal, real_function
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.points import (
+    DIGITS,
+    Branch,
+    Points,
+    Values,
+    random_points,
+    real,
+    real_function,
+)
 from coadjoint.spec import Spec
 from coadjoint.spec.positions import KeyPath
 
-DIGITS = 50
+__all__ = ["DIGITS", "Decision", "Discovery", "decide_zero", "random_points", "real_function"]
+
 #: Points at which a nonzero normal form is tried before it counts as numerically supported.
 POINTS = 20
 #: Relative size below which a 50-digit value counts as zero; cancellation may cost 20 digits.
 NEGLIGIBLE = mpmath.mpf(10) ** -(DIGITS - 20)
-#: Size below which a value counts as zero at points of a zero set found by iteration; where the
-#: zero set is singular such points have half the digits.
-ON_ZERO_SET = mpmath.mpf(10) ** -12
+#: Size below which a value counts as zero at points of a zero set found by iteration.
+ON_ZERO_SET = mpmath.mpf(10) ** -20
+#: Denominators that a method shows, and the length of each.
+SHOWN, SHOWN_TEXT = 3, 40
 NORMAL_FORM = "normal form in the field of rational functions"
 CONSTANTS = "exact arithmetic on the structure constants"
 NORMAL_FORM_WITH_FUNCTIONS = "normal form modulo the relations of the elementary functions"
@@ -121,141 +134,254 @@ def _marked(
     return replace(decision, accepted=accepted)
 
 
-def decide_zero(elements: Sequence[Element], ring: Field, where: Ideal | None = None) -> Decision:
-    """Whether every element is zero.
+def decide_zero(
+    elements: Sequence[Element],
+    ring: Field,
+    where: Ideal | None = None,
+    defined: Sequence[Element] = (),
+) -> Decision:
+    """Whether every element is zero, in the region that is assumed of the field.
 
-    A normal form of zero is a proof. A nonzero one refutes where no elementary function occurs;
-    otherwise 50-digit values at random points refute, or support and say so.
+    A normal form of zero is a proof. Of anything else values at points refute, or support.
 
     Args:
         elements: What should be zero.
         ring: Where they live.
         where: Relations on whose zero set alone they should be zero; by default everywhere.
+        defined: Functions that must have values where something is decided: those whose rates the
+            elements are.
+
+    Raises:
+        UndecidedError: The elements are not proved to be zero, and no point is found at which they
+            have values; or there is no point where the relations hold.
     """
     if where is not None and where.relations:
-        return _decide_where(elements, ring, where)
+        return _decide_where(elements, where, defined)
     left = [element for element in map(ring.normal, elements) if element != 0]
-    plain = all(ring.function_free(element) for element in elements)
     if not left:
+        plain = all(map(ring.function_free, defined))
+        if not plain and next(iter(Points(ring, (), None, defined)), None) is None:
+            raise UndecidedError(f"no point is found at which it has a value. {ADVICE}")
+        plain = all(map(ring.function_free, elements))
         return Decision(Verdict.PROVED, NORMAL_FORM if plain else NORMAL_FORM_WITH_FUNCTIONS)
-    for element in left:
-        counterexample = _counterexample(element, ring)
-        if counterexample is not None:
-            point, value = counterexample
-            named = {name: str(value) for name, value in point.items()}
-            method = "exact" if ring.function_free(element) else f"{DIGITS}-digit"
-            return Decision(Verdict.REFUTED, f"{method} counter-example", named, value)
-    assert not plain, "a nonzero rational function is nonzero at almost every point"
-    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {POINTS} random points")
+    found = _look(left, ring, Branch(), "", defined)
+    if isinstance(found, Decision):
+        return found
+    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {found} random points")
 
 
-def _decide_where(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
-    """Whether every element is zero where relations hold."""
-    left = [rest for rest in map(where.remainder, elements) if rest != 0]
-    if not left:
-        return Decision(Verdict.PROVED, f"normal form modulo the ideal of {where.text}")
-    if not where.is_solved:
-        return _decide_near(left, ring, where)
-    found = decide_zero(list(map(where.on_zero_set, elements)), ring)
-    point = found.point
-    if point:
-        shown = {**point, **_solved_values(point, ring, where)}
-        point = {name: shown[name] for name in ring.names if name in shown}
-    return Decision(found.verdict, f"{found.method}, where {where.text}", point, found.defect)
+class UndecidedError(ClaimError):
+    """Nothing is known of a claim: no point is found at which it could fail."""
 
 
-def _solved_values(point: Mapping[str, str], ring: Field, where: Ideal) -> dict[str, str]:
-    """What relations give at a point as text, to 15 digits where functions occur."""
-    free = dict.fromkeys(ring.names, Fraction(1)) | {n: Fraction(v) for n, v in point.items()}
-    numbers = {name: _number(value) for name, value in free.items()}
-    values = {}
-    for name, root in where.solved.items():
-        with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):  # a pole: no value
-            if ring.function_free(root):
-                values[name] = str(ring.evaluate(root, free, Fraction, _no_call))
-            else:
-                value = ring.evaluate(root, numbers, _number, real_function)
-                values[name] = mpmath.nstr(value, 15)
-    return values
+def _decide_where(
+    elements: Sequence[Element], where: Ideal, defined: Sequence[Element]
+) -> Decision:
+    """Whether every element is zero where relations hold: on each branch of their zero set."""
+    if where.contains(where.field.one):
+        raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+    if all(map(where.contains, elements)):
+        return _proof(elements, where, defined, f"modulo the ideal of {where.scope}")
+    try:
+        return _decide_on_branches(elements, where, defined)
+    except OverflowError:  # no room for the functions of what is solved for
+        ring = where.field
+        left = [element for element in elements if not where.contains(element)]
+        whole, named = Branch(rest=where.relations), (*where.given, *defined)
+        found = _look(left, ring, whole, where.scope, named)
+        return found if isinstance(found, Decision) else _supported(found, where)
 
 
-def _decide_near(elements: Sequence[Element], ring: Field, where: Ideal) -> Decision:
-    """Whether every element is zero at points of a zero set that only numbers find.
-
-    A remainder that is not zero refutes nothing yet: an ideal need not hold all that vanishes on
-    its real zero set, as x is not in the ideal of x^2.
-    """
-    seen = 0
-    with mpmath.workdps(DIGITS):
-        for point in where.near(islice(random_points(ring.names, ring.positive), POINTS)):
-            values = [ring.evaluate(element, point, _number, real_function) for element in elements]
-            largest = max(values, key=abs)
-            if abs(largest) > ON_ZERO_SET:
-                shown = {
-                    name: mpmath.nstr(point[name], 15)
-                    for name in ring.names
-                    if any(name in ring.reach(e) for e in (*elements, *where.relations))
-                }
-                method = f"{DIGITS}-digit counter-example, where {where.text}"
-                return Decision(Verdict.REFUTED, method, shown, mpmath.nstr(largest, 15))
-            seen += 1
-    if not seen:
-        reason = (
-            f"nonzero remainder modulo the ideal of {where.text}, no real point of which is known"
-        )
-        return Decision(Verdict.REFUTED, reason, {}, element_text(ring, elements[0]))
-    method = f"{DIGITS}-digit values at {seen} points where {where.text}"
+def _supported(count: int, where: Ideal) -> Decision:
+    method = f"{DIGITS}-digit values at {count} points where {where.scope}"
     return Decision(Verdict.SUPPORTED, method)
 
 
-def random_points(
-    names: Sequence[str], positive: Set[str] = frozenset(), seed: int = 1
-) -> Iterator[dict[str, Fraction]]:
-    """Endless small nonzero rationals, the same in every run, with the assumed signs."""
-    source = random.Random(seed)  # noqa: S311 (not for secrets)
-    while True:
-        sizes = [Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
-        signs = [1 if name in positive else source.choice((-1, 1)) for name in names]
-        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+def _decide_on_branches(
+    elements: Sequence[Element], where: Ideal, defined: Sequence[Element]
+) -> Decision:
+    """Whether every element is zero on each branch."""
+    ring, counts, split = where.field, list[int](), 0
+    for branch in where.branches:
+        with suppress(ZeroDivisionError):  # a pole on all of the branch
+            values = [ring.substitute(element, branch.solved) for element in elements]
+            split += 1
+            rest = Ideal(ring, branch.rest)
+            left = [value for value in values if not rest.contains(value)]
+            named = (*where.given, *defined)
+            found = _look(left, ring, branch, where.scope, named) if left else None
+            if isinstance(found, Decision):
+                return found
+            counts += [] if found is None else [found]
+    if not where.branches:
+        raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+    if not split:
+        raise UndecidedError(f"it has no value anywhere where {where.scope}. {ADVICE}")
+    if counts:
+        return _supported(sum(counts), where)
+    branches = f"each of {split} branches" if split > 1 else "the solutions"
+    return _proof(elements, where, defined, f"on {branches} of {where.scope}")
 
 
-def _counterexample(element: Element, ring: Field) -> tuple[dict[str, Fraction], str] | None:
-    """A point where an element is not zero, and its value there."""
-    names = sorted(ring.reach(element), key=ring.names.index)
-    seen = 0
-    # Poles and arguments outside a function's domain are passed over, so more points are drawn.
-    for point in islice(random_points(names, ring.positive), 50 * POINTS):
-        try:
-            value = _nonzero_value(element, ring, point)
-        except (ZeroDivisionError, ValueError):
-            continue
-        if value:
-            return point, value
-        seen += 1
-        if seen == POINTS and not ring.function_free(element):
-            return None
-    return None
+def _proof(
+    elements: Sequence[Element], where: Ideal, defined: Sequence[Element], text: str
+) -> Decision:
+    """What is proved of elements where relations hold: at one point of theirs at least.
+
+    Raises:
+        UndecidedError: No point is found; anything is true of an empty set.
+    """
+    poles = _poles(elements, where)
+    named = [each for each in defined if not where.field.function_free(each)]
+    found = where.points([*named, *poles]) if poles or named else where.some_points
+    if not any(_is_regular(poles, *at) for at in found):
+        if not where.branches:
+            raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+        empty = f"no point is found at which it has a value, where {where.scope}"
+        raise UndecidedError(f"{empty}. {ADVICE}")
+    return Decision(Verdict.PROVED, f"normal form {text}{_but_for(poles, where)}")
 
 
-def _nonzero_value(element: Element, ring: Field, point: dict[str, Fraction]) -> str:
-    """The value of an element at a rational point as text; empty if it is zero there."""
-    if ring.function_free(element):
-        exact = ring.evaluate(element, point, Fraction, _no_call)
-        return str(exact) if exact else ""
+def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:
+    """Whether no denominator vanishes at a point of a zero set."""
     with mpmath.workdps(DIGITS):
-        numbers = {name: _number(value) for name, value in point.items()}
-        value = ring.evaluate(element, numbers, _number, real_function)
-        # Its size is that of its largest addend, so that cancellation shows.
-        addends = [
-            ring.evaluate(part, numbers, _number, real_function) for part in ring.terms(element)
-        ]
-        negligible = abs(value) <= NEGLIGIBLE * max(map(abs, addends))
-        return "" if negligible else mpmath.nstr(value, 15)
+        values = points.complete(point)
+        return all(abs(real(points.value(each, values))) > ON_ZERO_SET for each in poles)
 
 
-def _number(value: Fraction) -> Any:
-    return mpmath.mpf(value.numerator) / value.denominator
+#: What to do about a claim that has no value at any point.
+ADVICE = (
+    "Expected real points, in [domain] and with the declared signs, at which the claim has a "
+    "value. Correct the claim, or give defaults near which there are some."
+)
 
 
-def _no_call(function: str, argument: Fraction) -> Fraction:
-    raise AssertionError(f"{function}({argument}) in a function-free element")
+def _poles(elements: Sequence[Element], where: Ideal) -> list[Element]:
+    """Denominators in which something moves and which may vanish."""
+    ring, found = where.field, list[Element]()
+    for element in elements:
+        for written in ring.quotients(ring.normal(element)):
+            found += [divisor for divisor, _ in written.divisors if divisor not in found]
+    return [each for each in found if where.may_vanish(each)]
+
+
+def _but_for(poles: Sequence[Element], where: Ideal) -> str:
+    """Denominators as what is excluded."""
+    texts = [element_text(where.field, each) for each in poles]
+    if not texts:
+        return ""
+    if len(texts) > SHOWN or any(len(text) > SHOWN_TEXT for text in texts):
+        return ", wherever no denominator is 0"
+    return f", wherever {', '.join(texts)} {'are' if len(texts) > 1 else 'is'} not 0"
+
+
+def _look(
+    elements: Sequence[Element],
+    ring: Field,
+    branch: Branch,
+    scope: str,
+    defined: Sequence[Element],
+) -> Decision | int:
+    """What values say of elements whose normal form is not zero.
+
+    Returns:
+        A refutation, or the number of points at which each of them is zero.
+
+    Raises:
+        UndecidedError: One of them has no value at any point that is found.
+    """
+    counts, where = list[int](), f", where {scope}" if scope else ""
+    for element in elements:
+        seen = 0
+        points = Points(ring, [element], branch, defined)
+        for point in points:
+            with mpmath.workdps(DIGITS):
+                value = _value(element, ring, point, branch)
+            if value:
+                exact = ring.function_free(element) and not branch.rest
+                method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
+                shown = _shown(points, point)
+                return Decision(Verdict.REFUTED, method, shown, value)
+            # without functions the element is not zero, and another point shows it
+            seen += value is not None and (bool(branch.rest) or not ring.function_free(element))
+            if seen == POINTS:
+                break
+        counts.append(seen)
+    if not min(counts):
+        raise UndecidedError(f"no point is found at which it has a value{where}. {ADVICE}")
+    return min(counts)
+
+
+def _value(element: Element, ring: Field, point: Values, branch: Branch) -> str | None:
+    """The value of an element at a point as text; empty for zero, None where nothing is known."""
+    try:
+        if branch.rest:
+            return _near_value(element, ring, point)
+        if ring.function_free(element):
+            exact = ring.evaluate(element, point, Fraction, real_function)
+            return str(exact) if exact else ""
+        return _certain_value(element, ring, point)
+    except (ZeroDivisionError, ValueError, OverflowError):
+        return None
+
+
+def _near_value(element: Element, ring: Field, point: Values) -> str:
+    """The value at a point that lies on a zero set up to rounding."""
+    value, size = _with_size(element, ring, point)
+    return "" if abs(value) <= ON_ZERO_SET * max(1, size) else mpmath.nstr(value, 15)
+
+
+def _certain_value(element: Element, ring: Field, point: Values) -> str | None:
+    """The value at a rational point: not zero if an interval says so."""
+    value, size = _with_size(element, ring, point)
+    if abs(value) <= NEGLIGIBLE * size:
+        return ""
+    return mpmath.nstr(value, 15) if enclosure(ring, element, point).sign else None
+
+
+@dataclass(frozen=True, slots=True)
+class _Sized:
+    """A real value, and the size of the largest addend in it, beside which cancellation shows."""
+
+    value: Any
+    size: Any
+
+    def __add__(self, other: _Sized) -> _Sized:
+        return _Sized(self.value + other.value, max(self.size, other.size))
+
+    def __mul__(self, other: _Sized) -> _Sized:
+        return _Sized(self.value * other.value, self.size * other.size)
+
+    def __truediv__(self, other: _Sized) -> _Sized:
+        return _Sized(self.value / other.value, self.size / abs(other.value))
+
+    @staticmethod
+    def of(number: Any) -> _Sized:
+        exact = real(number)
+        return _Sized(exact, abs(exact))
+
+    @staticmethod
+    def call(function: str, argument: _Sized) -> _Sized:
+        return _Sized.of(real_function(function, argument.value))
+
+
+def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:
+    """The value of an element and the size of its largest addend."""
+    numbers = {name: _Sized.of(value) for name, value in point.items()}
+    found = ring.evaluate(element, numbers, _Sized.of, _Sized.call)
+    return found.value, found.size
+
+
+def _shown(points: Points, point: Values) -> dict[str, str]:
+    """A point as text: the symbols on which values rest, exact where they are."""
+    ring, branch = points.ring, points.branch
+    reached = frozenset[str]().union(*map(ring.reach, (*points.elements, *branch.rest)))
+    for name, root in branch.solved.items():
+        reached |= {name, *ring.reach(root)}
+    with mpmath.workdps(DIGITS):
+        values = points.complete(point)
+    return {name: _text(values[name]) for name in ring.names if name in reached}
+
+
+def _text(value: Any) -> str:
+    return str(value) if isinstance(value, Fraction) else str(mpmath.nstr(value, 15))

@@ -1,0 +1,38 @@
+"""Regions: where values of the functions of a field are looked at.
+
+Comes in: what a spec declares: its parameters, defaults and the conditions of ``[domain]``. Goes
+out: a record that stays with the `Field`, so that nothing is decided outside of the domain. What is
+assumed of signs alone, `Field.conditions`, holds besides.
+Read next: `coadjoint.prove.points`, which draws points in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from coadjoint.exact.element import Element
+
+if TYPE_CHECKING:
+    from coadjoint.exact.field import Condition
+
+
+@dataclass(frozen=True)
+class Region:
+    """Where a system is defined and its motion has values.
+
+    Attributes:
+        parameters: The symbols that are parameters: claims hold for almost all of their values.
+        defaults: A value for each symbol that has one.
+        conditions: What holds there.
+        definitions: Values of further names, each in terms of symbols and of names before it.
+        momenta: Momenta in terms of velocities, for functions that are written in velocities.
+    """
+
+    parameters: frozenset[str] = frozenset()
+    defaults: Mapping[str, Fraction] = field(default_factory=dict)
+    conditions: tuple[Condition, ...] = ()
+    definitions: Mapping[str, Element] = field(default_factory=dict)
+    momenta: Mapping[str, Element] = field(default_factory=dict)

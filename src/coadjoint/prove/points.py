@@ -1,0 +1,374 @@
+r"""Points of a domain: where the values of functions are looked at.
+
+Comes in: functions of the symbols of a field, and a `Branch` of a zero set on which they are looked
+at. Goes out: points of the branch at which every declared sign and every condition of ``[domain]``
+holds and no square root or logarithm leaves its domain. Where random points do not do, they are
+moved: by Newton's method onto the branch, and to where the conditions that fail hold. Points
+where nothing has to be solved for are rational, all others have the working precision of mpmath.
+The sequence is the same in every run. Read next: `coadjoint.prove.zero`.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from contextlib import suppress
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from itertools import islice
+from typing import Any
+
+import mpmath
+
+from coadjoint.exact import Condition, Element, Field
+
+#: Digits of values at points.
+DIGITS = 50
+#: Random points that are tried as they are.
+PLAIN = 60
+#: Points that are tried in all; the others are moved.
+TRIES = 150
+#: Points that are moved onto a zero set.
+ON_ZERO_SET = 50
+#: Steps of Newton's method; near a singular point it takes many.
+STEPS = 400
+#: Steps after which those of Newton's method must have become small.
+PATIENCE, LARGE = 40, mpmath.mpf(10) ** -3
+#: Steps to where conditions hold.
+MOVES = 12
+#: What conditions that fail are to become, in turn; the middle of the domain comes first.
+TARGETS = (Fraction(1), Fraction(1, 4), Fraction(4), Fraction(1, 32), Fraction(1, 1000))
+#: Sizes of the points that are moved.
+SCALES = (1, 1, 10, 100, 1000)
+#: Parts of a default by which points near it differ from it.
+NEAR = (Fraction(0), Fraction(1, 3), Fraction(1, 30), Fraction(1, 300))
+#: Size of the last step of Newton's method, beside which a point counts as one of the zero set.
+ARRIVED = mpmath.mpf(10) ** (15 - DIGITS)
+#: How far a value must be from zero to have a sign, where functions occur.
+SIGNED = mpmath.mpf(10) ** -30
+
+#: What is added to slopes that may not be independent, beside the square of what is left.
+DAMPING = mpmath.mpf(10) ** -6
+
+Values = dict[str, Any]
+#: A function, and the value that it is to have.
+Wanted = tuple[Element, Any]
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A part of a zero set.
+
+    Attributes:
+        solved: Symbols in terms of the others.
+        rest: What else vanishes there.
+        nonzero: What does not: that by which was divided.
+    """
+
+    solved: Mapping[str, Element] = field(default_factory=dict)
+    rest: tuple[Element, ...] = ()
+    nonzero: tuple[Element, ...] = ()
+
+
+class Points:
+    """Points at which functions are looked at.
+
+    Args:
+        ring: The field, with the region that is assumed of its symbols.
+        elements: The functions, the solved symbols of the branch replaced.
+        branch: Where they are looked at; by default everywhere.
+        defined: Functions that must have values there, too: what a claim names, and not only its
+            rate. They may be looked at where a square root is zero.
+
+    Raises:
+        ZeroDivisionError: One of these has a pole on all of the branch.
+    """
+
+    def __init__(
+        self,
+        ring: Field,
+        elements: Sequence[Element],
+        branch: Branch | None = None,
+        defined: Sequence[Element] = (),
+    ) -> None:
+        self.ring, self.branch = ring, branch or Branch()
+        self.elements = tuple(elements)
+        self._defined = tuple(ring.substitute(each, self.branch.solved) for each in defined)
+        self.plain = all(map(ring.function_free, self._involved))
+
+    # -- what has a value -----------------------------------------------------------------
+
+    @cached_property
+    def _roots(self) -> tuple[Element, ...]:
+        return (*self.branch.solved.values(), *self.branch.rest, *self.branch.nonzero)
+
+    @cached_property
+    def _conditions(self) -> tuple[Condition, ...]:
+        """What is assumed of the symbols beside their signs."""
+        return (*self.ring.conditions, *self.ring.region.conditions)
+
+    @cached_property
+    def definitions(self) -> dict[str, Element]:
+        """What the conditions name beside symbols, in an order in which it can be computed."""
+        region, found = self.ring.region, dict[str, Element]()
+        own = (
+            self._reached((*self.elements, *self._defined, *self._roots))
+            | self.branch.solved.keys()
+        )
+        # of functions of velocities the momenta follow, of others the velocities
+        written = region.momenta if own & region.definitions.keys() else region.definitions
+
+        def visit(name: str) -> None:
+            if name in found or name in own or name not in written:
+                return
+            for inner in sorted(self.ring.reach(written[name])):
+                visit(inner)
+            found[name] = written[name]
+
+        for name in sorted(self._reached(each.element for each in self._conditions)):
+            visit(name)
+        return found
+
+    @cached_property
+    def _involved(self) -> tuple[Element, ...]:
+        """Everything that has a value at a point."""
+        conditions = (each.element for each in self._conditions)
+        own = (*self.elements, *self._defined, *self._roots)
+        return (*own, *self.definitions.values(), *conditions)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The symbols that are free, in the order of the field."""
+        given = self.definitions.keys() | self.branch.solved.keys()
+        reached = self._reached(self._involved) - given
+        return tuple(name for name in self.ring.names if name in reached)
+
+    @cached_property
+    def _required(self) -> tuple[tuple[Element, bool], ...]:
+        """What must be positive, or if not strict not negative; inner functions first."""
+        written = [each for each in self._involved if each not in self._defined]
+        strictly = {name for each in written for name in self.ring.functions_in(each)}
+        called = {name for each in self._involved for name in self.ring.functions_in(each)}
+        arguments = [
+            (known.argument, known.function == "log" or known.generator in strictly)
+            for known in self.ring.adjoined.values()
+            if known.generator in called and known.function in ("sqrt", "log")
+        ]
+        signs = [(self.ring[name], True) for name in self.names if name in self.ring.positive]
+        solved = [
+            (root, True) for name, root in self.branch.solved.items() if name in self.ring.positive
+        ]
+        stated = [(each.element, each.strict) for each in self._conditions]
+        return (*arguments, *signs, *solved, *stated)
+
+    def _reached(self, elements: Iterable[Element]) -> frozenset[str]:
+        return frozenset[str]().union(*map(self.ring.reach, elements))
+
+    # -- values ---------------------------------------------------------------------------
+
+    def complete(self, free: Mapping[str, Any]) -> Values:
+        """A point with what is solved for and defined.
+
+        Raises:
+            ZeroDivisionError: A pole.
+            ValueError: A function is not defined there.
+        """
+        values = dict(free)
+        for name, element in (*self.branch.solved.items(), *self.definitions.items()):
+            values[name] = self.value(element, values)
+        return values
+
+    def value(self, element: Element, values: Mapping[str, Any]) -> Any:
+        """The value of an element: exact at exact points without functions, else a real number."""
+        if self.plain and all(map(_is_rational, values.values())):
+            return self.ring.evaluate(element, values, Fraction, real_function)
+        numbers = {name: real(value) for name, value in values.items()}
+        return self.ring.evaluate(element, numbers, real, real_function)
+
+    def _violated(self, free: Mapping[str, Any]) -> list[Element]:
+        """What fails at a point; where functions are not defined, their arguments alone.
+
+        Raises:
+            ZeroDivisionError: A pole.
+        """
+        try:
+            values, failed = self.complete(free), list[Element]()
+        except ValueError:
+            values = dict(free)
+        for element, strict in self._required:
+            if not self.ring.reach(element) <= values.keys():
+                continue
+            try:
+                value = self.value(element, values)
+            except ValueError:  # that of an inner one has failed already
+                break
+            if not self._holds(value, strict):
+                failed.append(element)
+        return failed
+
+    def _holds(self, value: Any, strict: bool) -> bool:
+        if isinstance(value, Fraction):
+            return value > 0 or (value == 0 and not strict)
+        return bool(value > SIGNED or (not strict and value > -ARRIVED))
+
+    # -- points ---------------------------------------------------------------------------
+
+    def __iter__(self) -> Iterator[Values]:
+        """Values of the free symbols; ends after `TRIES`."""
+        with mpmath.workdps(DIGITS):
+            tries = ON_ZERO_SET if self.branch.rest else TRIES
+            for number, start in enumerate(islice(self._starts(), tries)):
+                if number < PLAIN and not self.branch.rest:
+                    found: Values | None = start
+                else:
+                    found = self._moved(start, TARGETS[number % len(TARGETS)])
+                with suppress(ZeroDivisionError, ValueError, OverflowError):
+                    if found is not None and self._is_inside(found):
+                        yield found
+
+    def near_defaults(self) -> Iterator[Values]:
+        """The defaults, moved onto the branch and into the domain."""
+        with mpmath.workdps(DIGITS), suppress(ZeroDivisionError, ValueError, OverflowError):
+            start = next(iter(random_points(self.names, self.ring.positive)))
+            found = self._moved(start | self._defaults, TARGETS[0])
+            if found is not None and self._is_inside(found):
+                yield found
+
+    @cached_property
+    def _defaults(self) -> dict[str, Fraction]:
+        """The defaults of the free symbols."""
+        known = self.ring.region.defaults
+        return {name: known[name] for name in self.names if name in known}
+
+    def _is_inside(self, free: Values) -> bool:
+        """Whether all that is assumed holds, and nothing vanishes by which was divided."""
+        if self._violated(free):
+            return False
+        values = self.complete(free)
+        for each in self._defined:
+            self.value(each, values)
+        return all(abs(self.value(each, values)) > 0 for each in self.branch.nonzero)
+
+    def _starts(self) -> Iterator[Values]:
+        """Random points; after the plain ones every other one is near the defaults."""
+        defaults, source = self._defaults, random.Random(2)  # noqa: S311 (no secrets)
+        moved = bool(self.branch.rest)  # then the first is that of the defaults
+        for number, point in enumerate(random_points(self.names, self.ring.positive)):
+            if moved <= number < PLAIN // (1 + moved):
+                yield point
+            elif number % 2:
+                scale = SCALES[number // 2 % len(SCALES)]
+                yield {name: x * source.randint(1, scale) for name, x in point.items()}
+            else:
+                part = NEAR[number // 2 % len(NEAR)]
+                yield {
+                    name: defaults[name] + part * x if name in defaults else x
+                    for name, x in point.items()
+                }
+
+    def _moved(self, start: Values, target: Fraction) -> Values | None:
+        """A point near another one at which everything holds; None if none is found."""
+        free: Values = {name: real(value) for name, value in start.items()}
+        zeros = [(each, mpmath.mpf(0)) for each in self.branch.rest]
+        with suppress(ZeroDivisionError, ValueError, OverflowError), mpmath.workdps(2 * DIGITS):
+            for _ in range(MOVES):
+                failed = self._violated(free)
+                if not failed:
+                    return self._arrived(free, zeros) if zeros else self._rounded(free)
+                free, _ = self._step(free, [*((each, real(target)) for each in failed), *zeros])
+        return None
+
+    def _arrived(self, free: Values, zeros: Sequence[Wanted]) -> Values | None:
+        """Newton's method to where the rest vanishes; its last step says how near that is."""
+        size = mpmath.mpf(1)
+        for count in range(STEPS):
+            free, size = self._step(free, zeros, size)
+            scale = 1 + max(map(abs, free.values()))
+            if size < ARRIVED * scale:
+                return free
+            if count > PATIENCE and size > LARGE * scale:
+                return None
+        return None
+
+    def _rounded(self, free: Values) -> Values | None:
+        """A rational point near another one, of small numbers if these do."""
+        for digits in (1, 2, 4, 8, 16):
+            near = {name: _fraction(x).limit_denominator(10**digits) for name, x in free.items()}
+            generic = all(bool(near[name]) or not x for name, x in free.items())
+            if generic and not self._violated(near):
+                return near
+        return None
+
+    def _step(self, free: Values, wanted: Sequence[Wanted], before: Any = 1) -> tuple[Values, Any]:
+        """One step of Newton's method along the slopes of functions to wanted values; its size.
+
+        Slopes are differences over a small part of the step before: values have twice the digits
+        that are wanted. What is wanted may depend on each other, so that a multiple of 1 is added.
+        """
+        defined = not self._reached(each for each, _ in wanted) <= free.keys()
+
+        def values(at: Values) -> list[Any]:
+            whole = self._as_far_as_defined(at) if defined else at
+            return [target - self.value(each, whole) for each, target in wanted]
+
+        here = values(free)
+        width = mpmath.mpf(10) ** -20 * min(max(before, ARRIVED**2), 1)
+        slopes = mpmath.matrix(len(here), len(self.names))
+        for column, name in enumerate(self.names):
+            there = values(free | {name: free[name] + width})
+            for row, (a, b) in enumerate(zip(here, there, strict=True)):
+                slopes[row, column] = (a - b) / width
+        square = slopes * slopes.T
+        size = min(mpmath.norm(mpmath.matrix(here), 2), 1) ** 2
+        largest = max(abs(square[n, n]) for n in range(len(here)))
+        for n in range(len(here)):
+            square[n, n] += largest * max(size * DAMPING, mpmath.eps)
+        step = slopes.T * mpmath.lu_solve(square, mpmath.matrix(here))
+        moved = {name: free[name] + by for name, by in zip(self.names, step, strict=True)}
+        return moved, mpmath.norm(step, mpmath.inf)
+
+    def _as_far_as_defined(self, free: Values) -> Values:
+        """A point completed; as it is where a function is not defined there."""
+        try:
+            return self.complete(free)
+        except ValueError:
+            return dict(free)
+
+
+def random_points(
+    names: Sequence[str], positive: Set[str] = frozenset(), seed: int = 1
+) -> Iterator[dict[str, Fraction]]:
+    """Endless small nonzero rationals, the same in every run, with the assumed signs."""
+    source = random.Random(seed)  # noqa: S311 (not for secrets)
+    while True:
+        sizes = [Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
+        signs = [1 if name in positive else source.choice((-1, 1)) for name in names]
+        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+
+
+def real(value: Any) -> Any:
+    """A rational number in the working precision of mpmath; other numbers as they are."""
+    return mpmath.mpf(value.numerator) / value.denominator if _is_rational(value) else value
+
+
+def real_function(function: str, argument: Any) -> Any:
+    """A real elementary function, to the working precision of mpmath.
+
+    Raises:
+        ValueError: The argument is outside the real domain.
+    """
+    if (argument < 0 and function in ("sqrt", "log")) or (argument == 0 and function == "log"):
+        raise ValueError(f"{function} of {argument}")
+    return getattr(mpmath, function)(argument)
+
+
+def _is_rational(value: Any) -> bool:
+    return isinstance(value, Fraction | int)
+
+
+def _fraction(value: Any) -> Fraction:
+    """A binary number as it is."""
+    sign, mantissa, exponent, _ = value._mpf_
+    whole = -int(mantissa) if sign else int(mantissa)
+    return Fraction(whole * 2**exponent) if exponent >= 0 else Fraction(whole, 2**-exponent)
