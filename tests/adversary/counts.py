@@ -2,7 +2,7 @@
 
 Comes in: a statement of a certificate or of its findings. Goes out: faults in words, or None where
 it holds no count. Ranks are those of NumPy's singular values at random points, which bound them
-from below with certainty and from above almost surely; where the values leave no gap nothing is said.
+from below with certainty and from above almost surely. Where values leave no gap nothing is said.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _casimirs(motion, text, claims, source):
         try:
             ranks.append(rank_of(motion.tensor(point)))
             slopes = [
-                [motion.along(lambda p: motion.at(t, p), point, {n: mpf(1)}) for n in names]
+                [motion.along(lambda p, t=t: motion.at(t, p), point, {n: mpf(1)}) for n in names]
                 for t in written
             ]
             rows = [[x[i] for x in each] for each in slopes for i in range(len(each[0]))]

@@ -63,7 +63,7 @@ h = "{h}"
 """
 
 
-def free(constraint, l, claims="", more="", count=2):
+def free(constraint, energy, claims="", more="", count=2):
     """Coordinates q1, ... with velocities v1, ... under a constraint."""
     return f"""title = "Constrained"
 routes = ["nonholonomic", "hamel"]
@@ -72,7 +72,7 @@ q = {{ role = "coordinate", shape = [{count}] }}
 v = {{ role = "velocity", of = "q" }}
 {more}
 [lagrangian]
-l = "{l}"
+l = "{energy}"
 [constraints]
 c = "{constraint}"
 {claims}

@@ -101,8 +101,7 @@ def judge(text, record, seed=0):
         elif claim["verdict"] == "refuted":
             report.faults.append(f"a claim of the engine itself is refuted: {claim}")
         elif claim["verdict"] == "numerically supported" and not _points_of(claim):
-            if "findings" in record:
-                report.faults.append(f"supported without a point: {claim}")
+            report.faults.append(f"supported without a point: {claim}")
     for entry in (*claims, *record.get("findings", ())):
         counted = judge_count(motion, entry, claims, random.Random(f"counts {seed} {text}"))
         if counted is not None:

@@ -1,8 +1,8 @@
 """The motion of a spec in numbers: rates, brackets and points, from the laws of docs/notation.md.
 
-Comes in: the text of a spec. Goes out: a `Motion` that evaluates formulas, rates of change, brackets
-and constraints at points of 50 digits. Derivatives are central differences: with steps of 1e-16
-their error is below 1e-28, and steps of 1 are exact for what is quadratic in the velocities.
+Comes in: the text of a spec. Goes out: a `Motion` that evaluates formulas, rates of change,
+brackets and constraints at points of 50 digits. Derivatives are central differences: with steps of
+1e-16 their error is below 1e-28, and steps of 1 are exact for what is quadratic in the velocities.
 Nothing is shared with the engine. Read next: `tests.adversary.judge`.
 """
 
@@ -282,7 +282,7 @@ class Motion:
         return None
 
     def points(self, source, where=(), tries=400, free=None):
-        """Points inside the domain where relations and further formulas vanish, endless tries bounded.
+        """Points inside the domain where relations and further formulas vanish.
 
         Every branch that a product shows is looked for by itself.
 
@@ -345,7 +345,8 @@ class Motion:
             for place, x in enumerate(self.at(tree, point)):
                 slopes = (
                     abs(
-                        self.along(lambda p: self.at(tree, p), point, {n: mpf(1)})[place] * point[n]
+                        self.along(lambda p, tree=tree: self.at(tree, p), point, {n: mpf(1)})[place]
+                        * point[n]
                     )
                     for n in sorted(self.reach(tree) & set(point))
                 )
@@ -418,6 +419,7 @@ def _dimension(algebra):
 
 
 def zeros(size):
+    """A square matrix of zeros."""
     return [[mpf(0)] * size for _ in range(size)]
 
 
@@ -456,6 +458,7 @@ class Declared(Motion):
     has_bracket = True
 
     def tensor(self, point):
+        """The matrix of brackets of the state."""
         part, names = self.table["poisson"], self.state
         place, found = {n: i for i, n in enumerate(names)}, zeros(len(names))
 
@@ -514,6 +517,7 @@ class LiePoisson(Motion):
 
     @property
     def state(self):
+        """The names that make the state."""
         return self.flat([*self.having("momentum"), *self.having("advected")])
 
     def structure(self, point):
@@ -525,6 +529,7 @@ class LiePoisson(Motion):
         return self._constants[known]
 
     def tensor(self, point):
+        """The matrix of brackets of the state."""
         c, names = self.structure(point), self.state
         place, found = {n: i for i, n in enumerate(names)}, zeros(len(names))
         sign = -1 if self.algebra.get("invariance", "left") == "left" else 1
@@ -562,6 +567,7 @@ class LiePoisson(Motion):
         return self.at(self.table["lagrangian"]["l"], point)[0]
 
     def energy(self, point):
+        """The energy at a point."""
         if "hamiltonian" in self.table:
             return super().energy(point)
         xi = self.velocities(point)
@@ -571,6 +577,7 @@ class LiePoisson(Motion):
         return paired - self._lagrangian(whole)
 
     def quantity(self, name, point, values):
+        """A value by name; velocities follow from the momenta."""
         follows = "lagrangian" in self.table and not all(n in point for n in self.xi)
         if follows and (name in self.xi or name in self.having("velocity")):
             known = dict(zip(self.xi, self.velocities(point), strict=True))
@@ -597,6 +604,7 @@ class Canonical(Motion):
 
     @property
     def state(self):
+        """The names that make the state."""
         return self.flat([n for n in self.variables if self.variables[n]["role"] != "velocity"])
 
     def conjugate(self, point):
@@ -610,6 +618,7 @@ class Canonical(Motion):
             yield from zip(self.components[of], self.components[name], strict=True)
 
     def tensor(self, point):
+        """The matrix of brackets of the state."""
         names = self.state
         place, found = {n: i for i, n in enumerate(names)}, zeros(len(names))
         for q, p in self.pairs():
@@ -652,13 +661,14 @@ class Constrained(Motion):
         for text in self.table.get("constraints", {}).values():
             left, _, right = _sides(text)
             for one, other in ((left, right), (right, left)):
-                if one[0] == "name" and one[1] in self.variables:
-                    if not set(self.components[one[1]]) & self.reach(other):
-                        found += self.components[one[1]]
-                        break
+                parts = self.components.get(one[1], []) if one[0] == "name" else []
+                if parts and not set(parts) & self.reach(other):
+                    found += parts
+                    break
         return found
 
     def lagrangian(self, point):
+        """The Lagrangian at a point."""
         return self.at(self.table["lagrangian"]["l"], point)[0]
 
     def conjugate(self, point):
@@ -667,9 +677,11 @@ class Constrained(Motion):
         return {q: momenta[v] for v, q in self.of.items()}
 
     def momenta(self, point):
+        """The slopes of the Lagrangian by the velocities."""
         return slopes_of_quadratic(self.lagrangian, point, self.velocities)
 
     def energy(self, point):
+        """The energy at a point."""
         return dot(self.momenta(point), [point[n] for n in self.velocities]) - self.lagrangian(
             point
         )
@@ -745,6 +757,7 @@ class Constrained(Motion):
         return dict(zip(self.velocities, found[:size], strict=True)), found[size:]
 
     def rates(self, point):
+        """Time derivatives of the state by name."""
         return {**self.moved(point), **self.solved(point)[0]}
 
     @property
@@ -769,6 +782,7 @@ class Constrained(Motion):
         return found
 
     def emitted(self, name, point, values):
+        """Reactions beside what every motion emits."""
         if name.endswith("_reaction"):
             return dict(zip(self.reactions, self.solved(point)[1], strict=True))[name]
         return super().emitted(name, point, values)
@@ -789,6 +803,7 @@ class Restricted(Motion):
 
     @property
     def state(self):
+        """The names that make the state."""
         rest = [name for name in self.whole.variables if name not in self.section]
         names = set(self.whole.state)
         return [n for n in self.flat(rest) if n in names]
@@ -802,10 +817,12 @@ class Restricted(Motion):
         return found
 
     def rates(self, point):
+        """Time derivatives of the state by name."""
         found = self.whole.rates(self.complete(point))
         return {n: found[n] for n in self.state}
 
     def energy(self, point):
+        """The energy at a point."""
         return self.whole.energy(self.complete(point))
 
 
@@ -813,6 +830,7 @@ class Newton(Motion):
     """Mass times acceleration is force."""
 
     def rates(self, point):
+        """Time derivatives of the state by name."""
         found = {}
         for name in self.having("velocity"):
             of = self.variables[name]["of"]
@@ -825,7 +843,9 @@ class Newton(Motion):
             else:
                 rows = [mass[i * size : (i + 1) * size] for i in range(size)]
                 accelerated = solve(rows, force)
-            found.update(zip(self.components[of], (point[n] for n in self.components[name])))
+            found.update(
+                zip(self.components[of], (point[n] for n in self.components[name]), strict=True)
+            )
             found.update(zip(self.components[name], accelerated, strict=True))
         return found
 

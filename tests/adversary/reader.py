@@ -1,7 +1,7 @@
 """The judge's own reader of formulas: text to values of 50 digits, without the engine.
 
 Comes in: the text of a formula as docs/specs.md describes it, and values by name: numbers, vectors
-as lists, matrices as lists of rows. Goes out: its value, or `UndefinedError` outside a function's domain.
+as lists, matrices as lists of rows. Goes out: its value, or `UndefinedError` where it has none.
 Nothing here is shared with `coadjoint`. Read next: `tests.adversary.motion`.
 """
 
@@ -189,18 +189,22 @@ def entries(found):
 
 
 def add(a, b):
+    """The sum of values of one shape."""
     return list(map(add, a, b)) if isinstance(a, list) else a + b
 
 
 def subtract(a, b):
+    """The difference of values of one shape."""
     return list(map(subtract, a, b)) if isinstance(a, list) else a - b
 
 
 def scale(factor, a):
+    """A number times a value of any shape."""
     return [scale(factor, part) for part in a] if isinstance(a, list) else factor * a
 
 
 def multiply(a, b):
+    """A product: scalar times anything, matrix times vector or matrix."""
     if not isinstance(a, list):
         return scale(a, b)
     if not isinstance(b, list):
@@ -211,16 +215,19 @@ def multiply(a, b):
 
 
 def divide(a, b):
+    """A value divided by a number."""
     if b == 0:
         raise UndefinedError("division by zero")
     return scale(1 / b, a)
 
 
 def dot(a, b):
+    """The sum of products."""
     return sum((x * y for x, y in zip(a, b, strict=True)), mpf(0))
 
 
 def power(base, exponent):
+    """A power of a number or of a square matrix."""
     if isinstance(base, list):
         base, exponent = (inverse(base), -exponent) if exponent < 0 else (base, exponent)
         result = diagonal([mpf(1)] * len(base))
@@ -237,34 +244,40 @@ def power(base, exponent):
 
 
 def square_root(x):
+    """The root of a number that is not negative."""
     if x < 0:
         raise UndefinedError("square root of a negative number")
     return CONTEXT.sqrt(x)
 
 
 def logarithm(x):
+    """The logarithm of a positive number."""
     if x <= 0:
         raise UndefinedError("logarithm of a number that is not positive")
     return CONTEXT.log(x)
 
 
 def exponential(x):
+    """The exponential function of a number that is not huge."""
     if abs(x) > 2000:
         raise UndefinedError("too large a power for a judge")
     return CONTEXT.exp(x)
 
 
 def diagonal(a):
+    """The diagonal matrix of a vector, or the diagonal of a matrix."""
     if isinstance(a[0], list):
         return [row[i] for i, row in enumerate(a)]
     return [[x if i == j else mpf(0) for j in range(len(a))] for i, x in enumerate(a)]
 
 
 def cross(a, b):
+    """The cross product."""
     return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 
 
 def determinant(a):
+    """The determinant, by expansion along the first row."""
     if len(a) == 1:
         return a[0][0]
     minors = ([row[:j] + row[j + 1 :] for row in a[1:]] for j in range(len(a)))
@@ -272,6 +285,7 @@ def determinant(a):
 
 
 def inverse(a):
+    """The inverse matrix, column by column."""
     columns = [solve(a, [mpf(i == j) for i in range(len(a))]) for j in range(len(a))]
     return [list(row) for row in zip(*columns, strict=True)]
 
@@ -297,6 +311,7 @@ def solve(matrix, right):
 
 
 def transposed(a):
+    """Rows as columns."""
     return [list(row) for row in zip(*a, strict=True)]
 
 

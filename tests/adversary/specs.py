@@ -435,12 +435,13 @@ def direct_sum(source):
         wrong = ["mu4*mu5"]
     else:
         c = source.choice([*real, *positive])
-        algebra, size = (
+        size, algebra = (
+            3,
             (
                 'basis = ["e1", "e2", "e3"]\n'
-                f'brackets = {{ "[e1, e2]" = "{c}*e3", "[e2, e3]" = "{c}*e1", "[e3, e1]" = "2*{c}*e2" }}'
+                f'brackets = {{ "[e1, e2]" = "{c}*e3", "[e2, e3]" = "{c}*e1", '
+                f'"[e3, e1]" = "2*{c}*e2" }}'
             ),
-            3,
         )
         casimirs, wrong = ["mu1^2 + 2*mu2^2 + mu3^2"], ["mu1^2 + mu2^2 + mu3^2"]
     names = [f"mu{n}" for n in range(1, size + 1)]
@@ -528,7 +529,8 @@ def oscillators(source):
     maps = ""
     if kind != "edge":
         maps = (
-            '[transformations.mirror]\nmap = { q = "vector(-q1, q2, q3)", p = "vector(-p1, p2, p3)" }\n'
+            "[transformations.mirror]\n"
+            'map = { q = "vector(-q1, q2, q3)", p = "vector(-p1, p2, p3)" }\n'
             '[transformations.back]\nmap = { p = "-p" }\nreverses_time = true\n'
         )
     head = f"""title = "Oscillators"

@@ -1,4 +1,4 @@
-"""Fixed cases: the expected verdicts, and everything that the judge has to say of the certificate."""
+"""Fixed cases: the expected verdicts, and what the judge has to say of each certificate."""
 
 import re
 from fractions import Fraction
