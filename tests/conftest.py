@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 import signal
 from fractions import Fraction
 from pathlib import Path
@@ -54,7 +55,7 @@ def pytest_runtest_call(item):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Report how many mutants of the engine the tests have killed, in all and by route."""
+    """Report the mutants of the engine that were killed, and the cases of the adversary."""
     reports = [
         report
         for found in terminalreporter.stats.values()
@@ -69,6 +70,13 @@ def pytest_terminal_summary(terminalreporter):
         by_route.setdefault(dict(report.user_properties).get("route"), []).append(report)
     for route in sorted(by_route.keys() - {None}):
         terminalreporter.write_line(f"  {route}: {_score(by_route[route])}")
+    verdicts = Counter()
+    for found in terminalreporter.stats.values():
+        for report in found:
+            verdicts.update(dict(getattr(report, "user_properties", ())).get("adversary", {}))
+    if verdicts:
+        told = ", ".join(f"{count} {kind}" for kind, count in sorted(verdicts.items()))
+        terminalreporter.write_line(f"adversary: {verdicts.total()} cases: {told}")
 
 
 def _score(reports):

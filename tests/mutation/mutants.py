@@ -109,6 +109,18 @@ CHECKS = (
         "return closed",
         tests=("tests/lower/test_lowering.py", "-k", "careful_hand and kirchhoff"),
     ),
+    Mutant(
+        PROVE + "measures.py",
+        "    if _is_certain(motion, measure, samples, found, rank):",
+        "    if found:",
+        tests=("tests/prove/test_measures.py", "-k", "larger_rank"),
+    ),
+    Mutant(
+        "src/coadjoint/regenerate.py",
+        "    if differences:\n        extra =",
+        "    if False:\n        extra =",
+        tests=("tests/test_regenerate.py", "-k", "check_says_what_to_do"),
+    ),
 )
 MUTANTS = (
     *(replace(mutant, always=True) for mutant in CHECKS),
