@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
 import signal
+from collections import Counter
 from fractions import Fraction
 from pathlib import Path
 
