@@ -303,10 +303,10 @@ class Points:
         Slopes are differences over a small part of the step before: values have twice the digits
         that are wanted. What is wanted may depend on each other, so that a multiple of 1 is added.
         """
-        defined = not self._reached(each for each, _ in wanted) <= free.keys()
+        needed = self._reached(each for each, _ in wanted)
 
         def values(at: Values) -> list[Any]:
-            whole = self._as_far_as_defined(at) if defined else at
+            whole = at if needed <= free.keys() else self.complete(at)
             return [target - self.value(each, whole) for each, target in wanted]
 
         here = values(free)

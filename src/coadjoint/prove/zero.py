@@ -245,8 +245,8 @@ def _proof(
 def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:
     """Whether no denominator vanishes at a point of a zero set."""
     with mpmath.workdps(DIGITS):
-        values = points.complete(point)
-        return all(abs(real(points.value(each, values))) > ON_ZERO_SET for each in poles)
+        left = [points.ring.substitute(each, points.branch.solved) for each in poles]
+        return all(abs(real(points.value(each, point))) > ON_ZERO_SET for each in left)
 
 
 #: What to do about a claim that has no value at any point.
