@@ -34,6 +34,7 @@ JUDGES = {
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",
     ),
+    "src/coadjoint/poisson/ranks": ("tests/poisson/test_ranks.py",),
     "src/coadjoint/poisson/casimirs": (
         "tests/poisson/test_casimirs.py",
         "tests/prove/test_completeness.py",
@@ -41,6 +42,9 @@ JUDGES = {
     "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
     "src/coadjoint/prove/charts": ("tests/prove/test_charts.py",),
+    "src/coadjoint/prove/functions": ("tests/prove/test_samples.py",),
+    "src/coadjoint/prove/samples": ("tests/prove/test_samples.py",),
+    "src/coadjoint/prove/candidates": ("tests/prove/test_candidates.py",),
     "src/coadjoint/prove/ideals": WHERE,
     "src/coadjoint/prove/zero": WHERE,
     "src/coadjoint/prove/symmetries": (

@@ -99,6 +99,7 @@ def last_conserved(text, *changes):
         ("q1*q2", ["p1^4 + a*p2^4"], PROVED),
         ("q1", ["exp(p2)*p1"], PROVED),
         ("q1", ["sin(p2)*p1"], REFUTED),
+        ("q2", ["p1 - sqrt(q1 - 100)"], REFUTED),  # random points have q1 < 100
         ("q1", ["sin(p2)*p1 - (1 - cos(p2))*p2"], REFUTED),  # reducible, and no factor shows it
     ],
 )

@@ -159,6 +159,15 @@ def test_a_bound_needs_every_relation():
     assert not search.bounded((2, 2))
 
 
+def test_nothing_is_proved_without_a_bound_from_above(monkeypatch):
+    """Both integrals of the sleigh are certain; that there are no others is not, if b is not."""
+    monkeypatch.setattr(CandidateSearch, "bounded", lambda *_: False)
+    ((statement, found),) = about("chaplygin_sleigh")
+    assert isinstance(found, Discovery)
+    assert "a space of dimension 2 with constants, 2 of it polynomials in energy" in statement
+    assert found.error.startswith("that there are so many polynomials is exact; for the rest")
+
+
 def test_what_is_not_conserved_is_no_bound():
     """Of the energy and a false integral, which is wrongly called known, only the first counts."""
     along = motion("chaplygin_ball_centred")

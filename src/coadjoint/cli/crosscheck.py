@@ -96,6 +96,6 @@ def _print(report: Mapping[str, Any]) -> None:
 
 
 def _with_numpy(report: Mapping[str, Any], function: str) -> str:
-    """How exact C and NumPy compare: bit for bit, or within 2 k with functions beyond sqrt."""
+    """Where exact C and NumPy agree: bit for bit, or within k with functions beyond sqrt."""
     equal, together = report["equal"].get(function, 0), report["together"].get(function, 0)
-    return f"same bits at {equal}" if equal else f"within 2 k at {together}"
+    return f"same bits at {equal}" if equal else f"within k at {together}"

@@ -79,7 +79,7 @@ class Finding:
 @click.command("doctor")
 @json_option
 def command(as_json: bool) -> int:
-    """Look for compiler, cache, packages, and damage of generated files.
+    """Look for compiler, cache, packages and damaged files.
 
     What is missing is shown with the way to get it; exit status 1 if something does not work.
     """

@@ -5,7 +5,7 @@ Comes in: Programs, the texts printed from them, the equations, and the loaded s
 
     rung 3   emitted text, parsed back, equals the Program
     rung 4   NumPy, exact C and fast C against 50 digits: k <= 4, or 16 with functions beyond sqrt
-    rung 5   NumPy equals exact C bit for bit; with functions beyond sqrt, within 2 k
+    rung 5   NumPy equals exact C bit for bit; what calls functions beyond sqrt, within k
 
 Every rung runs on what was loaded from these very texts, counts what it compared, and fails where
 that is nothing: no kernel stands in for another.
@@ -57,9 +57,9 @@ class Report:
         threshold: The k that was allowed.
         lines: Lines of Python and C that were read back, by function.
         figures: By function and target, with the points that were compared.
-        equal: Points at which NumPy and exact C have the same bits, by function; none are counted
-            with functions beyond sqrt, where NumPy and C libraries may differ in the last bits.
-        together: Points at which NumPy and exact C were compared within 2 k, by function.
+        equal: Points at which NumPy and exact C have the same bits, by function; none of what calls
+            functions beyond sqrt, where NumPy and C libraries may differ in the last bits.
+        together: Points at which these were compared within k instead, by function.
     """
 
     system: str
@@ -145,7 +145,7 @@ def crosscheck(
         rungs[4] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
     report = Report(system.name, rungs, subject.threshold, lines, figures, equal, together)
     for name in programs:
-        _check_counts(report, name, bits=bits, exactly=not subject.elementary)
+        _check_counts(report, name, bits=bits, exactly=subject.has_equal_bits(name))
     return report
 
 

@@ -34,8 +34,8 @@ TRIES = 12
 DRAWN = 12
 #: Steps from a point outside a domain towards it.
 STEPS = 20
-#: Largest argument of exp, sin and cos; of more, numbers would have millions of digits.
-LARGEST = 10**6
+#: Largest arguments; of more, numbers would have millions of digits, or no digit would be certain.
+LARGEST = {"exp": 10**6, "sin": 10**30, "cos": 10**30}
 #: Where a value is undefined: poles, roots and logarithms of what is not positive, huge numbers.
 UNDEFINED = (ZeroDivisionError, ValueError, OverflowError)
 
@@ -88,7 +88,7 @@ def enclosed_function(function: str, argument: Enclosure) -> Enclosure:
     """
     if function in ("sqrt", "log") and argument.sign <= 0:
         raise ValueError(f"{function} of {argument.bounds}, which may not be positive")
-    if function in ("exp", "sin", "cos") and not abs(argument.bounds) < LARGEST:
+    if function in LARGEST and not argument.size < LARGEST[function]:
         raise ValueError(f"{function} of {argument.bounds}")
     return Enclosure(getattr(INTERVALS, function)(argument.bounds))
 
@@ -198,13 +198,21 @@ def points_inside(
 
 
 def _starts(field: Field, names: Iterable[str]) -> Iterator[Point]:
-    """Endless nonzero rationals with the declared signs: small ones first, then of any size."""
+    """Endless nonzero rationals with the declared signs: small ones first, then of any size.
+
+    After the first ones, every other point is at or near the defaults, as far as there are some.
+    """
     source, names = random.Random(1), list(names)  # noqa: S311 (not for secrets)
+    defaults = {name: x for name, x in field.region.defaults.items() if x}
     for count in range(10**9):
         scale = Fraction(10) ** (0 if count < TRIES else source.choice((-2, -1, 0, 1, 2, 3)))
         sizes = [scale * Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
         signs = [1 if name in field.positive else source.choice((-1, 1)) for name in names]
-        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+        point = {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+        if count >= TRIES and count % 2:
+            near = 1 + source.choice((0, 1)) * Fraction(source.randint(-9, 9), 1000)
+            point |= {name: defaults[name] * near for name in names if name in defaults}
+        yield point
 
 
 @dataclass(frozen=True)

@@ -32,10 +32,11 @@ from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.interpret import inverse
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.exact import Element
+from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.jacobi import Triple, schouten_bracket
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.findings import for_parameters, is_entire, nonzero_at
+from coadjoint.prove.findings import for_parameters, nonzero_at
 from coadjoint.prove.identities import antisymmetry_defects
 from coadjoint.prove.integrability import Basis
 from coadjoint.prove.points import Points

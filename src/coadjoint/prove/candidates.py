@@ -42,7 +42,7 @@ from coadjoint.poisson.ranks import residue
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.measures import Measure
 from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
@@ -233,13 +233,17 @@ class CandidateSearch:
             if known.function == "sin" and known.generator in self.positions
         ]
         zero = [*self.samples.where.relations, *self._solved, *circles]
-        return [terms for terms in map(self._terms, zero) if terms]
+        return [terms for terms in map(self._terms, filter(self._holds, zero)) if terms]
 
     @property
     def _solved(self) -> list[Element]:
         """The kept constraints solved for velocities: what is a common factor of them is gone."""
-        kept = Ideal(self.field, self.motion.where.relations, "", self.velocities)
-        return [self.field.normal(self.field[n] - root) for n, root in kept.solved.items()]
+        allowed = Measure(self.motion).allowed.items()
+        return [self.field.normal(self.field[name] - root) for name, root in allowed]
+
+    def _holds(self, relation: Element) -> bool:
+        """Whether a relation holds at points; what does not is certainly none."""
+        return not any(point.value(relation) for point in self.points(SPARE))
 
     def _terms(self, element: Element) -> Terms | None:
         """The numerator as a polynomial in the generators; None where it is none."""

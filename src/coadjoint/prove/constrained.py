@@ -25,8 +25,9 @@ from coadjoint.derive.legendre import LARGEST_BLOCK
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.findings import is_entire
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
@@ -217,8 +218,10 @@ def _rank(found: Distribution) -> tuple[str, Decision]:
     gram = _gram(found)
     text = "" if gram is None else element_text(field, gram)
     if gram is None or len(text) > SHORT:
-        random = Decision(Verdict.PROVED, "rank of A at a random point")
-        return f"{rank} at almost every point", random
+        entire = is_entire(field, (entry for row in rows for entry in row.values()))
+        where = "almost every point" + ("" if entire else " of a connected part of the domain")
+        method = f"rank of A {source_of_ranks(field, (rows, len(rows)))}"
+        return f"{rank} at {where}", Decision(Verdict.PROVED, method)
     where = "everywhere" if field.as_number(gram) is not None else f"wherever {text} is not 0"
     method = "det(A A^T) of the constraints that give no velocity"
     return f"{rank} {where}", Decision(Verdict.PROVED, method)

@@ -45,20 +45,6 @@ def guess(decision: Decision) -> Discovery:
     return Discovery(decision.method, error=NUMBERS)
 
 
-def is_entire(field: Field, elements: Iterable[Element]) -> bool:
-    """Whether elements are quotients of functions that are analytic at all real points.
-
-    Such a one that is not zero at a point is not zero at almost every point; with roots and
-    logarithms this holds in each connected part of the domain alone.
-    """
-    called = frozenset[str]().union(*map(field.functions_in, elements))
-    return all(
-        known.function in ("sin", "cos", "exp")
-        and not any(quotient.divisors for quotient in field.quotients(known.argument))
-        for known in map(field.adjoined.__getitem__, called)
-    )
-
-
 def for_parameters(setting: Setting, values: Iterable[Element]) -> str:
     """The scope of what is not zero: almost all parameters, where it depends on such."""
     reached = frozenset[str]().union(*map(setting.field.reach, values))

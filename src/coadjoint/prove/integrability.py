@@ -21,7 +21,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, Field
-from coadjoint.exact.witness import is_nonzero
+from coadjoint.exact.witness import is_entire, is_nonzero
 from coadjoint.poisson.ranks import independent_rows
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST, IN_PART
@@ -30,7 +30,6 @@ from coadjoint.prove.findings import (
     first_nonzero,
     for_parameters,
     guess,
-    is_entire,
     shown,
 )
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero

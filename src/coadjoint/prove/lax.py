@@ -114,7 +114,7 @@ def _about_integrals(
 
 
 def _rank(first: Equations, functions: Sequence[Element]) -> int:
-    """How many of some functions are certainly independent at almost every point."""
+    """How many of some functions are independent at almost every point."""
     rows = [slope_row(first.setting, function) for function in functions]
     return generic_rank(first.setting.field, rows)
 

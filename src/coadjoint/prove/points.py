@@ -192,10 +192,7 @@ class Points:
         Raises:
             ZeroDivisionError: A pole.
         """
-        try:
-            values, failed = self.complete(free), list[Element]()
-        except ValueError:
-            values = dict(free)
+        values, failed = self._as_far_as_defined(free), list[Element]()
         for element, strict in self._required:
             if not self.ring.reach(element) <= values.keys():
                 continue
@@ -328,7 +325,7 @@ class Points:
         moved = {name: free[name] + by for name, by in zip(self.names, step, strict=True)}
         return moved, mpmath.norm(step, mpmath.inf)
 
-    def _as_far_as_defined(self, free: Values) -> Values:
+    def _as_far_as_defined(self, free: Mapping[str, Any]) -> Values:
         """A point completed; as it is where a function is not defined there."""
         try:
             return self.complete(free)
