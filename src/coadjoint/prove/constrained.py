@@ -25,9 +25,9 @@ from coadjoint.derive.legendre import LARGEST_BLOCK
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.findings import is_entire
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
