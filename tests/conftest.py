@@ -73,7 +73,8 @@ def pytest_terminal_summary(terminalreporter):
     verdicts = Counter()
     for found in terminalreporter.stats.values():
         for report in found:
-            verdicts.update(dict(getattr(report, "user_properties", ())).get("adversary", {}))
+            if getattr(report, "when", "") == "call":
+                verdicts.update(dict(report.user_properties).get("adversary", {}))
     if verdicts:
         told = ", ".join(f"{count} {kind}" for kind, count in sorted(verdicts.items()))
         terminalreporter.write_line(f"adversary: {verdicts.total()} cases: {told}")

@@ -6,7 +6,10 @@ campaigns; a case that fails prints its spec, and its seed brings it back.
 
 import pytest
 
-from tests.adversary.run import campaign, faults_of, shorten
+from tests.adversary.judge import statements
+from tests.adversary.motion import motion_of
+from tests.adversary.renamed import renamed, reversed_tables
+from tests.adversary.run import campaign, faults_of, record_of, shorten
 from tests.adversary.specs import FAMILIES, generate
 
 #: Cases of one test, and specs that are enough for them.
@@ -57,3 +60,28 @@ def test_a_spec_that_is_refused_is_a_fault():
     faults, counts = faults_of(generate(0).replace("[variables]", "[variable]"))
     assert "the spec is refused" in faults[0]
     assert not counts
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(n, marks=() if n < 2 else pytest.mark.campaign, id=f"from{n * 8}")
+        for n in range(40)
+    ],
+)
+def test_no_verdict_depends_on_names_or_on_order(seed):
+    """Names from the other end of the alphabet, in reverse order: all verdicts are the same."""
+    for n in range(seed * 8, seed * 8 + 8):
+        text = generate(n)
+        other = reversed_tables(renamed(text))
+        assert other != text
+        before, after = spec_verdicts(text), spec_verdicts(other)
+        assert len(before) > 2
+        assert list(before.values()) == list(after.values()), f"seed {n}: {before}\n{other}"
+
+
+def spec_verdicts(text):
+    """The verdicts of a spec's own claims by their statements, in the order of the spec."""
+    found = {claim["statement"]: claim["verdict"] for claim in record_of(text)["claims"]}
+    known = {"energy is conserved": "the energy is conserved"}
+    return {each: found[known.get(each, each)] for each in statements(motion_of(text))}
