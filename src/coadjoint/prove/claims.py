@@ -67,6 +67,8 @@ from coadjoint.spec.model import Integral, SpatialMomentum
 def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     """Examine every claim about a declared system.
 
+    Time and memory are not bounded; for specs of strangers there is `coadjoint.prove_bounded`.
+
     Args:
         spec: What `coadjoint.read_spec` returned.
         routes: Equations by every route of the spec in one Setting, if they were derived before.
