@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+import signal
+from collections import Counter
 from fractions import Fraction
 from pathlib import Path
 
@@ -31,8 +33,29 @@ def rational_points(names, count, seed=0):
     ]
 
 
+#: Seconds of processor time that one test may take in its own process. Children have limits of
+#: their own; time by the clock decides nothing, since the machine may be busy with other work.
+PROCESSOR_SECONDS = 300
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """End a test that computes for too long."""
+
+    def stop(_signal, _frame):
+        pytest.fail(f"{item.name} took more than {PROCESSOR_SECONDS} s of processor time")
+
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, PROCESSOR_SECONDS)
+    try:
+        return (yield)
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
 def pytest_terminal_summary(terminalreporter):
-    """Report how many mutants of the engine the tests have killed, in all and by route."""
+    """Report the mutants of the engine that were killed, and the cases of the adversary."""
     reports = [
         report
         for found in terminalreporter.stats.values()
@@ -47,6 +70,14 @@ def pytest_terminal_summary(terminalreporter):
         by_route.setdefault(dict(report.user_properties).get("route"), []).append(report)
     for route in sorted(by_route.keys() - {None}):
         terminalreporter.write_line(f"  {route}: {_score(by_route[route])}")
+    verdicts = Counter()
+    for found in terminalreporter.stats.values():
+        for report in found:
+            if getattr(report, "when", "") == "call":
+                verdicts.update(dict(report.user_properties).get("adversary", {}))
+    if verdicts:
+        told = ", ".join(f"{count} {kind}" for kind, count in sorted(verdicts.items()))
+        terminalreporter.write_line(f"adversary: {verdicts.total()} cases: {told}")
 
 
 def _score(reports):

@@ -5,10 +5,10 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
+from tests.processes import wait_until_gone
 from tests.specs import RIGID_BODY
 
 #: A compiler that answers, notes that it was started, takes its time, and notes its end.
@@ -46,15 +46,6 @@ def compilers(folder):
     return [int(line) for line in log.read_text().split()] if log.exists() else []
 
 
-def is_running(process):
-    """Whether a process runs; a zombie does not."""
-    try:
-        status = Path(f"/proc/{process}/stat").read_text()
-    except OSError:
-        return False
-    return status.rpartition(")")[2].split()[0] != "Z"
-
-
 @pytest.mark.parametrize(
     ("command", "expected"),
     [
@@ -77,6 +68,6 @@ def test_an_interrupt_ends_children_and_compilers(project, command, expected):
     assert "Traceback" not in errors
     started = compilers(project)
     assert len(started) >= expected
-    while any(map(is_running, started)):
-        time.sleep(0.05)
+    for process in started:
+        wait_until_gone(process)
     assert not (project / "log.end").exists()

@@ -93,7 +93,6 @@ def test_the_wheel_works_from_another_directory(wheel, tmp_path):
 
 
 @pytest.mark.campaign
-@pytest.mark.timeout(900)
 def test_the_wheel_works_in_an_empty_environment(wheel, tmp_path):
     """The same with its own dependencies, fetched from the package index."""
     python = environment(tmp_path / "env")

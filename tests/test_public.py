@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 import coadjoint
-from coadjoint.errors import ClaimError, CoadjointError, DerivationError, SpecError, from_record
+from coadjoint.errors import (
+    ClaimError,
+    CoadjointError,
+    DerivationError,
+    ResourceError,
+    SpecError,
+    from_record,
+)
 from coadjoint.resources import derivations_folder
 from tests.specs import RIGID_BODY
 
@@ -88,6 +95,15 @@ def test_loading_reports_progress(own):
     coadjoint.load(own, progress=lambda *step: seen.append(step))
     assert [step[1] for step in seen][:2] == ["derive", "prove"]
     assert {step[0] for step in seen} == {"my_body"}
+
+
+def test_one_setting_raises_the_limit_of_time(own, monkeypatch):
+    """The environment bounds a derivation, the message says how to raise it, an argument does."""
+    monkeypatch.setenv("COADJOINT_SECONDS", "1")
+    with pytest.raises(ResourceError, match=r"my_body\.toml: stopped .*1 s of processor") as caught:
+        coadjoint.load(own)
+    assert "COADJOINT_SECONDS" in str(caught.value)
+    assert coadjoint.load(own, seconds=300).title == "Free rigid body"
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,11 @@ LONG = {
 
 
 def test_the_checked_in_tree_is_current():
-    """A fresh run gives the bytes of generated/; if not: `coadjoint regenerate`, then commit."""
+    """A fresh run gives the bytes of generated/; if not: `coadjoint regenerate`, then commit.
+
+    `make check` runs this test, and `make check test` runs it once. Each system has a process of
+    its own with a random seed for hashes, so the order of sets leaves no trace either.
+    """
     specs = sorted((ROOT / "derivations").glob("*.toml"))
     outcome = check(specs, ROOT / "generated", jobs=2, complete=True)
     assert len(outcome.rows) == len(specs) >= 16
@@ -206,15 +210,18 @@ def test_two_runs_at_once_end_well(checkout):
         )
         for _ in range(2)
     ]
-    assert [run.wait(timeout=120) for run in runs] == [0, 0]
+    assert [run.wait() for run in runs] == [0, 0]
     assert tree(checkout / "generated") == expected
 
 
-@pytest.mark.parametrize(
-    "seed", ["random", *(pytest.param(seed, marks=pytest.mark.campaign) for seed in "012")]
-)
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", ["0", "1", "2"])
 def test_the_same_bytes_for_every_hash_seed(seed, tmp_path):
-    """Sets and dictionaries of strings iterate differently; the texts do not."""
+    """Sets and dictionaries of strings iterate differently; the texts do not.
+
+    Here all systems in one process; `test_the_checked_in_tree_is_current` has each in a process of
+    its own, whose seed is drawn at random.
+    """
     script = (
         "import sys\n"
         "from pathlib import Path\n"

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import textwrap
-import time
 from pathlib import Path
 
 import pytest
@@ -15,6 +14,7 @@ import pytest
 from coadjoint import sandbox
 from coadjoint.errors import AlgebraError, InternalError, OutputError, ResourceError
 from coadjoint.sandbox import run_bounded
+from tests.processes import wait_until_gone
 
 GENEROUS = {"seconds": 60, "memory": 2**31}
 
@@ -196,7 +196,7 @@ def test_ctrl_c_ends_the_child_and_what_it_started(helper):
     ((stage, child),) = seen
     assert stage == "started"
     for process in [child, *_group(child)]:
-        _wait_for_end(process)
+        wait_until_gone(process)
 
 
 def _group(leader):
@@ -249,19 +249,10 @@ def test_stopping_all_children_ends_what_they_started(helper):
     with pytest.raises(ResourceError, match="SIGKILL"):
         run_bounded(helper + "compiling", None, **GENEROUS, on_progress=stop, children=children)
     for process in seen:
-        _wait_for_end(process)
+        wait_until_gone(process)
     assert len(seen) == 2
     with pytest.raises(ResourceError, match="SIGKILL"):
         run_bounded(helper + "sleep", 600, **GENEROUS, children=children)
-
-
-def _wait_for_end(process):
-    """Wait until a killed process is gone; only one that stays for minutes fails."""
-    for _ in range(6000):
-        if not _alive(process):
-            return
-        time.sleep(0.05)
-    pytest.fail(f"process {process} is still running")
 
 
 def test_prints_do_not_disturb_the_protocol(helper):
@@ -294,16 +285,7 @@ def test_a_child_dies_with_its_parent(helper, tmp_path):
         child = int(parent.stdout.readline())
         parent.kill()
         parent.wait()
-    _wait_for_end(child)
-
-
-def _alive(process):
-    """Whether a process runs; a zombie does not."""
-    try:
-        status = Path(f"/proc/{process}/stat").read_text()
-        return status.rsplit(")", 1)[1].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
+    wait_until_gone(child)
 
 
 def test_messages_are_plain_json():

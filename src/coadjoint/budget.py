@@ -1,16 +1,15 @@
-"""Budgets: how much work one derivation, or one search inside it, may cost.
+"""Budgets: how much processor time one derivation may take.
 
 Comes in: a number of seconds, from a caller, the environment variable ``COADJOINT_SECONDS`` or
-`coadjoint.limits`. Goes out: seconds of processor time for a bounded child (`allowed_seconds`), or
-an object that a search asks whether to go on (`Budget`). Wall time enters neither, so that a
-machine that is busy with other work changes no result.
+`coadjoint.limits`. Goes out: whole seconds for a bounded child (`coadjoint.sandbox`). A search in
+a derivation is bounded by its work instead, counted in operations: time differs between machines,
+and nothing that depends on it may enter a generated file.
 """
 
 from __future__ import annotations
 
 import math
 import os
-from time import thread_time
 from typing import Final
 
 from coadjoint import limits
@@ -51,48 +50,3 @@ def allowed_seconds(given: float | None = None) -> int:
             limit=MOST,
         )
     return math.ceil(seconds)
-
-
-class Budget:
-    """What one search may cost; it asks `spent` between its steps and then ends in order.
-
-    Two bounds, the first that is reached counts. ``steps`` counts units of work that the search
-    names itself (`take`): the same search stops at the same place everywhere, so prefer it.
-    ``seconds`` is processor time of the calling thread: it differs between machines and runs.
-    Therefore nothing that depends on ``seconds`` may enter a generated file, except the remark that
-    something was "not searched further".
-
-    Args:
-        seconds: Processor time from now on.
-        steps: Units of work, or None for no such bound.
-
-    >>> budget = Budget(seconds=60, steps=2)
-    >>> [budget.take() for _ in range(3)]
-    [True, True, False]
-    >>> budget.spent()
-    True
-    """
-
-    def __init__(self, seconds: float, steps: int | None = None) -> None:
-        self.seconds, self.steps = seconds, steps
-        self.taken = 0
-        self._start = thread_time()
-        self._spent = False
-
-    def take(self, steps: int = 1) -> bool:
-        """Ask for units of work before doing them; False if they would pass a bound."""
-        if self.steps is not None and self.taken + steps > self.steps:
-            self._spent = True
-        if self.spent():
-            return False
-        self.taken += steps
-        return True
-
-    def used(self) -> float:
-        """Seconds of processor time since the budget was made."""
-        return thread_time() - self._start
-
-    def spent(self) -> bool:
-        """Whether a bound was reached; what is spent stays spent."""
-        self._spent = self._spent or self.used() >= self.seconds
-        return self._spent

@@ -10,7 +10,7 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-from coadjoint.build.cache import cache_folder
+from coadjoint.build.cache import cache_folder, note_use
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, regenerate
 from coadjoint.solve.system import System, load_folder
@@ -46,4 +46,5 @@ def load(
     outcome = regenerate([source], folder, seconds=seconds, progress=progress)
     for error in outcome.failures.values():
         raise error
+    note_use(folder)
     return load_folder(folder / source.stem)

@@ -18,6 +18,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
@@ -34,7 +35,7 @@ from coadjoint.errors import (
     from_record,
     system_error,
 )
-from coadjoint.limits import WALL_FACTOR
+from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
 
 #: Called with stage, number of stages done, number of stages.
 Progress = Callable[[str, int, int], None]
@@ -100,7 +101,8 @@ def run_bounded(
         memory: Limit of address space, bytes.
         on_progress: Told what the function reports through `report_progress`.
         children: Where to note the child while it runs.
-        wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``.
+        wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``, and what a
+            compiler may take.
         subject: What it is about, for messages: the path of a spec. By default the function.
 
     Returns:
@@ -118,7 +120,7 @@ def run_bounded(
     task = _Task(
         subject,
         _processor_limit(seconds),
-        WALL_FACTOR * seconds if wall is None else wall,
+        WALL_FACTOR * seconds + COMPILE_WALL_SECONDS if wall is None else wall,
         memory,
     )
 
@@ -210,13 +212,36 @@ def _reap(process: subprocess.Popen[str]) -> float:
 def _kill(process: subprocess.Popen[str]) -> None:
     """Kill a child and whatever it started, in sessions of their own too."""
     if process.returncode is None:
-        with suppress(ProcessLookupError, PermissionError):
-            os.kill(process.pid, signal.SIGSTOP)  # nothing new is started from here on
-        for started in _descendants(process.pid):
+        for started in _frozen(process.pid):
             with suppress(ProcessLookupError, PermissionError):
                 os.kill(started, signal.SIGKILL)
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
+
+
+def _frozen(ancestor: int) -> set[int]:
+    """A process and all below it, stopped: what runs could start another meanwhile."""
+    frozen, found = set[int](), {ancestor}
+    while found:
+        for each in found:
+            with suppress(ProcessLookupError, PermissionError):
+                os.kill(each, signal.SIGSTOP)
+        frozen |= found
+        for _ in range(250):  # half a second, where a kernel thread waits for a disk
+            if not any(map(_is_active, frozen)):
+                break
+            time.sleep(0.002)
+        found = set(_descendants(ancestor)) - frozen
+    return frozen
+
+
+def _is_active(process: int) -> bool:
+    """Whether some thread of a process runs or waits, and has not stopped yet."""
+    for path in Path(f"/proc/{process}/task").glob("*/stat"):
+        with suppress(OSError, IndexError):
+            if path.read_text(errors="replace").rpartition(")")[2].split()[0] in "RS":
+                return True
+    return False
 
 
 def _descendants(ancestor: int) -> list[int]:

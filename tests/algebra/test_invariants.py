@@ -15,6 +15,7 @@ from coadjoint.algebra import (
     representation_by_name,
     semidirect_product,
 )
+from coadjoint.algebra.linear import PRIME
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
 from tests.algebra.laws import pairing, vector
@@ -252,3 +253,12 @@ def test_check_matrices_sees_what_is_wrong():
     constants = {**so3.constants, (0, 1): {2: -1}}
     with pytest.raises(AlgebraError, match=r"J1 and J2 .*\(1, 2\): -1.*expected \(1, 2\): 1"):
         LieAlgebra("turned", so3.basis, constants, {}, so3.matrices).check_matrices()
+
+
+def test_a_prime_among_the_constants_does_not_hide_a_rank():
+    """[x_i, y_j] = z but for [x2, y2] = (1 + p) z: its determinant is p, at the first prime p."""
+    constants = {(0, 2): {4: 1}, (0, 3): {4: 1}, (1, 2): {4: 1}, (1, 3): {4: 1 + PRIME}}
+    algebra = LieAlgebra("nearly degenerate", ("x1", "x2", "y1", "y2", "z"), constants)
+    assert algebra.generic_rank() == 4
+    constants[1, 3] = {4: 1}
+    assert LieAlgebra("degenerate", algebra.basis, constants).generic_rank() == 2

@@ -2,13 +2,14 @@
 
 import random
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, islice
 
 import pytest
+from sympy import isprime
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.lie_algebra import LieAlgebra
-from coadjoint.algebra.linear import Span, nullspace, rank, rank_modulo
+from coadjoint.algebra.linear import PRIME, Span, nullspace, primes, rank, rank_modulo
 from coadjoint.errors import AlgebraError, LimitError
 
 
@@ -79,6 +80,14 @@ def test_rank_modulo_a_prime_may_only_fall():
     assert rank([{0: 7, 1: 1}, {0: 7, 1: 8}]) == 2
     assert rank_modulo([{0: 1, 1: 1}, {0: 1, 1: 8}], 7) == 1
     assert rank_modulo(rows) == 2
+
+
+def test_primes_are_prime_and_none_is_left_out():
+    """SymPy, with an algorithm of its own, finds the same ones among numbers 3 modulo 4."""
+    found = list(islice(primes(), 12))
+    expected = [n for n in range(found[-1], PRIME + 1) if n % 4 == 3 and isprime(n)]
+    assert found == expected[::-1]
+    assert found[0] == PRIME == 2**61 - 1
 
 
 def test_a_float_is_refused():

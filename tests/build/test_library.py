@@ -145,7 +145,7 @@ def test_builders_at_one_time_do_not_disturb_one_another(cache):
         subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
         for _ in range(6)
     ]
-    answers = [process.communicate(timeout=120)[0].strip() for process in started]
+    answers = [process.communicate()[0].strip() for process in started]
     assert answers == ["[-1.5, 2.25, -1.0]"] * 6
     assert not list((cache / "work").iterdir())
     assert fetch(library._key(find_compiler(), SOURCES, "exact"))

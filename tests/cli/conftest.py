@@ -46,7 +46,7 @@ def process(folder):
 
     def invoke(*words, **options):
         command = [sys.executable, "-P", "-m", "coadjoint.cli", *map(str, words)]
-        options = {"capture_output": True, "text": True, "timeout": 120} | options
+        options = {"capture_output": True, "text": True} | options
         return subprocess.run(command, check=False, env={**os.environ}, **options)
 
     return invoke

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import resource
+import shutil
 from importlib.metadata import PackageNotFoundError
 
 from coadjoint.cli import doctor
@@ -18,7 +20,8 @@ def test_everything_works_here(run):
     """Compiler, C kernels, cache and packages are found on a machine that runs these tests."""
     found, status = findings(run)
     assert status == 0
-    for what in ("python", "sympy", "numpy", "compiler", "C kernels", "cache"):
+    working = ("limits", "temporary files", "bounded children", "generated")
+    for what in ("python", "sympy", "numpy", "compiler", "C kernels", "cache", *working):
         assert found[what]["status"] == "ok", found[what]
     assert "-ffp-contract=off" in found["compiler"]["found"]
     assert "compiled, loaded and called" in run("doctor").stdout
@@ -59,6 +62,70 @@ def test_a_cache_that_others_may_write_is_a_failure(run, folder, monkeypatch):
     found, status = findings(run)
     assert status == 1
     assert str(folder) in found["cache"]["found"]
+
+
+def test_a_setting_that_is_none_is_a_failure(monkeypatch):
+    """The number of seconds in the environment is looked at."""
+    monkeypatch.setenv("COADJOINT_SECONDS", "soon")
+    finding = doctor._attempt("limits", doctor._limits)
+    assert finding.status == "failed"
+    assert "COADJOINT_SECONDS is 'soon'" in finding.found
+
+
+def test_a_low_limit_of_the_session_is_a_failure(monkeypatch):
+    """A limit of file sizes is named with the command that raises it."""
+    real = resource.getrlimit
+
+    def getrlimit(kind):
+        return (1000, 1000) if kind == resource.RLIMIT_FSIZE else real(kind)
+
+    monkeypatch.setattr(doctor.resource, "getrlimit", getrlimit)
+    finding = doctor._attempt("limits", doctor._limits)
+    assert finding.status == "failed"
+    assert "(ulimit -f) allows 1000 bytes" in finding.found
+
+
+def test_a_disk_without_space_is_a_failure(tmp_path, monkeypatch):
+    """Too little that is free, and a folder that cannot be written, are named."""
+    full = shutil.disk_usage(tmp_path)._replace(free=2**20)
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: full)
+    finding = doctor._attempt("temporary files", lambda: doctor._room(tmp_path))
+    assert (finding.status, "1 MiB left" in finding.found) == ("failed", True)
+    finding = doctor._attempt("temporary files", lambda: doctor._room(tmp_path / "missing"))
+    assert (finding.status, str(tmp_path / "missing") in finding.found) == ("failed", True)
+
+
+def test_no_home_is_a_finding(monkeypatch):
+    """Without a home folder and a setting, there is no place for the cache."""
+
+    def home():
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("COADJOINT_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("coadjoint.build.cache.Path.home", home)
+    assert any("no home folder" in finding.found for finding in doctor._cache_state())
+    assert doctor._attempt("cache", doctor._cache).status == "failed"
+
+
+def test_damage_in_the_cache_heals(tmp_path, monkeypatch):
+    """Damaged objects, and systems of one's own that a killed run left, are remarks."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path))
+    (tmp_path / "kernels").mkdir()
+    (tmp_path / "kernels" / f"{'0' * 64}.so").write_text("damaged")
+    (tmp_path / "systems" / "0123").mkdir(parents=True)
+    tmp_path.chmod(0o700)
+    found = list(doctor._cache_state())
+    assert {finding.status for finding in found} == {"heals"}
+    assert any("is damaged" in finding.found for finding in found)
+    assert any("manifest.json is missing" in finding.found for finding in found)
+
+
+def test_damage_of_the_project_at_hand_is_a_failure(folder):
+    """The generated folder beside ./derivations is looked at."""
+    (folder / "derivations").mkdir()
+    (finding,) = doctor._tree_state()
+    assert (finding.status, finding.found) == ("failed", "generated is not there")
 
 
 def test_a_missing_extra_names_its_command(run, monkeypatch):

@@ -29,6 +29,17 @@ def test_cells_are_text_and_not_markup(capsys):
     assert "\x1b" not in printed
 
 
+def test_a_table_on_a_terminal_holds_no_commands_of_its_own(capsys, monkeypatch):
+    """Text alone: what a terminal would obey is neither written nor shown as an escape."""
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "40")
+    print_table(("a", "b"), [("x" * 30, "y" * 30)])
+    lines = capsys.readouterr().out.splitlines()
+    assert all(line.isprintable() and "\\x1b" not in line for line in lines)
+    assert max(map(len, lines)) <= 40
+
+
 def test_json_has_no_infinity(capsys):
     """What is not finite is null, since JSON has no word for it."""
     print_json({"a": [1.5, float("inf")], "b": (float("nan"), "x")})

@@ -6,12 +6,12 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 from click.testing import CliRunner
 
 from coadjoint.cli import program
+from tests.processes import wait_for_work
 
 # Within the process, so that the start of Python itself is not counted against the help.
 HELP = """
@@ -28,7 +28,7 @@ finally:
 def test_help_lists_every_command_and_imports_nothing_heavy(folder):
     """`coadjoint --help` shows all commands without SymPy, NumPy, pydantic or rich."""
     command = [sys.executable, "-P", "-c", HELP]
-    result = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
     for name in program.COMMANDS:
         assert f"\n  {name} " in result.stdout
     assert result.stderr.strip() == "heavy: []"
@@ -129,10 +129,10 @@ def test_interrupt_of_a_real_run_leaves_no_traceback(folder):
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as child:
-        time.sleep(3)  # long enough to be integrating, which takes minutes
+        wait_for_work(child.pid, 3)  # long enough to be integrating, which takes minutes
         assert child.poll() is None
         child.send_signal(signal.SIGINT)
-        output, error = child.communicate(timeout=30)
+        output, error = child.communicate()
     assert child.returncode == program.INTERRUPTED
     assert (output, error.strip()) == ("", "interrupted")
 
@@ -142,9 +142,7 @@ def test_reader_who_leaves_is_no_traceback(folder):
     command = [sys.executable, "-P", "-m", "coadjoint.cli", "schema"]
     reading, writing = os.pipe()
     os.close(reading)
-    result = subprocess.run(
-        command, stdout=writing, stderr=subprocess.PIPE, text=True, check=False, timeout=60
-    )
+    result = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
     os.close(writing)
     assert result.returncode == 1
     assert result.stderr == ""

@@ -9,6 +9,8 @@ from coadjoint.derive.constrained import ConstrainedMotion
 from coadjoint.derive.kinematics import rate_name
 from coadjoint.derive.solver import Solve, solution_defects, solve_in_kernel, solver_names
 from coadjoint.exact import Field
+from coadjoint.lower.check import check_inverse
+from coadjoint.lower.lowering import lower
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, derived
 
 BLADE = 'blade = "w == y*u"'
@@ -122,3 +124,37 @@ def test_a_saddle_of_the_other_sign_is_seen():
     lines = dict(solve_in_kernel(field, solve))
     turned = dataclasses.replace(solve, matrix=(*solve.matrix[:2], field.vector((-3, -4, 0))))
     assert any(map(bool, solution_defects(field, turned, lines)))
+
+
+#: v stays zero, so that no rate needs the known side of its equation; w goes with it.
+RESTING = """
+title = "A particle that rests along y"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+z = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+v = { role = "velocity", of = "y" }
+w = { role = "velocity", of = "z" }
+[parameters]
+m = { positive = true, default = 1 }
+b = { default = 3 }
+[lagrangian]
+l = "m*(u^2 + v^2 + w^2)/2 - b*x"
+[constraints]
+slide = "w == cos(x)*v"
+rest = "2*v == 0"
+"""
+
+
+def test_a_residual_may_name_what_no_rate_needs():
+    """By hand v' = 0 and u' = -b/m; the known side of v, with cos x in it, has a Jacobian yet."""
+    equations = derived(RESTING)["nonholonomic"]
+    known = dict(equations.exact.definitions)
+    f = equations.setting.field
+    assert known["dv_dt"] == 0
+    assert f.substitute(f.substitute(known["_z1"], known), known) == -f["b"] / f["m"]
+    assert known["du_dt"] == f["_z1"]
+    for program in lower(equations).values():
+        check_inverse(equations, program)

@@ -3,6 +3,7 @@
 import pytest
 
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Field
 from coadjoint.spec.definitions import expand, functions
 from coadjoint.spec.expressions import read_expression
@@ -89,3 +90,32 @@ def test_a_power_in_a_denominator_stays_a_power():
     assert slope == -2 * field["x"] / d / d / d
     (written,) = field.quotients(slope)
     assert [power for _, power in written.divisors] == [3]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("1/(sin(a1)^2 + cos(a1)^2 - 1)", "divides by zero identically"),
+        ("a1/(exp(2*a1) - exp(a1)^2)^2", "divides by zero identically"),
+        ("(log(b1^2) - 2*log(b1))^(-1)", "divides by zero identically"),
+        ("a1/(sqrt(a2 + 1 + 2*sqrt(a2)) - 1 - sqrt(a2))", "may be 0 everywhere"),
+        ("a1/sqrt(-1 - a1^2)", "may be 0 everywhere"),
+        ("log(sin(-a1) + sin(a1))", "the logarithm of 0"),
+        ("inverse(rows(vector(exp(2*a1), exp(a1)), vector(exp(a1), 1)))", "singular matrix"),
+        ("rows(vector(sin(a1)^2 - 1, cos(a1)), vector(cos(a1), -1))^(-1)", "singular matrix"),
+    ],
+)
+def test_what_may_be_zero_is_no_divisor(text, message):
+    """Zero by a relation between functions, or not known to differ from zero at any point."""
+    field = Field(FIELD.names, slots=8)
+    values = {name: field[name] for name in field.names}
+    with pytest.raises(DerivationError, match=message):
+        interpret(read_expression(text, functions({})), values, field)
+
+
+def test_a_divisor_with_functions_is_shown_to_be_nonzero():
+    """A point of the domain shows it, also of a narrow one: 100 < a1 < 101."""
+    field = Field(FIELD.names, slots=8)
+    values = {name: field[name] for name in field.names}
+    text = "a2/sqrt((a1 - 100)*(101 - a1)) + 1/(exp(a1) - 1) + 1/(sin(a1)^2 - 1)"
+    assert interpret(read_expression(text, functions({})), values, field)

@@ -99,7 +99,8 @@ def test_routes_agree_beyond_three_coordinates(changes):
     assert certificate.holds, str(certificate)
     statements = [claim.statement for claim in certificate.claims]
     assert "nambu and poisson give the same motion" in statements
-    assert statements[-1] == f"every Casimir is a function of the {2 + len(changes) // 2} known"
+    count = f"every Casimir is a function of the {2 + len(changes) // 2} known"
+    assert statements[-1].startswith(count)
 
 
 @pytest.mark.parametrize("name", ["nambu_body", "nambu_pendulum"])

@@ -84,7 +84,7 @@ def test_the_bracket_is_proved_and_nothing_commutes_with_all():
     certificate = prove(spec(PAIRS))
     assert certificate.holds, str(certificate)
     statements = {claim.statement for claim in certificate.claims}
-    assert "there are no Casimirs but constants" in statements
+    assert any(text.startswith("there are no Casimirs but constants") for text in statements)
     (refuted,) = prove(spec(PAIRS + '[claims]\ncasimirs = ["k + x"]\n')).refuted
     assert refuted.statement == "k + x is a Casimir"
     assert refuted.counterexample == {}

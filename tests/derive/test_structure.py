@@ -93,6 +93,24 @@ def test_a_table_that_violates_jacobi_is_refused_with_its_triple(ask):
     assert error.parts["defect"] == "x1*x3*k - x3"
 
 
+@pytest.mark.parametrize(
+    ("entry", "verdict"),
+    [
+        ("sin(x2)", "violates"),
+        ("sqrt(x2 + 1 + 2*sqrt(x2)) - sqrt(x2)", "is not known to satisfy"),
+        ("exp(2*x2) - exp(x2)^2 + sin(x2)^2 + cos(-x2)^2", ""),
+    ],
+)
+def test_a_violation_is_shown_at_a_point(entry, verdict):
+    """{x1, x2} = 1 and {x2, x3} = f(x2) need f' = 0: it is not, may be not, or is."""
+    table = [('= "x3"', '= "1"'), ('"k*x1*x2"', f'"{entry}"'), ('"{x3, x1}" = "x1"', "")]
+    if not verdict:
+        assert derive(spec(TABLE, *table)).rates
+        return
+    with pytest.raises(AlgebraError, match=f"the bracket {verdict} the Jacobi identity"):
+        derive(spec(TABLE, *table))
+
+
 def test_the_table_that_is_mended_is_accepted():
     """With k x1 in the place of k x1 x2, and one bracket less, it is an algebra for every k."""
     assert prove(spec(TABLE, ('"k*x1*x2"', '"k*x1"'), ('"{x3, x1}" = "x1"', ""))).holds

@@ -107,6 +107,20 @@ def test_division_by_zero_is_refused():
         1 / (field["x"] - field["x"])
 
 
+def test_division_by_a_hidden_zero_is_refused():
+    """Nor does that of sin^2 + cos^2 - 1, of exp(2x) - exp(x)^2, or a negative power of it."""
+    field = Field(NAMES, slots=4)
+    x = field["x"]
+    circle = field.call("sin", x) ** 2 + field.call("cos", x) ** 2 - 1
+    power = field.call("exp", 2 * x) - field.call("exp", x) ** 2
+    for zero in (circle, power, circle * power + circle):
+        with pytest.raises(ZeroDivisionError):
+            field["y"] / zero
+        with pytest.raises(ZeroDivisionError):
+            zero**-2
+    assert field.is_zero(field["y"] / (circle + 1) - field["y"])
+
+
 def test_sine_and_cosine_reduce_by_their_relation():
     """sin^2 + cos^2 = 1 and sin^4 - cos^4 = 1 - 2 cos^2, but sin + cos is not zero."""
     field = Field(NAMES, slots=4)

@@ -1,12 +1,20 @@
 """Witness points: what is called nonzero is nonzero at a point, with bounds that exclude zero."""
 
+import random
 from fractions import Fraction
 
 import mpmath
 import pytest
 
-from coadjoint.exact import Condition, Field
-from coadjoint.exact.witness import Enclosure, enclosure, is_nonzero, points_inside, witness_nonzero
+from coadjoint.exact import Condition, Field, Region
+from coadjoint.exact.witness import (
+    Enclosure,
+    enclosed_function,
+    enclosure,
+    is_nonzero,
+    points_inside,
+    witness_nonzero,
+)
 
 
 def hidden_zero(field):
@@ -50,10 +58,26 @@ def test_intervals_enclose_the_value():
         assert found.delta < 1e-50
 
 
+@pytest.mark.parametrize("function", ["sqrt", "sin", "cos", "exp", "log"])
+def test_bounds_of_functions_contain_their_values(function):
+    """At random rationals, and near multiples of pi/2, as mpmath says with 120 digits."""
+    source = random.Random(6)
+    with mpmath.workdps(120):
+        for n in range(60):
+            near = Fraction(int(n * mpmath.pi * 10**30 / 2), 10**30)
+            x = abs(source.choice([near, Fraction(source.randint(-900, 900), 77)]))
+            if not x:
+                continue
+            value = getattr(mpmath, function)(mpmath.mpf(x.numerator) / x.denominator)
+            low, high = enclosed_function(function, Enclosure.of(x)).bounds._mpi_
+            assert mpmath.make_mpf(low) <= value <= mpmath.make_mpf(high)
+
+
 def test_a_pole_is_no_value():
     """A division by what may be zero, a root or a logarithm outside its domain: no bounds."""
     field = Field(["x", "y"], slots=4)
-    pole = field.one / (field.call("sin", field["x"]) ** 2 + field.call("cos", field["x"]) ** 2 - 1)
+    root = field.call("sqrt", field["x"])
+    pole = field.one / (field.call("sqrt", field["x"] + 1 + 2 * root) - 1 - root)
     with pytest.raises(ZeroDivisionError):
         enclosure(field, pole, {"x": Fraction(1)})
     assert witness_nonzero(field, pole) is None
@@ -111,3 +135,30 @@ def test_the_sign_of_an_interval_around_zero_is_none():
     assert (third + Enclosure.of(-1) * third).sign == 0
     with pytest.raises(ZeroDivisionError):
         third / (third + Enclosure.of(-1) * third)
+
+
+def test_an_empty_domain_hides_no_analytic_function():
+    """With conditions that contradict each other, x - 1 is shown not to be zero all the same."""
+    field = Field(["x"], slots=2)
+    x = field["x"]
+    field.assume([Condition(x, strict=True), Condition(-x, strict=True)])
+    assert witness_nonzero(field, x - 1)["x"] != 1
+    assert witness_nonzero(field, field.call("exp", x) - 1)
+    assert witness_nonzero(field, field.call("sqrt", x) - 1) is None
+
+
+def test_defaults_lead_into_a_domain_that_is_hard_to_find():
+    """sin(50 x) > 0.9999 for x near 10^4: a default lies inside, and no step leads there."""
+    field = Field(["x", "y"], slots=3)
+    x = field["x"]
+    narrow = field.call("sin", 50 * x) - Fraction(9999, 10000)
+    inside = (narrow, 1 - (x - 10**4) ** 2)
+    element = field.sum(field.call("sqrt", each) for each in inside) * field["y"]
+    assert witness_nonzero(field, element) is None
+    default = next(
+        Fraction(10**7 + n, 1000)
+        for n in range(1000)
+        if mpmath.sin(50 * (mpmath.mpf(10**7 + n) / 1000)) > 0.99995
+    )
+    field.region = Region(defaults={"x": default})
+    assert abs(witness_nonzero(field, element)["x"] - 10**4) < 1

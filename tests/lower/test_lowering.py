@@ -6,7 +6,9 @@ from fractions import Fraction
 import pytest
 import sympy
 
+from coadjoint.algebra.linear import PRIME
 from coadjoint.derive import derive
+from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.graph import Graph
@@ -24,6 +26,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from tests.conftest import rational_points
+from tests.prove.rolling import motion
 from tests.sources import textbook
 from tests.sources.points import to_digits
 from tests.specs import RIGID_BODY, shipped, spec
@@ -63,13 +66,14 @@ def test_lowering_is_undone_exactly(system):
         check_inverse(equations, program)
 
 
+@pytest.mark.parametrize("place", [0, -1], ids=["first", "last"])
 @pytest.mark.parametrize("function", ["rhs", "jacobian", "energy", "observables"])
-def test_the_inverse_check_sees_one_changed_node(function):
+def test_the_inverse_check_sees_one_changed_node(function, place):
     """Negate one output, or one statement, and the check names it."""
     equations = derive(shipped("heavy_top"))
     program = lower(equations)[function]
-    place = next(n for n, o in enumerate(program.outputs) if o.value != Number(Fraction(0)))
-    outputs = list(program.outputs)
+    moving = [n for n, o in enumerate(program.outputs) if o.value != Number(Fraction(0))]
+    outputs, place = list(program.outputs), moving[place]
     outputs[place] = Output(outputs[place].label, Negate(outputs[place].value))
     with pytest.raises(CrossCheckError, match="lowering changed") as caught:
         check_inverse(equations, dataclasses.replace(program, outputs=tuple(outputs)))
@@ -298,3 +302,17 @@ def test_operation_counts_count_differences_once():
     )
     assert changed.operation_counts() == {"add": 1, "negate": 1}
     assert evaluate(Add(a, Negate(b)), {"a": 5, "b": 3}, int, None) == 2
+
+
+def test_a_kernel_that_divides_by_a_prime_is_compared_modulo_another(monkeypatch):
+    """With 1/p for the first prime p there is no value modulo it; where there is none, it fails."""
+    change = ("I*omega^2/2", f"I*omega^2/{PRIME}")
+    equations = motion("chaplygin_sleigh", change).equations
+    program = lower(equations)["rhs"]
+    check_inverse(equations, program)
+    wrong = [program.outputs[1], program.outputs[0], *program.outputs[2:]]
+    with pytest.raises(CrossCheckError, match="lowering changed rhs"):
+        check_inverse(equations, dataclasses.replace(program, outputs=tuple(wrong)))
+    monkeypatch.setattr(Reference, "evaluate", lambda *_: 1 // 0)
+    with pytest.raises(CrossCheckError, match="has values at 0 of 30 random points; expected 3"):
+        check_inverse(equations, program)

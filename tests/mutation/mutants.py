@@ -20,6 +20,7 @@ class Mutant:
         new: What takes its place.
         equivalent: Why no check can see it, if so; else empty.
         always: Whether it is tried in every run of the tests, not only in campaigns.
+        tests: What judges it, as arguments of pytest; by default the tests of its step.
     """
 
     file: str
@@ -27,6 +28,7 @@ class Mutant:
     new: str
     equivalent: str = ""
     always: bool = False
+    tests: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -68,7 +70,60 @@ SIGNS = (
         "opposite[k] if sign * c == 1 else mu[k]",
     ),
 )
+#: Checks that compare less than they say, or nothing, and lowering that multiplies everything
+#: out: tried in every run, by the few tests that see them.
+CHECKS = (
+    Mutant(
+        PROVE + "equivalence.py",
+        "for a, b in zip(first.exact.rates, second.exact.rates, strict=True)",
+        "for a, b in zip(first.exact.rates[:1], second.exact.rates, strict=False)",
+        tests=("tests/prove/test_equivalence.py", "-k", "velocities"),
+    ),
+    Mutant(
+        PROVE + "constrained.py",
+        "defects += [a - field[rate_name(x)], b - field[rate_name(x)]]",
+        "defects += []",
+        tests=("tests/prove/test_equivalence.py", "-k", "solves"),
+    ),
+    Mutant(
+        LOWER + "check.py",
+        "if not field.is_zero(a - b):",
+        "if False:",
+        tests=("tests/lower/test_lowering.py", "-k", "one_changed_node"),
+    ),
+    Mutant(
+        LOWER + "check.py",
+        "zip(program.outputs, found, expected, strict=True):\n        if not",
+        "list(zip(program.outputs, found, expected, strict=True))[:1]:\n        if not",
+        tests=("tests/lower/test_lowering.py", "-k", "one_changed_node"),
+    ),
+    Mutant(
+        LOWER + "check.py",
+        "            if a != b:",
+        "            if False:",
+        tests=("tests/derive/test_projection.py", "-k", "undone"),
+    ),
+    Mutant(
+        LOWER + "lowering.py",
+        "return closed if terms(closed) < terms(element) and not moving else element",
+        "return closed",
+        tests=("tests/lower/test_lowering.py", "-k", "careful_hand and kirchhoff"),
+    ),
+    Mutant(
+        PROVE + "measures.py",
+        "    if _is_certain(motion, measure, samples, found, rank):",
+        "    if found:",
+        tests=("tests/prove/test_measures.py", "-k", "larger_rank"),
+    ),
+    Mutant(
+        "src/coadjoint/regenerate.py",
+        "    if differences:\n        extra =",
+        "    if False:\n        extra =",
+        tests=("tests/test_regenerate.py", "-k", "check_says_what_to_do"),
+    ),
+)
 MUTANTS = (
+    *(replace(mutant, always=True) for mutant in CHECKS),
     *(replace(mutant, always=True) for mutant in SIGNS),
     # structure constants
     Mutant(FAMILIES, "return {(k, j): 1, (j, k): -1}", "return {(k, j): 1, (j, k): 1}"),
@@ -221,10 +276,16 @@ MUTANTS = (
         "equations.exact.energy) - energy]",
         "equations.exact.energy) + energy]",
     ),
-    Mutant(PROVE + "completeness.py", "== len(slopes) + 1", ">= len(slopes)"),
-    Mutant(
-        PROVE + "completeness.py", "(*setting.momenta, *advected)", "(*advected, *setting.momenta)"
-    ),
+    Mutant(POISSON + "casimirs.py", "== len(slopes) + 1", ">= len(slopes)"),
+    Mutant(POISSON + "casimirs.py", "if len(given) >= expected:", "if given:"),
+    Mutant(POISSON + "summands.py", "(i, j, *reached[id(entry)])", "(i, j)"),
+    Mutant(POISSON + "summands.py", "c if a < b else -c", "c"),
+    Mutant(PROVE + "claims.py", "if decide().verdict is Verdict.PROVED:", "if decide():"),
+    Mutant(PROVE + "measures.py", "- len(samples.unit):", "- len(samples.unit) or found:"),
+    Mutant(PROVE + "measures.py", "rates, -point.value(self", "rates, point.value(self"),
+    Mutant(PROVE + "invariant_factors.py", "return rate != 0 and", "return rate == 0 or"),
+    Mutant(PROVE + "reversibility.py", "if name and motion.distribution.kept", "if not name"),
+    Mutant(PROVE + "almost_poisson.py", "plain or total > 0 or total < 0", "True"),
     Mutant(
         PROVE + "completeness.py",
         "expected = structure.dimension - structure",
@@ -248,7 +309,29 @@ MUTANTS = (
     ),
     Mutant(PROVE + "charts.py", "self._ranks[1] - self._ranks[0]", "self._ranks[1]"),
     Mutant(PROVE + "charts.py", "[*slopes, row]) > len(slopes)", "[*slopes, row]) >= len(slopes)"),
-    Mutant(PROVE + "charts.py", "met=len(relations) == missing", "met=bool(relations)"),
+    Mutant(PROVE + "charts.py", "met = len(relations) == missing", "met = bool(relations)"),
+    # ranks, points of constrained motions, integrals that are counted
+    Mutant(
+        "src/coadjoint/poisson/ranks.py",
+        "for column, value in row.items() if value.sign}",
+        "for column, value in row.items()}",
+    ),
+    Mutant(
+        "src/coadjoint/poisson/ranks.py",
+        "islice(primes(), TRIES)",
+        "[PRIME] * TRIES",
+    ),
+    Mutant(PROVE + "functions.py", "None if moves else self._turn(group)", "None"),
+    Mutant(PROVE + "functions.py", "turn if multiple > 0 else _inverse(turn)", "turn"),
+    Mutant(PROVE + "functions.py", "self._functions.proper.add(name)", "pass"),
+    Mutant(PROVE + "samples.py", "if self.functions.proper == self.functions.roots:", "if True:"),
+    Mutant(PROVE + "candidates.py", "if not unproved:", "if True:"),
+    Mutant(PROVE + "candidates.py", "if bounded and certain ==", "if certain =="),
+    Mutant(
+        PROVE + "candidates.py",
+        "if moved.keys() <= place.keys():",
+        "if moved.keys() & place.keys():",
+    ),
     Mutant(PROVE + "ideals.py", "inner.rem(self._basis).terms()", "inner.terms()"),
     Mutant(PROVE + "ideals.py", "root = -self.field.substitute", "root = self.field.substitute"),
     Mutant(PROVE + "ideals.py", "point[name] - by", "point[name] + by"),
@@ -305,6 +388,25 @@ MUTANTS = (
         DEFINITIONS,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
+    ),
+    # Noether with moving time; zeros of solves
+    Mutant(
+        "src/coadjoint/derive/symmetries.py",
+        "resting = equations.closed(_value(setting, symmetry, element))",
+        "resting = values[len(generators)]",
+        tests=("tests/prove/test_symmetries.py", "-k", "moving_time"),
+    ),
+    Mutant(
+        "src/coadjoint/derive/symmetries.py",
+        "X = X - motion.like(scale(equations.closed(energy), turned))",
+        "X = X + motion.like(scale(equations.closed(energy), turned))",
+        tests=("tests/prove/test_symmetries.py", "-k", "by_the_place"),
+    ),
+    Mutant(
+        "src/coadjoint/derive/decided.py",
+        "        if closed is None or self.field.reach(closed) & self._first:\n",
+        "        if closed is None:\n            return self.field.zero\n        if False:\n",
+        tests=("tests/derive/test_decided.py",),
     ),
     # lowering
     Mutant(

@@ -34,9 +34,17 @@ JUDGES = {
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",
     ),
+    "src/coadjoint/poisson/ranks": ("tests/poisson/test_ranks.py",),
+    "src/coadjoint/poisson/casimirs": (
+        "tests/poisson/test_casimirs.py",
+        "tests/prove/test_completeness.py",
+    ),
     "src/coadjoint/poisson": (EQUATIONS, SOURCES + "test_brackets.py", "tests/poisson"),
     "src/coadjoint/exact": ("tests/exact",),
     "src/coadjoint/prove/charts": ("tests/prove/test_charts.py",),
+    "src/coadjoint/prove/functions": ("tests/prove/test_samples.py",),
+    "src/coadjoint/prove/samples": ("tests/prove/test_samples.py",),
+    "src/coadjoint/prove/candidates": ("tests/prove/test_candidates.py",),
     "src/coadjoint/prove/ideals": WHERE,
     "src/coadjoint/prove/zero": WHERE,
     "src/coadjoint/prove/symmetries": (
@@ -96,7 +104,9 @@ def mutate(folder, mutant):
 
 
 def judges_of(mutant):
-    """The tests that judge a mutant; the book alone those of every run."""
+    """The tests that judge a mutant: its own, else the book alone in every run."""
+    if mutant.tests:
+        return mutant.tests
     if mutant.always:
         return (EQUATIONS,)
     return next(tests for start, tests in JUDGES.items() if mutant.file.startswith(start))

@@ -5,14 +5,16 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.algebra import algebra_by_name, direct_sum, from_brackets, semidirect_product
+from coadjoint.algebra.linear import PRIME
 from coadjoint.algebra.representation import defining
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field, element_text
 from coadjoint.limits import MONOMIALS
 from coadjoint.poisson import PoissonStructure, declared, lie_poisson, nambu
 from coadjoint.poisson.casimirs import casimirs
-from coadjoint.poisson.polynomials import read_polynomial
+from coadjoint.poisson.polynomials import Polynomial, read_polynomial
 from coadjoint.poisson.ranks import generic_rank
+from coadjoint.poisson.search import independent_polynomials
 from coadjoint.poisson.summands import restricted_algebra, summands
 
 #: Algebras of dimension at most 11, with the degrees of their Casimirs.
@@ -237,3 +239,9 @@ def test_both_signs_of_the_bracket_have_the_same_casimirs():
         for structure in (lie_poisson(algebra, field, algebra.basis, s) for s in (-1, 1))
     ]
     assert texts[0] == texts[1] != []
+
+
+def test_a_prime_among_coefficients_does_not_hide_independence():
+    """X + y and x + (1 + p) y agree modulo the first prime p, and are independent."""
+    first, second = (Polynomial({(1, 0): 1, (0, 1): 1 + n}) for n in (0, PRIME))
+    assert independent_polynomials([first, first, second], 2, 2) == [first, second]

@@ -1,11 +1,18 @@
 """The bracket in momenta along a distribution, against brackets computed by hand."""
 
+import math
 from dataclasses import replace
+from fractions import Fraction
+from itertools import chain
 
 import pytest
 
 from coadjoint.prove import Verdict
-from coadjoint.prove.almost_poisson import ReducedBracket, about_reduced_bracket
+from coadjoint.prove.almost_poisson import (
+    ReducedBracket,
+    about_reduced_bracket,
+    about_reduced_jacobi,
+)
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Decision, decide_zero
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
@@ -14,7 +21,9 @@ from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived,
 def examined(rates):
     """Every claim about the bracket with its decision."""
     found = {}
-    for statement, kind, examine in about_reduced_bracket(rates):
+    for statement, kind, examine in chain(
+        about_reduced_bracket(rates), about_reduced_jacobi(rates)
+    ):
         result = examine()
         decided = result if isinstance(result, Decision) else decide_zero(result, rates.field)
         found[statement] = (kind, decided.verdict)
@@ -76,7 +85,10 @@ def test_the_defect_of_the_particle_by_hand():
     place = tuple(sorted(triple))
     (found,) = (v for t, v in bracket._defects_at(point, True).items() if t == place)
     assert abs(found) == abs(field.evaluate(expected, point, lambda x: x, None))
-    assert any("almost-Poisson" in statement for statement in examined(motion(PARTICLE)))
+    assert any(
+        statement.startswith("the bracket is not Poisson on any open set, for almost all")
+        for statement in examined(motion(PARTICLE))
+    )
 
 
 def test_exact_defects_and_those_at_a_point_agree():
@@ -146,3 +158,24 @@ def test_a_wrong_energy_has_another_gradient():
     wrong = replace(equations, exact=replace(equations.exact, energy=more))
     defects = ReducedBracket(wrong).gradient_defects()
     assert decide_zero(defects, field).verdict is Verdict.REFUTED
+
+
+def test_defects_with_functions_are_known_by_bounds():
+    """The blade dz = sin(y) dx has the defect -cos(y)/(1 + sin(y)^2), whose sign is certain."""
+    bracket = ReducedBracket(motion(PARTICLE, ("w == y*u", "w == sin(y)*u")).equations)
+    _, decision = bracket.defect_somewhere()
+    assert decision.verdict is Verdict.PROVED
+    place = tuple(sorted(map(bracket.names.index, ("z", "u", "v"))))
+    point = {name: Fraction(0) for name in bracket.field.names} | {
+        "y": Fraction(1),
+        "m": Fraction(1),
+    }
+    values = bracket._defects_at(point, False)
+    expected = math.cos(1) / (1 + math.sin(1) ** 2)
+    assert abs(float(values[place].mid)) == pytest.approx(expected, rel=1e-12)
+
+
+def test_bounds_that_hold_zero_show_no_defect():
+    """With dz = cos(x) dx the constraint is holonomic, whatever is rounded."""
+    bracket = ReducedBracket(motion(PARTICLE, ("w == y*u", "w == cos(x)*u")).equations)
+    assert bracket.defect_somewhere() is None

@@ -6,6 +6,7 @@ import pytest
 
 from coadjoint.derive import Chart, Equations, Exact, Relation, derive
 from coadjoint.derive import setting as settings
+from coadjoint.poisson.ranks import CHANCE
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.charts import ChartMap, reach
 from tests.specs import shipped, spec
@@ -98,10 +99,33 @@ def test_submanifold_is_found_without_a_claim():
 def test_relations_too_few_for_what_is_missing_prove_no_dimension():
     """Pi = (t^2, t^3, t^2) has Pi1 = Pi3, and its cubic relation is beyond what is looked for."""
     first, other = pair(spec(), lambda P, Q: (Q[0] ** 2, Q[0] ** 3, Q[0] ** 2))
-    statement, decision = reach(ChartMap(first, other))
-    assert "dimension 1 of 3: " in statement
+    statement, found = reach(ChartMap(first, other))
+    assert "have dimension at least 1 of 3: " in statement
     assert statement.count(" = 0") == 1
-    assert decision.verdict is Verdict.SUPPORTED
+    assert found.error == CHANCE
+
+
+@pytest.mark.parametrize("number", [1, 0])
+def test_a_rank_is_taken_where_the_relation_holds(number):
+    """Pi = Q (Q.Q - 1) is 0 on the sphere, and off it has the rank three.
+
+    On Q.Q = 0, which has no points but Q = 0, nothing is known of the rank.
+    """
+    first, other = pair(spec(), lambda P, Q: cross(P, Q))
+    field = first.setting.field
+    Q = first.setting.elements(OWN[:3])
+    rest = field.sum(q * q for q in Q) - number
+    chart = dataclasses.replace(
+        other.chart, relations=(Relation("it = 0", rest),), state=tuple(q * rest for q in Q)
+    )
+    maps = ChartMap(first, dataclasses.replace(other, chart=chart))
+    statement, found = reach(maps)
+    assert maps.is_certain == bool(number)
+    if number:
+        assert statement.endswith("have dimension 0 of 3: Pi1 = 0, Pi2 = 0, Pi3 = 0")
+        assert found.verdict is Verdict.PROVED
+    else:
+        assert found.error == "that the relations are no more than they seem is not proved"
 
 
 def test_weight_with_the_other_sign_is_refuted():

@@ -3,8 +3,9 @@
 import pytest
 
 from coadjoint.prove import Verdict
-from coadjoint.prove.findings import first_nonzero
+from coadjoint.prove.findings import NUMBERS, finding, first_nonzero
 from coadjoint.prove.integrability import Basis, Growth, about_integrability, brackets_of
+from coadjoint.prove.zero import Decision, Discovery
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived
 
 #: A disk on a line: its place follows from its angle (Holm 2011, section 12.1).
@@ -71,15 +72,23 @@ def test_a_disk_on_a_line_is_holonomic_and_on_a_plane_it_is_not():
     assert "the constraint is integrable" in line
     assert verdict is Verdict.PROVED
     (plane, first), (growth, second) = found(ON_A_PLANE)
-    assert plane == "the constraints are not integrable: rolling_x([D_vtheta, D_vphi]) = r*sin(phi)"
-    assert growth == "growth vector (2, 3, 4): the constraints are completely nonholonomic"
+    assert plane == (
+        "the constraints are not integrable on any open set, for almost all parameters: "
+        "rolling_x([D_vtheta, D_vphi]) = r*sin(phi)"
+    )
+    assert growth == (
+        "growth vector (2, 3, 4) near almost every point, for almost all parameters: the "
+        "constraints are completely nonholonomic there"
+    )
     assert first is second is Verdict.PROVED
 
 
 def test_the_bracket_of_the_particle_is_that_of_heisenberg():
     """[d/dx + y d/dz, d/dy] = -d/dz, so dw - y du on it is -1."""
     assert values(PARTICLE) == {"blade([D_u, D_v])": "-1"}
-    assert found(PARTICLE)[1][0].startswith("growth vector (2, 3): the constraint is completely")
+    assert found(PARTICLE)[1][0].startswith(
+        "growth vector (2, 3) near almost every point: the constraint is completely"
+    )
 
 
 def test_the_bracket_of_a_sleigh_is_that_of_the_plane():
@@ -96,7 +105,11 @@ def test_the_bracket_of_suslovs_body_is_that_of_rotations():
 
 def test_a_ball_keeps_its_height_alone():
     """Of the three rolling constraints of a ball the height is one on positions: growth (3, 5)."""
-    assert found(BALL)[1] == ("growth vector (3, 5): 1 of the 3 is holonomic", Verdict.PROVED)
+    assert found(BALL)[1] == (
+        "growth vector (3, 5) near almost every point, for almost all parameters: 1 combination of "
+        "the 3 constraints is holonomic there, and no more",
+        Verdict.PROVED,
+    )
 
 
 def test_constraints_that_are_kept_are_solved_for_a_velocity():
@@ -130,10 +143,21 @@ def test_integrability_is_refuted_where_one_bracket_is_spoiled():
 
 @pytest.mark.parametrize("part", ["_minors", "_zeros"])
 def test_growth_is_not_proved_by_wrong_minors(part):
-    """A minor that vanishes leaves a rank supported, one that does not refutes the bound."""
+    """A minor that vanishes leaves a finding, a bordered one that does not refutes the bound."""
     (equations, *_) = derived(BALL).values()
     growth, field = Growth(Basis(equations.distribution)), equations.setting.field
     assert growth.vector == (3, 5)
     setattr(growth, part, [field.zero if part == "_minors" else field["r"]])
-    expected = {"_minors": Verdict.SUPPORTED, "_zeros": Verdict.REFUTED}
-    assert growth.decision.verdict is expected[part]
+    if part == "_minors":
+        assert isinstance(growth.decision, Discovery)
+        assert growth.decision.error == NUMBERS
+    else:
+        assert growth.decision.verdict is Verdict.REFUTED
+
+
+def test_what_numbers_alone_support_is_a_finding():
+    """A bracket that is neither proved zero nor refuted claims nothing."""
+    unsure = Decision(Verdict.SUPPORTED, "50-digit values")
+    statement, _, examine = finding("integrability", unsure, "it is", "it is not")
+    assert statement == "it is"
+    assert examine() == Discovery("50-digit values", error=NUMBERS)

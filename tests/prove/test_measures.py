@@ -1,4 +1,4 @@
-"""Invariant measures: those of books are found and proved, and where none is, that is proved."""
+"""Invariant measures: those of books are found, and what excludes one is said with its scope."""
 
 from fractions import Fraction
 
@@ -7,10 +7,13 @@ import pytest
 
 from coadjoint.exact import element_text
 from coadjoint.prove import Verdict
-from coadjoint.prove.measures import Measure, about_measure, factors
+from coadjoint.prove.invariant_factors import InvariantFactors, factors
+from coadjoint.prove.measures import Measure, about_measure
 from coadjoint.prove.samples import Samples
-from coadjoint.prove.zero import decide_zero
+from coadjoint.prove.zero import Discovery, decide_zero
 from coadjoint.systems import chaplygin_ball
+from tests.constrained import PARTICLE
+from tests.constrained import motion as small
 from tests.prove.rolling import motion
 
 #: Suslov's problem with an axis of the constraint that is an eigenvector of the inertia.
@@ -24,11 +27,25 @@ PRINCIPAL = [
 ]
 
 
+def entries(along):
+    """Statements on the measure of a motion with their decisions."""
+    found = list(about_measure(along))
+    assert {kind for _, kind, _ in found} == {"measure"}
+    return [(statement, examine()) for statement, _, examine in found]
+
+
 def about(name, *changes):
-    """Statement and verdict on the measure of a system."""
-    ((statement, kind, examine),) = about_measure(motion(name, *changes))
-    assert kind == "measure"
-    return statement, examine().verdict
+    """Statement and verdict on the one measure of a system."""
+    ((statement, decision),) = entries(motion(name, *changes))
+    return statement, decision.verdict
+
+
+def refused(along):
+    """What is proved to have no density of the positions, and what was found instead."""
+    (none, proof), (other, found) = entries(along)
+    assert none.startswith("no measure rho ")
+    assert proof.verdict is Verdict.PROVED
+    return none, other, found
 
 
 def test_the_ball_has_chaplygins_measure():
@@ -42,7 +59,7 @@ def test_veselovas_problem_has_a_measure():
     """Veselov and Veselova 1986: (Gamma . I^-1 Gamma)^(1/2), here times (I1 I2 I3)^(1/2)."""
     statement, verdict = about("veselova")
     factor = "Gamma1^2*I2*I3 + Gamma2^2*I1*I3 + Gamma3^2*I1*I2"
-    assert statement == (f"an invariant measure: ({factor})^(1/2) dOmega dGamma on twistless = 0")
+    assert statement == (f"an invariant measure: |{factor}|^(1/2) dOmega dGamma on twistless = 0")
     assert verdict is Verdict.PROVED
 
 
@@ -58,8 +75,8 @@ def test_rouths_sphere_has_the_measure_of_bodies_of_revolution():
     statement, verdict = about("routh_sphere")
     assert verdict is Verdict.PROVED
     assert statement == (
-        f"an invariant measure: ({element_text(ring, first)}) "
-        f"({element_text(ring, rest)})^(1/2) dOmega dGamma"
+        f"an invariant measure: |{element_text(ring, first)}| "
+        f"|{element_text(ring, rest)}|^(1/2) dOmega dGamma"
     )
 
 
@@ -72,20 +89,36 @@ def test_the_volume_itself_is_kept_by_disks():
         assert about(name) == (f"an invariant measure: {volume}", Verdict.PROVED)
 
 
-@pytest.mark.parametrize(
-    ("name", "changes", "along"),
-    [
-        ("chaplygin_ball", [], "Omega1, Omega2, Omega3"),
-        ("chaplygin_sleigh", [], "v"),
-        ("suslov", [], "Omega"),
-    ],
-)
-def test_where_there_is_no_measure_that_is_proved(name, changes, along):
-    """Kozlov 1987: Suslov's problem; the sleigh slows down to an axis; the ball off centre."""
-    statement, verdict = about(name, *changes)
-    assert verdict is Verdict.PROVED
-    assert statement.startswith("no invariant measure rho ")
-    assert f"along {along}" in statement
+def test_the_ball_off_centre_has_no_density_of_the_attitude():
+    """What is proved is said: of densities rho(Gamma), on the unit sphere, at almost all values."""
+    none, other, found = refused(motion("chaplygin_ball"))
+    assert none == (
+        "no measure rho dOmega dGamma with a smooth positive density rho(Gamma) is invariant on "
+        "any open set of states where dot(Gamma, Gamma) = 1, for almost all parameters: what it "
+        "asks for along Omega1, Omega2, Omega3 contradicts itself"
+    )
+    assert other == "no invariant measure was found with a density that depends on velocities"
+    assert isinstance(found, Discovery)
+    assert "velocities, the common divisor of rates" in found.method
+
+
+def test_the_sleigh_keeps_a_measure_with_a_density_in_its_turning():
+    """The measure is dv domega/|omega|, since (I + m a^2) domega/dt = -m a v omega."""
+    none, other, found = refused(motion("chaplygin_sleigh"))
+    assert "rho dv domega with a constant rho is invariant on any open set of states, for" in none
+    assert other == "an invariant measure, where its density is finite: |omega|^(-1) dv domega"
+    assert found.verdict is Verdict.PROVED
+
+
+def test_suslovs_problem_keeps_a_measure_beside_the_line_of_rest():
+    """With a = e3 the body rests where I13 Omega1 + I23 Omega2 = 0; over it the plane is kept."""
+    none, other, found = refused(motion("suslov", ("dot(a, Omega)", "Omega3")))
+    assert "rho dOmega on wheels = 0 with a constant rho is invariant" in none
+    assert other == (
+        "an invariant measure, where its density is finite: |Omega1*I13 + Omega2*I23|^(-1) dOmega "
+        "on wheels = 0"
+    )
+    assert found.verdict is Verdict.PROVED
 
 
 @pytest.mark.parametrize(
@@ -100,17 +133,89 @@ def test_the_exceptions_have_one(name, changes, volume):
     assert about(name, *changes) == (f"an invariant measure: {volume}", Verdict.PROVED)
 
 
-def test_friction_has_no_measure_of_positions():
-    """A vertical disk with resistance shrinks volumes at rest, where no density changes."""
-    change = ("[constraints]", '[forces]\nvtheta = "-r*vtheta"\n\n[constraints]')
-    statement, verdict = about("rolling_disk_vertical", change)
-    assert statement.startswith("no invariant measure rho ")
-    assert "along rest contradicts itself" in statement
-    assert verdict is Verdict.PROVED
-    cubic = ("[constraints]", '[forces]\nvtheta = "-r*vtheta^3"\n\n[constraints]')
-    statement, verdict = about("rolling_disk_vertical", cubic)
-    assert statement.endswith("div X is not affine in the velocities")
-    assert verdict is Verdict.PROVED
+@pytest.mark.parametrize(
+    ("force", "reason", "power"),
+    [
+        ("-r*vtheta", "what it asks for along rest contradicts itself", "-1"),
+        ("-r*vtheta^3", "div X is not affine in the velocities", "-3"),
+    ],
+)
+def test_friction_has_no_measure_of_positions(force, reason, power):
+    """A disk with resistance shrinks volumes, where no density of positions changes.
+
+    dv = -k v^n dt has the measure v^-n dv.
+    """
+    change = ("[constraints]", f'[forces]\nvtheta = "{force}"\n\n[constraints]')
+    none, other, found = refused(motion("rolling_disk_vertical", change))
+    assert "a smooth positive density rho(theta, phi, x, y) is invariant on any open set" in none
+    assert none.endswith(reason)
+    volume = "dtheta dphi dx dy dvtheta dvphi"
+    assert other == (
+        f"an invariant measure, where its density is finite: |vtheta|^({power}) {volume}"
+    )
+    assert found.verdict is Verdict.PROVED
+
+
+#: Linear forces with the eigenvalues 2 and -1, whose left eigenvectors are 2 u + v and u - v.
+SADDLE = [
+    ("w == y*u", "w == 0"),
+    ("[constraints]", '[forces]\nu = "m*(u + v)"\nv = "2*m*u"\n' + "[constraints]"),
+]
+
+
+def test_invariant_lines_that_divide_no_rate_are_found():
+    """With du/dt = u + v, dv/dt = 2 u the determinant of both has the invariant lines."""
+    along = small(PARTICLE, *SADDLE)
+    search = InvariantFactors(along, {})
+    u, v = along.field["u"], along.field["v"]
+    assert search.short() == []
+    assert sorted(map(str, search.all())) == sorted(map(str, [2 * u + v, u - v]))
+    assert not search.is_invariant(u + v)
+    _, other, found = refused(along)
+    assert found.verdict is Verdict.PROVED
+    assert other.startswith("an invariant measure: |u - v| dx dy dz du dv")
+
+
+def test_an_integral_is_no_invariant_factor():
+    """Its powers change no measure: the disk keeps vtheta and vphi."""
+    along = motion("rolling_disk_vertical")
+    search = InvariantFactors(along, {})
+    assert not search.is_invariant(along.field["vtheta"])
+    sleigh = motion("chaplygin_sleigh")
+    assert InvariantFactors(sleigh, {}).is_invariant(sleigh.field["omega"])
+    assert not InvariantFactors(sleigh, {}).is_invariant(sleigh.field["v"])
+
+
+def test_wrong_densities_in_velocities_are_refuted():
+    """|omega| to another power, or a power of v, is no density of the sleigh."""
+    along = motion("chaplygin_sleigh")
+    measure, omega, v = Measure(along), along.field["omega"], along.field["v"]
+
+    def verdict(*powers):
+        return decide_zero([measure.defect(powers)], along.field).verdict
+
+    assert verdict((omega, Fraction(-1))) is Verdict.PROVED
+    assert verdict((omega, Fraction(1))) is Verdict.REFUTED
+    assert verdict((v, Fraction(-1))) is Verdict.REFUTED
+
+
+def test_a_contradiction_of_fields_that_could_have_a_larger_rank_is_found_not_proved():
+    """A density of Gamma whose fields have rank 2 of 3: without the unit length luck is in it."""
+    along = motion("chaplygin_ball", ('default = [0, "0.6", "0.8"]', "default = [0, 1, 1]"))
+    (none, found), *_ = entries(along)
+    assert none.startswith("no measure rho dOmega dGamma")
+    assert isinstance(found, Discovery)
+    assert "chance below" in found.error
+
+
+def test_what_is_not_looked_for_is_told(monkeypatch):
+    """More coupled velocities than determinants can take: no silence, and no claim."""
+    monkeypatch.setattr("coadjoint.prove.measures.SIZE", 2)
+    ((statement, found),) = entries(motion("chaplygin_ball_centred"))
+    assert statement == (
+        "an invariant measure was not looked for: 3 unknowns are solved for together, more than 2"
+    )
+    assert isinstance(found, Discovery)
 
 
 def test_wrong_densities_are_refuted():

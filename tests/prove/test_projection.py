@@ -12,8 +12,9 @@ from tests.constrained import PARTICLE, PENDULUM, derived
 from tests.specs import shipped
 
 ARRIVES, LEAST, STAYS = (
-    "the projection moves every state onto rod",
-    "the projection changes velocities alone, by the least kinetic energy of the change",
+    "the projection moves every state onto rod, where its equations are regular",
+    "the projection changes velocities alone, and the kinetic energy of the change is "
+    "stationary: the least one where kinetic energy is positive",
     "the projection leaves a state on the constraints",
 )
 AFFINE = ('"x*u + y*v == 0"', '"x*u + y*v == g"')

@@ -43,3 +43,19 @@ def test_a_constraint_that_is_kept_must_be_turned_too():
     assert not found(
         PENDULUM, ("x*u + y*v == 0", "x*u + y*v == k"), ("g = {", "k = { default = 1 }\ng = {")
     )
+
+
+def test_a_force_along_a_constraint_tells_no_direction_of_time():
+    """A force k v (x, y) on a particle at a rod is odd in velocities, and the rod takes it."""
+    k = ("g = {", "k = { default = 1 }\ng = {")
+    along = ("[constraints]", '[forces]\nu = "k*x*v"\nv = "k*y*v"\n[constraints]')
+    across = ("[constraints]", '[forces]\nu = "-k*y*v"\nv = "k*x*v"\n[constraints]')
+    assert found(PENDULUM, along, k)
+    assert not found(PENDULUM, across, k)
+
+
+def test_that_a_motion_does_not_run_back_has_the_scope_of_its_parameters():
+    """With friction k of any value but 0."""
+    ((statement, _, _),) = about_reversal(motion(SLEIGH, FRICTION))
+    assert "not time reversible by" in statement
+    assert ", for almost all parameters: " in statement

@@ -67,7 +67,7 @@ def test_the_eccentricity_vector_is_a_hidden_symmetry():
     """L comes from turning positions; the flow of A commutes with the motion, and moves q by p."""
     found = statements(prove(spec(KEPLER)).require())
     assert "the flow of L takes motions to motions, a transformation of positions" in found
-    hidden = "a hidden symmetry: no transformation of positions alone"
+    hidden = "a hidden symmetry: its flow is no transformation of positions alone"
     assert f"the flow of A takes motions to motions, {hidden}" in found
     assert "reversal takes the motion to its reverse" in found
 
@@ -172,6 +172,125 @@ def test_noether_on_configuration_spaces_sees_a_potential(changes):
     wrong = prove(spec(CHARGE, *changes, ("dot(q, q)^2", "q1*q2")))
     assert "J is conserved" in statements_of_refuted(wrong)
     assert not any("Noether" in statement for statement in statements(wrong))
+
+
+#: Time moves with a shift along the first axis, which no force is along.
+PLANE = """
+title = "a particle in the plane"
+routes = ["euler-lagrange"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "q" }
+[parameters]
+m = { positive = true, default = 1 }
+k = { default = 1 }
+c = { default = 1 }
+[lagrangian]
+l = "m*(1 + q2^2)*v1^2/2 + m*v2^2/2 + m*v1*v2/3 - k*q2^2"
+[symmetries.J]
+algebra    = "so(2)"
+vector     = "s"
+generators = { q = "s*vector(1, 0)" }
+time       = "c*s"
+[claims]
+conserved = ["J"]
+"""
+WITH_P = (
+    ('routes = ["euler-lagrange"]', 'routes = ["canonical"]'),
+    ("[parameters]", 'p = { role = "momentum", of = "q" }\n[parameters]'),
+)
+TURN = ("s*vector(1, 0)", "s*vector(-q2, q1)")
+ROUND = ("m*(1 + q2^2)*v1^2/2 + m*v2^2/2 + m*v1*v2/3 - k*q2^2", "m*dot(v, v)/2 - k*dot(q, q)^2")
+STILL = ("s*vector(1, 0)", "s*vector(0, 0)")
+NOETHER = "J is conserved by Noether's theorem, since its flow keeps h"
+STATES = pytest.mark.parametrize("state", [(), WITH_P], ids=["velocities", "momenta"])
+
+
+@STATES
+@pytest.mark.parametrize("changes", [(), (STILL,), (TURN, ROUND)], ids=["shift", "still", "turn"])
+def test_noether_with_moving_time(state, changes):
+    """J = <dl/dv, xi_Q> - E c, by hand, generates what is declared, and is conserved."""
+    declared = spec(PLANE, *state, *changes)
+    q, v, p = (sympy.Matrix(sympy.symbols(f"{name}1:3")) for name in "qvp")
+    m, k, c = sympy.symbols("m k c")
+    mass = sympy.Matrix([[1 + q[1] ** 2, sympy.Rational(1, 3)], [sympy.Rational(1, 3), 1]])
+    potential = k * q[1] ** 2
+    if ROUND in changes:
+        mass, potential = sympy.eye(2), k * q.dot(q) ** 2
+    momentum = p if state else m * mass * v
+    velocity = mass.inv() * p / m if state else v
+    moves = sympy.Matrix({(): [1, 0], (STILL,): [0, 0]}.get(changes, [-q[1], q[0]]))
+    energy = momentum.dot(velocity) / 2 + potential
+    expected = momentum.dot(moves) - c * energy
+    assert sympy.simplify(derive(declared).observables["J"] - expected) == 0
+    certificate = prove(declared)
+    assert certificate.holds
+    assert {NOETHER, "J is their momentum map: {x, J} = dx/ds"} <= {*statements(certificate)}
+
+
+@STATES
+@pytest.mark.parametrize("changes", [(TURN,), (ROUND,)], ids=["turn", "shift"])
+def test_moving_time_does_not_make_symmetries(state, changes):
+    """Turned in a well along one axis, or shifted in a round one, J changes, and E does not."""
+    wrong = prove(spec(PLANE, *state, *changes))
+    assert "J is conserved" in statements_of_refuted(wrong)
+    assert not any("Noether" in statement for statement in statements(wrong))
+
+
+@STATES
+def test_a_declared_map_is_that_without_time(state):
+    """<dl/dv, xi_Q> declared is J, with the part of time; twice of it moves positions twice."""
+    momentum = "p1" if state else "(m*(1 + q2^2)*v1 + m*v2/3)"
+    right, wrong = (('"c*s"', f'"c*s"\nmap = "{factor}s*{momentum}"') for factor in ("", "2*"))
+    assert prove(spec(PLANE, *state, right)).holds
+    refuted = statements_of_refuted(prove(spec(PLANE, *state, wrong)))
+    assert "J is their momentum map: {x, J} = dx/ds" in refuted
+
+
+@STATES
+def test_time_may_move_by_the_place(state):
+    """With tau = q2 the lift to momenta has E dtau/dq; J = p1 - E q2 is conserved by nothing."""
+    local = ('"c*s"', '"s*q2"'), ('["J"]', '["energy"]')
+    certificate = prove(spec(PLANE, *state, *local))
+    assert certificate.holds
+    assert "J is their momentum map: {x, J} = dx/ds" in statements(certificate)
+    assert NOETHER not in statements(certificate)
+
+
+#: Shifts, boosts and time of a free motion: [b, h] = a, and {J_a, J_b} has the mass.
+GALILEI = """[symmetries.J]
+algebra    = { basis = ["a", "b", "h"], brackets = { "[b, h]" = "a" } }
+vector     = "s"
+generators = { q = "s[1]*vector(1, 0)", v = "s[2]*vector(1, 0)" }
+time       = "s[3]"
+[claims]
+conserved = ["J1", "J3"]
+"""
+
+
+def boosts(state, *changes):
+    """A particle that is free along the first axis, its momentum moved by m times the boost."""
+    text = PLANE[: PLANE.index("[symmetries.J]")] + GALILEI
+    change = ('v = "s[2]*vector(1, 0)"', 'p = "m*s[2]*vector(1, 0)"')
+    force = (ROUND[0], "m*dot(v, v)/2 - k*q2^2")
+    return prove(spec(text, *state, force, *([change] if state else []), *changes))
+
+
+@STATES
+def test_boosts_have_the_mass_as_their_cocycle(state):
+    """Galilei's algebra acts; J = (p1, -m q1, -E) is a map to its extension by the mass."""
+    certificate = boosts(state)
+    assert certificate.holds
+    law = "{J_xi, J_eta} = J_[xi, eta] + Sigma(xi, eta) with the constant 2-cocycle Sigma(a, b) = m"
+    assert law in statements(certificate)
+    assert any("J1, J3" in each and "Noether" in each for each in statements(certificate))
+
+
+@STATES
+def test_boosts_against_the_algebra_are_seen(state):
+    """With [b, h] = -a the generators are no action."""
+    wrong = boosts(state, ('"[b, h]" = "a"', '"[b, h]" = "-a"'))
+    assert any("act as" in statement for statement in statements_of_refuted(wrong))
 
 
 FORCED = """

@@ -1,11 +1,11 @@
 """Systems: targets agree, binding, light imports, threads, forks, odd numbers."""
 
 import os
+import resource
 import shutil
 import signal
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -15,6 +15,7 @@ from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.quantities import Quantities, Quantity
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top, kirchhoff, rigid_body
+from tests.processes import processor_seconds, wait_for_work
 
 SYSTEMS = (rigid_body, heavy_top, kirchhoff)
 FUNCTIONS = ("rhs", "jacobian", "energy", "observables", "poisson_tensor")
@@ -126,14 +127,14 @@ def test_a_forked_child_computes():
     heavy_top.rhs(np.ones(6))
     child = os.fork()
     if child == 0:
-        signal.alarm(20)
+        signal.alarm(600)  # what hangs, hangs for ever
         right = np.array_equal(heavy_top.rhs(np.ones(6)), heavy_top.rhs(np.ones(6), target="numpy"))
         os._exit(0 if right else 1)
     assert os.waitpid(child, 0)[1] == 0
 
 
 def test_ctrl_c_ends_a_long_call():
-    """SIGINT during a large evaluation raises KeyboardInterrupt within a second."""
+    """SIGINT during a large evaluation raises KeyboardInterrupt before much more is computed."""
     script = (
         "import numpy as np, sys\n"
         "from coadjoint.systems import heavy_top\n"
@@ -142,16 +143,19 @@ def test_ctrl_c_ends_a_long_call():
         "print('ready', flush=True)\n"
         "while True:\n    heavy_top.jacobian(state)\n"
     )
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with subprocess.Popen(
         [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
         assert process.stdout.readline() == "ready\n"
-        time.sleep(0.5)
+        wait_for_work(process.pid, processor_seconds(process.pid) + 0.5)
+        computed = processor_seconds(process.pid)
         process.send_signal(signal.SIGINT)
-        start = time.perf_counter()
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate()
     assert "KeyboardInterrupt" in errors
-    assert time.perf_counter() - start < 10
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    in_all = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    assert in_all - computed < 5  # an evaluation and the end of Python
 
 
 @pytest.mark.parametrize(

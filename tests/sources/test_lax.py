@@ -209,6 +209,14 @@ def test_2_4_5_manakov_integrals(size, count):
     }
 
 
+def test_2_4_5_the_count_of_integrals_is_found_with_its_scope():
+    """That coefficients depend on the emitted ones rests on ranks: no proof, an error in words."""
+    (finding,) = prove(shipped("manakov_so4")).findings
+    assert finding.statement.startswith("4 independent integrals: the coefficients of tr L^k")
+    assert finding.scope == "near almost every point, for almost all parameters"
+    assert "chance below" in finding.error
+
+
 def test_2_4_5_manakov_integrals_in_seven_dimensions():
     """There are 12, here with a_i = 1, ..., 7, for which the traces are short enough to expand."""
     setting = make_setting(body(7))

@@ -10,14 +10,14 @@ import sys
 from fractions import Fraction
 from itertools import combinations
 from pathlib import Path
-from time import perf_counter, process_time
+from time import process_time
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from coadjoint.derive.interpret import interpret
-from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.errors import CoadjointError, LimitError, SpecError, plain
 from coadjoint.exact import Field
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec, read_spec_text, unpacked
@@ -243,11 +243,11 @@ def write(folder, text=RIGID_BODY, name="sample.toml"):
 
 def refused(path, kind=SpecError):
     """The error that reading a path gives, at once."""
-    start = perf_counter()
+    start = process_time()
     with pytest.raises(kind) as caught:
         read_spec(path)
-    assert perf_counter() - start < 2
-    assert str(caught.value).startswith(str(path))
+    assert process_time() - start < 2
+    assert str(caught.value).startswith(plain(str(path)))
     return caught.value
 
 

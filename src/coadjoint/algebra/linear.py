@@ -10,7 +10,7 @@ Read next: `coadjoint.algebra.invariants`.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from heapq import heappop, heappush
 from math import gcd, isqrt, lcm
@@ -20,8 +20,11 @@ from coadjoint.errors import AlgebraError, LimitError
 
 #: Exponents e of prime numbers 2^e - 1.
 _MERSENNE = (61, 127, 521, 1279, 4423)
-#: The prime that random ranks are taken by; a false rank has a probability of about degree / PRIME.
+#: The first prime that random ranks are taken by.
 PRIME = 2**61 - 1
+#: Bases for which the test of Miller and Rabin decides all numbers below 2^64 (Sorenson and Webster
+#: 2015).
+_BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
 
 Row = dict[int, int]
 
@@ -178,8 +181,34 @@ def rank(rows: Iterable[Mapping[int, Fraction | int]]) -> int:
     return len(number) - len(nullspace(numbered, len(number)))
 
 
+def primes() -> Iterator[int]:
+    """Endless primes that are 3 modulo 4, `PRIME` first: an input may hold any one of them.
+
+    >>> from itertools import islice
+    >>> [2**61 - prime for prime in islice(primes(), 3)]
+    [1, 45, 229]
+    """
+    yield from filter(_is_prime, range(PRIME, 0, -4))
+
+
+def _is_prime(number: int) -> bool:
+    """Whether an odd number between 37 and 2^64 is prime."""
+    odd, twos = number - 1, 0
+    while odd % 2 == 0:
+        odd, twos = odd // 2, twos + 1
+    for base in _BASES:
+        power = pow(base, odd, number)
+        if power != 1 and all(pow(power, 2**n, number) != number - 1 for n in range(twos)):
+            return False
+    return True
+
+
 def rank_modulo(rows: Iterable[Mapping[int, Fraction | int]], prime: int = PRIME) -> int:
-    """The rank modulo a prime: never above the rank over the rationals, nearly always equal."""
+    """The rank modulo a prime: never above the rank over the rationals, nearly always equal.
+
+    Rows are made integral first, so that minors over the rationals are integers, up to a factor
+    for each row, and those that are zero stay so modulo the prime.
+    """
     return len(_eliminate(_integral(rows), prime, min))
 
 

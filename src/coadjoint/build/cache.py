@@ -187,10 +187,16 @@ def fetch(key: str) -> Path | None:
         digest = _read(folder / key).decode("ascii").strip()
         path = folder / f"{digest}.so"
         if digest.isalnum() and hashlib.sha256(_read(path)).hexdigest() == digest:
-            for used in (folder / key, path):
-                os.utime(used)  # what was used last is evicted last
+            note_use(folder / key)
+            note_use(path)
             return path
     return None
+
+
+def note_use(path: Path) -> None:
+    """Make something in the cache the last to be evicted."""
+    with suppress(OSError):
+        os.utime(path)
 
 
 def store(key: str, content: bytes) -> Path:

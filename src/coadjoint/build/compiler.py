@@ -93,6 +93,20 @@ def find_compiler() -> Compiler:
     return found
 
 
+def compiler_version() -> str:
+    """The version of the compiler, or "none" where there is none.
+
+    Raises:
+        CompilerError: There is one that does not work, or one was asked for that is not there.
+    """
+    try:
+        return find_compiler().version
+    except CompilerError as error:
+        if error.found:
+            raise
+        return "none"
+
+
 @cache
 def _find(chosen: str, path: str) -> Compiler | CompilerError:
     """What the search ends in, remembered for each setting of the environment.

@@ -1,13 +1,17 @@
 """Command ``doctor``: what this machine has, what is missing, and how to get it.
 
 Comes in: nothing. Goes out: a table of findings. A missing compiler or extra is a remark, since
-everything works without; what is there and does not work is a failure, exit status 1.
+everything works without, and so is what the next run mends; what is there and does not work is a
+failure, exit status 1. Nothing is repaired. Read next: `coadjoint.render.health`.
 """
 
 from __future__ import annotations
 
 import ctypes
+import os
 import platform
+import resource
+import shutil
 import sys
 import tempfile
 import warnings
@@ -20,8 +24,11 @@ from typing import Final
 import click
 
 from coadjoint import __version__
+from coadjoint.budget import allowed_seconds
 from coadjoint.cli.output import json_option, print_json, print_table
-from coadjoint.errors import CoadjointError, CompilerError
+from coadjoint.errors import CoadjointError, CompilerError, OutputError
+from coadjoint.limits import WORKER_BYTES, WORKER_SECONDS
+from coadjoint.resources import systems_folder
 
 PACKAGES: Final = (
     "sympy",
@@ -36,6 +43,18 @@ PACKAGES: Final = (
 #: Packages of each optional extra.
 EXTRAS: Final = {"plot": ("matplotlib",), "data": ("xarray", "h5netcdf", "h5py"), "c": ("ziglang",)}
 
+#: Limits of the operating system, and what they must allow at the least.
+LEAST: Final = (
+    (resource.RLIMIT_FSIZE, "the limit of file sizes (ulimit -f)", "bytes", 16 * 2**20),
+    (resource.RLIMIT_CPU, "the limit of processor time (ulimit -t)", "seconds", WORKER_SECONDS),
+    (resource.RLIMIT_AS, "the limit of memory (ulimit -v)", "bytes", WORKER_BYTES),
+    (resource.RLIMIT_NOFILE, "the limit of open files (ulimit -n)", "files", 64),
+)
+#: Bytes that must be free for temporary files and in the cache, and that are written for a trial.
+LEAST_FREE: Final = 64 * 2**20
+PROBE_BYTES: Final = 2**16
+
+_RELOAD: Final = "mended when its spec is loaded next"
 PROBE: Final = "int coadjoint_probe(void);\nint coadjoint_probe(void) { return 42; }\n"
 
 
@@ -45,7 +64,8 @@ class Finding:
 
     Attributes:
         what: What was looked at.
-        status: ``ok``, ``missing`` (works without) or ``failed``.
+        status: ``ok``, ``missing`` (works without), ``heals`` (mended by the next run) or
+            ``failed``.
         found: What was found.
         remedy: What to do, or "".
     """
@@ -59,7 +79,7 @@ class Finding:
 @click.command("doctor")
 @json_option
 def command(as_json: bool) -> int:
-    """Look for compiler, cache and packages.
+    """Look for compiler, cache, packages and damaged files.
 
     What is missing is shown with the way to get it; exit status 1 if something does not work.
     """
@@ -81,9 +101,14 @@ def examine() -> Iterator[Finding]:
     yield Finding("machine", "ok", f"{platform.system()} {platform.machine()}")
     for package in PACKAGES:
         yield _package(package)
+    yield _attempt("limits", _limits)
+    yield _attempt("temporary files", lambda: _room(Path(tempfile.gettempdir())))
+    yield _attempt("bounded children", _children)
     yield _attempt("compiler", _compiler)
     yield _attempt("C kernels", _kernels)
     yield _attempt("cache", _cache)
+    yield from _cache_state()
+    yield from _tree_state()
     for extra, packages in EXTRAS.items():
         yield _extra(extra, packages)
 
@@ -122,8 +147,48 @@ def _attempt(what: str, look: Callable[[], str]) -> Finding:
         # No compiler at all: the NumPy kernels do the same. One that is there and fails is a fault.
         status = "missing" if error.parts.get("found") == "" else "failed"
         return Finding(what, status, str(error), "NumPy kernels are used meanwhile")
-    except (CoadjointError, UserWarning, OSError) as error:
+    except (CoadjointError, UserWarning, OSError, AttributeError) as error:
         return Finding(what, "failed", str(error))
+
+
+def _limits() -> str:
+    """Limits of this session and settings that would end a derivation early."""
+    low = [
+        f"{name} allows {found} {unit}; expected {least} or more"
+        for kind, name, unit, least in LEAST
+        if (found := resource.getrlimit(kind)[0]) not in (resource.RLIM_INFINITY, -1)
+        and found < least
+    ]
+    if low:
+        raise OutputError(f"{'; '.join(low)}. Raise the limits of the shell.", found=low)
+    return (
+        f"{allowed_seconds()} s of processor time and {WORKER_BYTES // 2**20} MiB for each system"
+    )
+
+
+def _room(folder: Path) -> str:
+    """Write a file in a folder, and look how much more it takes."""
+    with tempfile.TemporaryFile(dir=folder) as file:
+        file.write(bytes(PROBE_BYTES))
+        file.flush()
+        os.fsync(file.fileno())
+    free = shutil.disk_usage(folder).free
+    if free < LEAST_FREE:
+        raise OutputError(
+            f"{folder} has {free // 2**20} MiB left; expected {LEAST_FREE // 2**20} or more. Free "
+            "some space.",
+            path=str(folder),
+            found=free,
+        )
+    return f"{folder}: {free // 2**20} MiB free"
+
+
+def _children() -> str:
+    """Have a child compute something, within its limits."""
+    from coadjoint.sandbox import run_bounded
+
+    run_bounded("coadjoint.fingerprint:digest", [], seconds=allowed_seconds(), memory=WORKER_BYTES)
+    return "started, limited and heard"
 
 
 def _compiler() -> str:
@@ -157,6 +222,42 @@ def _cache() -> str:
     from coadjoint.build.cache import cache_folder
 
     folder = cache_folder()
+    _room(folder)
     kernels = [path.stat().st_size for path in folder.glob("kernels/*.so")]
     systems = len(list(folder.glob("systems/*/manifest.json")))
     return f"{folder}: {len(kernels)} kernels, {sum(kernels) / 1e6:.1f} MB, {systems} own systems"
+
+
+def _cache_state() -> Iterator[Finding]:
+    """What is damaged or left over in the cache, and in the systems of one's own there."""
+    from coadjoint.build.cache import cache_problems, chosen_folder
+
+    for problem in cache_problems():
+        yield Finding("cache", "heals", problem, "mended when it is used next")
+    folder = chosen_folder()
+    for path in sorted(folder.glob("systems/*")) if folder is not None else ():
+        for found in _tree("own system", path, is_shipped=False):
+            heals = found.remedy.startswith("coadjoint regenerate")
+            yield Finding(found.what, "heals", found.found, _RELOAD) if heals else found
+
+
+def _tree_state() -> Iterator[Finding]:
+    """What is damaged in the generated folder of the project at hand, else the shipped one."""
+    here = Path("derivations").is_dir()
+    folder = Path("generated") if here else systems_folder()
+    problems = list(_tree("generated", folder, is_shipped=not here))
+    yield from problems
+    if not problems:
+        yield Finding("generated", "ok", f"{folder}: as a run left it")
+
+
+def _tree(what: str, folder: Path, *, is_shipped: bool) -> Iterator[Finding]:
+    """Findings about a generated tree."""
+    from coadjoint.render.health import tree_problems
+
+    try:
+        for problem in tree_problems(folder, is_shipped=is_shipped):
+            status = "heals" if problem.heals else "failed"
+            yield Finding(what, status, problem.found, problem.remedy)
+    except OSError as error:
+        yield Finding(what, "failed", f"{folder} cannot be read: {error.strerror or error}")

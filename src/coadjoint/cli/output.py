@@ -7,9 +7,11 @@ time as the rest of a small command.
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -76,18 +78,18 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
     from rich.table import Table
     from rich.text import Text
 
-    console = Console(highlight=False, markup=False, emoji=False)
-    if not console.is_terminal:
-        console.width = 10_000
-    table = Table(box=SIMPLE_HEAD)
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else 10_000
+    drawn = io.StringIO()
+    console = Console(file=drawn, width=width, force_terminal=False, color_system=None)
+    has_lines = (sys.stdout.encoding or "").lower().startswith("utf")
+    table = Table(box=SIMPLE_HEAD if has_lines else None)
     for column in columns:
         justify = "right" if column.startswith(">") else "left"
         table.add_column(column.removeprefix(">"), justify=justify)  # type: ignore[arg-type]
     for row in rows:
         table.add_row(*(Text(printable(cell)) for cell in row))
-    with console.capture() as text:
-        console.print(table)
-    lines = [title, *text.get().splitlines()] if title else text.get().splitlines()
+    console.print(table)
+    lines = [*([title] if title else []), *drawn.getvalue().splitlines()]
     say("\n".join(line.rstrip() for line in lines if line.strip()))
 
 

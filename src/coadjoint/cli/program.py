@@ -16,6 +16,7 @@ that ``coadjoint --help`` loads click and nothing else. Read next: `coadjoint.cl
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
@@ -138,11 +139,10 @@ def _flush() -> None:
 
 def _refused(error: OSError) -> OutputError | None:
     """What the operating system has refused, as an error that is none of ours; else None."""
-    try:
-        _flush()
-    except OutputError as refused:  # the help of a command, which click prints
-        return refused
-    return system_error(error)
+    refused = system_error(error)
+    # Files that are written have names; what has none is the output, e.g. of --help, by click.
+    nameless = error.filename is None and error.errno != errno.ENOENT
+    return unwritten(error) if refused is not None and nameless else refused
 
 
 def _open_closed_streams() -> None:

@@ -19,6 +19,7 @@ from coadjoint.derive.legendre import LARGEST_BLOCK, Matrix, coupled_blocks
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.regular import witness_regular
 from coadjoint.spec import Formula
 
 #: What cannot be inverted and which places it concerns, as an error to raise.
@@ -83,6 +84,8 @@ class Mechanics:
         if problem == SINGULAR:
             problem += "; expected every velocity in the kinetic energy"
             remedy = f"Add the missing kinetic term of {' and '.join(names)}."
+        elif problem == UNKNOWN:
+            remedy = "Write the kinetic energy in simpler functions, or its domain in [domain]."
         else:
             remedy = "Declare momenta: the kernel then solves for the velocities."
         message = f"the mass matrix d2l/d({', '.join(names)})2 {problem}. {remedy}"
@@ -90,6 +93,7 @@ class Mechanics:
 
 
 SINGULAR = "has determinant 0"
+UNKNOWN = "has a determinant that may be 0 everywhere: no point was found where it is certainly not"
 
 
 def mechanics(setting: Setting) -> Mechanics:
@@ -131,8 +135,9 @@ def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
                 "can be written out",
                 block,
             )
-        if field.is_zero(determinant(own)):
-            raise refuse(SINGULAR, block)
+        if witness_regular(field, own) is None:
+            zero = field.is_zero(determinant(own))
+            raise refuse(SINGULAR if zero else UNKNOWN, block)
         for i, row in zip(block, inverse(own), strict=True):
             for j, entry in zip(block, row, strict=True):
                 found[i][j] = entry

@@ -36,13 +36,13 @@ class Decided:
         field: Where all names are symbols.
         members: Names whose values depend on the member: the state.
 
-    >>> field = Field(["x", "a", "_b1", "_b2"], slots=2)
+    >>> field = Field(["x", "a", "_b1"])
     >>> x, a = field["x"], field["a"]
     >>> decided = Decided(field, ["x"])
-    >>> decided.define("_b1", a * field.call("cos", x)), decided.define("_b2", a * x)
-    ((_f1*a), (x*a))
-    >>> decided.value(field["_b2"] / a - x)
-    0
+    >>> decided.define("_b1", a * x)
+    a*x
+    >>> decided.value(field["_b1"] / a - x), decided.value(field["_b1"] * a - x)
+    (0, _b1*a - x)
     """
 
     def __init__(self, field: Field, members: Iterable[str]) -> None:

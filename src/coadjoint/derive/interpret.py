@@ -14,11 +14,14 @@ from typing import Any
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.witness import is_nonzero
 from coadjoint.spec import tree
 
 #: An element, a tuple of elements or a tuple of tuples of elements.
 Quantity = Any
 Matrix = tuple[tuple[Element, ...], ...]
+
+SINGULAR = "the inverse of a singular matrix is asked for; expected det != 0."
 
 
 def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> Quantity:
@@ -38,9 +41,10 @@ def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> 
         match part:
             case tree.Binary(operator="/", right=tree.Power(base=base, exponent=n)) if n > 0:
                 # by the base n times: a factor of its own cancels, its expanded power does not
-                value = below[0]
+                value, divisor = below[0], found[id(base)]
+                check_divisor(divisor, field)
                 for _ in range(n):
-                    value = _divide(value, found[id(base)])
+                    value = _scale(1 / divisor, value)
             case _:
                 value = _value(part, below, values, field)
         found[id(part)] = value
@@ -64,10 +68,19 @@ def _value(
             return _scale(-field.one, below[0])
         case tree.Power(exponent=exponent):
             return _power(below[0], exponent, field)
+        case tree.Binary(operator="/"):
+            check_divisor(below[1], field)
+            return _scale(1 / below[1], below[0])
         case tree.Binary(operator=operator):
             return _BINARY[operator](*below)
         case tree.Call(function="norm"):
             return field.call("sqrt", _dot(below[0], below[0]))
+        case tree.Call(function="inverse"):
+            return _checked_inverse(below[0], field)
+        case tree.Call(function="log") if field.is_zero(below[0]):
+            raise DerivationError(
+                "an expression takes the logarithm of 0; expected a positive one."
+            )
         case tree.Call(function=function) if function in _TENSOR_FUNCTIONS:
             return _TENSOR_FUNCTIONS[function](*below)
         case tree.Call(function=function):
@@ -119,10 +132,21 @@ def _multiply(a: Quantity, b: Quantity) -> Quantity:
     return tuple(_dot(row, b) for row in a)
 
 
-def _divide(a: Quantity, b: Element) -> Quantity:
-    if b == 0:
+def check_divisor(divisor: Element, field: Field) -> None:
+    """Refuse to divide by what is zero, or may be zero everywhere for all that is known.
+
+    Raises:
+        DerivationError: No point of the domain shows that the divisor is not zero.
+    """
+    if is_nonzero(field, divisor):
+        return
+    if field.is_zero(divisor):
         raise DerivationError("an expression divides by zero identically; expected a divisor != 0.")
-    return _scale(1 / b, a)
+    raise DerivationError(
+        "an expression divides by what may be 0 everywhere: no point was found at which the "
+        "divisor is certainly not 0; expected one. Write it in simpler functions, or say in "
+        "[domain] where it is defined."
+    )
 
 
 def _dot(a: tuple[Element, ...], b: tuple[Element, ...]) -> Element:
@@ -167,22 +191,32 @@ def inverse(a: Matrix) -> Matrix:
     """
     det = determinant(a)
     if det == 0:
-        raise DerivationError("the inverse of a singular matrix is asked for; expected det != 0.")
+        raise DerivationError(SINGULAR)
+    share = 1 / det
     if len(a) == 1:
-        return ((1 / det,),)
+        return ((share,),)
     size = range(len(a))
     return tuple(
-        tuple((-1) ** (i + j) * determinant(_minor(a, j, i)) / det for j in size) for i in size
+        tuple((-1) ** (i + j) * determinant(_minor(a, j, i)) * share for j in size) for i in size
     )
+
+
+def _checked_inverse(a: Matrix, field: Field) -> Matrix:
+    """The inverse of a matrix whose determinant is certainly not zero."""
+    det = determinant(a)
+    if field.is_zero(det):
+        raise DerivationError(SINGULAR)
+    check_divisor(det, field)
+    return inverse(a)
 
 
 def _power(base: Quantity, exponent: int, field: Field) -> Quantity:
     if not isinstance(base, tuple):
-        if base == 0 and exponent < 0:
-            return _divide(field.one, base)
+        if exponent < 0:
+            check_divisor(base, field)
         return base**exponent
     if exponent < 0:
-        base, exponent = inverse(base), -exponent
+        base, exponent = _checked_inverse(base, field), -exponent
     result = _diag(tuple(field.one for _ in base))
     for _ in range(exponent):
         result = _multiply(result, base)
@@ -203,7 +237,6 @@ _BINARY: dict[str, Callable[..., Quantity]] = {
     "+": _add,
     "-": _subtract,
     "*": _multiply,
-    "/": _divide,
 }
 _TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "dot": _dot,
@@ -212,7 +245,6 @@ _TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "trace": _trace,
     "transpose": _transpose,
     "det": determinant,
-    "inverse": inverse,
     "diag": _diag,
     "outer": lambda a, b: tuple(tuple(x * y for y in b) for x in a),
     "rows": lambda *rows: rows,

@@ -17,8 +17,8 @@ from coadjoint.derive.setting import Setting, sampled_setting
 from coadjoint.derive.solver import Definition, Solve, solve_in_kernel, solver_names
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.regular import certain_minors, witness_regular
 from coadjoint.limits import COUPLED_VELOCITIES
-from coadjoint.poisson.ranks import generic_rank
 from coadjoint.spec import Spec
 
 #: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.
@@ -147,15 +147,15 @@ def _written_out(
 ) -> dict[str, Element]:
     """Velocities of one block from ``mass * xi = known``, by name."""
     names = [setting.velocities[i] for i in block]
-    if setting.field.is_zero(determinant(matrix)):
-        raise _singular(setting, names)
+    if witness_regular(setting.field, matrix) is None:
+        raise _singular(setting, matrix, names)
     products = (zip(row, known, strict=True) for row in inverse(matrix))
     values = (sum((m * k for m, k in row), setting.field.zero) for row in products)
     return dict(zip(names, values, strict=True))
 
 
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
-    """The leading minors of a block, of which the pivots are quotients, vanish nowhere generic."""
+    """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
     if len(block) > COUPLED_VELOCITIES:
         raise _refusal(
@@ -166,29 +166,32 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
             names[0],
             LimitError,
         )
-    rows = [{j: entry for j, entry in enumerate(row) if entry != 0} for row in matrix]
-    if generic_rank(setting.field, rows) < len(rows):
-        raise _singular(setting, names)
-    for k in range(1, len(rows)):
-        leading = [{j: entry for j, entry in row.items() if j < k} for row in rows[:k]]
-        if generic_rank(setting.field, leading) < k:
-            raise _refusal(
-                setting,
-                f"the kinetic energy of {', '.join(names[:k])} alone is degenerate, and the kernel "
-                "solves for velocities in the order of the algebra; expected a kinetic energy that "
-                "is positive for each. Give a [hamiltonian] and the route lie-poisson instead.",
-                names[k - 1],
-            )
-
-
-def _singular(setting: Setting, names: list[str]) -> DerivationError | LimitError:
-    return _refusal(
+    minors = certain_minors(setting.field, matrix)
+    if minors == len(matrix):
+        return
+    if witness_regular(setting.field, matrix) is None:
+        raise _singular(setting, matrix, names)
+    raise _refusal(
         setting,
-        f"the Lagrangian has no invertible Legendre transform: det d2l/d({', '.join(names)})2 "
-        f"is 0; expected every velocity in the kinetic energy. Add the missing kinetic term of "
-        f"{' and '.join(names)}.",
-        names[0],
+        f"the kinetic energy of {', '.join(names[: minors + 1])} alone is degenerate, and the "
+        "kernel solves for velocities in the order of the algebra; expected a kinetic energy that "
+        "is positive for each. Give a [hamiltonian] and the route lie-poisson instead.",
+        names[minors],
     )
+
+
+def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError | LimitError:
+    """What is wrong with a block whose determinant no point shows to be other than 0."""
+    what = f"det d2l/d({', '.join(names)})2"
+    if len(matrix) > LARGEST_BLOCK or setting.field.is_zero(determinant(matrix)):
+        problem = f"the Lagrangian has no invertible Legendre transform: {what} is 0"
+        remedy = "expected every velocity in the kinetic energy. Add the missing kinetic term of "
+        remedy += f"{' and '.join(names)}."
+    else:
+        problem = "the Legendre transform may be invertible nowhere: no point was found at which "
+        problem += f"{what} is certainly not 0"
+        remedy = "expected a kinetic energy that is positive. Write it in simpler functions."
+    return _refusal(setting, f"{problem}; {remedy}", names[0])
 
 
 def _refusal(

@@ -287,7 +287,7 @@ def _share(setting: Setting, body: Body, a: Sequence[Element]) -> Element:
                 f"solution in the plane ({i + 1}, {j + 1})",
                 f"({i + 1}, {j + 1})",
                 "a potential trace(S*A)/2 with the A of the inertia I_ij = a_i + a_j",
-                "Such a body has no Manakov pair; take the route lie-poisson.",
+                "No pair was found with the A of this inertia; take the route lie-poisson.",
             )
     return share
 

@@ -236,6 +236,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     # a route, and what a transformation makes of a formula, may call its functions with other
     # arguments than the spec does
     more = len(spec.routes) * bool(symbols) + len(spec.transformations)
+    if spec.constraints and _calls_parameters(spec):  # with numbers in their place, twice
+        more += 2
     room = _function_calls(spec) * (1 + more)
     field = Field([*names, *symbols], room, positive)
     parameters = frozenset(name for p in spec.parameters for name in p.components)
@@ -333,6 +335,15 @@ def _function_calls(spec: Spec) -> int:
     """How many elementary functions the formulas of a spec call at the most."""
     nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
     return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
+
+
+def _calls_parameters(spec: Spec) -> bool:
+    """Whether an elementary function is taken of parameters, which have numbers in some proofs."""
+    names = {n for each in spec.parameters for n in (each.name, *each.components)}
+    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    calls = (node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED)
+    inside = (part for call in calls for part in tree.walk(call))
+    return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 
 
 def whole(quantity: Variable | Parameter, values: Mapping[str, Quantity]) -> Quantity:

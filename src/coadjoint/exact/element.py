@@ -11,7 +11,7 @@ Read next: `coadjoint.exact.field`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -42,6 +42,8 @@ class Factors:
         self._functions = frozenset(ring.gens[ring.ngens - functions :])
         self.known: list[PolyElement] = []
         self.monomial: list[bool] = []
+        #: Whether an element that is not the polynomial 0 is zero all the same; a field says.
+        self.is_hidden_zero: Callable[[Element], bool] = lambda _: False
         self._numbers: dict[PolyElement, int] = {}
         self._slopes: dict[tuple[int, int], PolyElement] = {}
         self._left: int | None = None
@@ -301,10 +303,10 @@ class Element:
         """``1 / self``.
 
         Raises:
-            ZeroDivisionError: The element is zero.
+            ZeroDivisionError: The element is zero, also by what the field knows of its functions.
         """
         whole = self.combined()
-        if not whole._parts:
+        if not whole._parts or self.factors.is_hidden_zero(whole):
             raise ZeroDivisionError("the inverse of the zero element")
         (quotient,) = whole._parts.values()
         constant, powers = self.factors.split(quotient.numer)

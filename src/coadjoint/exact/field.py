@@ -79,6 +79,7 @@ class Field:
         self._free = [f"_f{n + 1}" for n in range(2 * slots)]
         self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
         self._factors = Factors(self._ring, len(self._free))
+        self._factors.is_hidden_zero = self._is_hidden_zero
         self._names = (*names, *self._free)
         self._position = {name: n for n, name in enumerate(self._names)}
         self._generators = {
@@ -264,6 +265,12 @@ class Field:
         ``sqrt(3 + 2*sqrt(2)) - 1 - sqrt(2)``; `coadjoint.exact.witness` says what is not zero.
         """
         return bool(self.normal(element) == 0)
+
+    def _is_hidden_zero(self, divisor: Element) -> bool:
+        """Whether a divisor that is a single quotient is zero by the relations of its functions."""
+        if not self.adjoined or len(divisor.parts[0].numer) == 1:
+            return False
+        return self.is_zero(divisor)
 
     def function_free(self, element: Element) -> bool:
         """Whether no adjoined function occurs, so that the normal form decides both ways."""

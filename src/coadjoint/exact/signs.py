@@ -8,6 +8,7 @@ Read next: `coadjoint.exact.relations`, `coadjoint.prove.equivalence`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 from sympy.polys.rings import PolyElement
 
@@ -15,26 +16,55 @@ from coadjoint.exact.element import Element
 from coadjoint.exact.factors import factors_of
 from coadjoint.exact.field import Field
 
-#: The sign of a generator by its place in the ring: 1 or 0 for not known.
+#: Terms of the largest sum in which terms are paired.
+LARGEST_SUM = 100
+#: What is known of a generator, by its place in the ring: 2 if it is positive, 1 if it is not
+#: negative, 0 otherwise.
 KnownSign = Callable[[int], int]
 
 
 def sign_of_sum(p: PolyElement, known: KnownSign, *, strict: bool) -> int:
-    """The common sign of the terms of a polynomial; 0 if there is none.
+    """The sign of a sum of positive or of negative terms; 0 if it is none.
+
+    A term without a sign of its own is made up for by two that have one, ``2*a*b`` by
+    ``a^2 + b^2``: a mean of positive numbers is not less than their geometric one.
 
     Args:
         p: Not zero.
         known: Signs of generators; of one that has none, even powers are not negative.
         strict: Whether the sum may nowhere be 0: one term at least is a product of positive ones.
     """
-    signs, certain = set[int](), False
-    for exponents, coefficient in p.terms():
-        odd = [n for n, e in enumerate(exponents) if e % 2]
-        if not all(known(n) for n in odd):
-            return 0
-        signs.add(1 if coefficient > 0 else -1)
-        certain = certain or all(known(n) for n, e in enumerate(exponents) if e)
-    return signs.pop() if len(signs) == 1 and (certain or not strict) else 0
+    for side in (1, -1):
+        left = _unpaired({e: side * c for e, c in p.terms()}, known)
+        if left is None:
+            continue
+        if not strict or any(
+            all(known(n) == 2 for n, e in enumerate(exponents) if e) for exponents in left
+        ):
+            return side
+    return 0
+
+
+def _unpaired(terms: dict[tuple[int, ...], Any], known: KnownSign) -> set[tuple[int, ...]] | None:
+    """The positive terms that are left when each of the others has its pair; None without one."""
+    positive = {
+        e: c
+        for e, c in terms.items()
+        if c > 0 and all(known(n) for n, power in enumerate(e) if power % 2)
+    }
+    others = {e: c for e, c in terms.items() if e not in positive}
+    if others and len(terms) > LARGEST_SUM:
+        return None
+    for mean, number in others.items():
+        for first in list(positive):
+            second = tuple(2 * m - e for m, e in zip(mean, first, strict=True))
+            pair = positive.get(first, 0) * positive.get(second, 0)
+            if first != second and 4 * pair >= number**2:
+                del positive[first], positive[second]
+                break
+        else:
+            return None
+    return set(positive)
 
 
 def sign(field: Field, element: Element, *, strict: bool = True) -> int:
@@ -48,11 +78,13 @@ def sign(field: Field, element: Element, *, strict: bool = True) -> int:
     Returns:
         1 or -1, or 0 where no sign is certain.
 
-    >>> field = Field(["m", "q", "v"], slots=2, positive=["m"])
+    >>> field = Field(["m", "q", "v"], slots=1, positive=["m"])
     >>> m, q, v = (field[name] for name in "mqv")
     >>> sign(field, m + q**2), sign(field, m * q**2), sign(field, m * q**2, strict=False)
     (1, 0, 1)
     >>> sign(field, m + m * field.call("sin", q) ** 2), sign(field, m - q**2)
+    (1, 0)
+    >>> sign(field, 2 * m + m * field.call("cos", q)), sign(field, m + m * field.call("cos", q))
     (1, 0)
     """
     whole = field.normal(element)
@@ -84,20 +116,19 @@ class Signs:
         return found
 
     def known(self, place: int) -> int:
-        """The sign of a generator, which is 1 or not known."""
+        """What is known of the sign of a generator, as `sign_of_sum` asks."""
         name = self.field.generators[place]
         if name not in self._of_names:
             self._of_names[name] = self._of_generator(name)
         return self._of_names[name]
 
     def _of_generator(self, name: str) -> int:
-        adjoined = self.field.adjoined.get(name)
-        if adjoined is None:
-            return int(name in self.field.positive)
-        if adjoined.function == "sqrt":
-            argument = self.field.normal(adjoined.argument).combined()
-            return int(not self.strict or self.of(argument) == 1)
-        return int(adjoined.function == "exp")
+        known = self.field.adjoined.get(name)
+        if known is None:
+            return 2 * (name in self.field.positive)
+        if known.function == "sqrt":
+            return 1 + (sign(self.field, known.argument) == 1)
+        return 2 * (known.function == "exp")
 
     def _conditions(self) -> Iterator[PolyElement]:
         """Monic factors that the conditions of the field say are positive, and minus the others."""
@@ -134,7 +165,29 @@ class Signs:
         for each in self._forms(p):
             if found := sign_of_sum(each, self.known, strict=self.strict):
                 return found
+        low, high = (self._bound(p, side) for side in (-1, 1))
+        for bound, wanted in ((low, 1), (high, -1)):
+            if bound and sign_of_sum(bound, self.known, strict=self.strict) == wanted:
+                return wanted
         return 0
+
+    def _bound(self, p: PolyElement, side: int) -> PolyElement:
+        """A polynomial with sines and cosines at their worst: ``2 + cos`` is at least ``2 - 1``.
+
+        It bounds the given one from one side where all other factors of its terms are positive.
+        """
+        circular = [n for n, name in enumerate(self.field.generators) if self._is_circular(name)]
+        terms: dict[tuple[int, ...], Any] = {}
+        for exponents, number in p.terms():
+            rest = tuple(0 if n in circular else e for n, e in enumerate(exponents))
+            worst = number if rest == exponents else side * abs(number)
+            terms[rest] = terms.get(rest, 0) + worst
+        return p.ring.from_dict({rest: number for rest, number in terms.items() if number})
+
+    def _is_circular(self, name: str) -> bool:
+        """Whether a generator is a sine or a cosine."""
+        known = self.field.adjoined.get(name)
+        return known is not None and known.function in ("sin", "cos")
 
     def _forms(self, p: PolyElement) -> Sequence[PolyElement]:
         """A polynomial as it is, and with squares of cosines written by those of sines."""

@@ -26,15 +26,16 @@ from coadjoint.exact.field import Field
 #: A value for each symbol.
 Point = dict[str, Fraction]
 
-#: Binary digits of interval bounds.
-PRECISION = 200
+#: Interval arithmetic with 200 binary digits, apart from mpmath's own, whose precision others set.
+INTERVALS = mpmath.ctx_iv.MPIntervalContext()
+INTERVALS.prec = 200
 #: Points at which a value is tried, and how many are drawn to find each.
 TRIES = 12
 DRAWN = 12
 #: Steps from a point outside a domain towards it.
-STEPS = 40
-#: Largest argument of exp, sin and cos; of more, numbers would have millions of digits.
-LARGEST = 10**6
+STEPS = 20
+#: Largest arguments; of more, numbers would have millions of digits, or no digit would be certain.
+LARGEST = {"exp": 10**6, "sin": 10**30, "cos": 10**30}
 #: Where a value is undefined: poles, roots and logarithms of what is not positive, huge numbers.
 UNDEFINED = (ZeroDivisionError, ValueError, OverflowError)
 
@@ -53,7 +54,12 @@ class Enclosure:
     def of(number: Fraction | int) -> Enclosure:
         """The smallest interval around a rational number."""
         exact = Fraction(number)
-        return Enclosure(mpmath.iv.mpf(exact.numerator) / mpmath.iv.mpf(exact.denominator))
+        return Enclosure(INTERVALS.mpf(exact.numerator) / INTERVALS.mpf(exact.denominator))
+
+    @property
+    def size(self) -> Any:
+        """The largest absolute value in the interval."""
+        return abs(self.bounds).b
 
     @property
     def sign(self) -> int:
@@ -82,9 +88,9 @@ def enclosed_function(function: str, argument: Enclosure) -> Enclosure:
     """
     if function in ("sqrt", "log") and argument.sign <= 0:
         raise ValueError(f"{function} of {argument.bounds}, which may not be positive")
-    if function in ("exp", "sin", "cos") and not abs(argument.bounds) < LARGEST:
+    if function in LARGEST and not argument.size < LARGEST[function]:
         raise ValueError(f"{function} of {argument.bounds}")
-    return Enclosure(getattr(mpmath.iv, function)(argument.bounds))
+    return Enclosure(getattr(INTERVALS, function)(argument.bounds))
 
 
 def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> Enclosure:
@@ -94,12 +100,18 @@ def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> 
         ZeroDivisionError: It may have a pole there.
         ValueError: A function in it may be undefined there.
     """
-    before, mpmath.iv.prec = mpmath.iv.prec, PRECISION
-    try:
-        numbers = {name: Enclosure.of(value) for name, value in point.items()}
-        return field.evaluate(element, numbers, Enclosure.of, enclosed_function)
-    finally:
-        mpmath.iv.prec = before
+    return enclosures(field, [element], point)[0]
+
+
+def enclosures(
+    field: Field, elements: Iterable[Element], point: Mapping[str, Fraction]
+) -> list[Enclosure]:
+    """Bounds of several elements at a point; errors as for one."""
+    numbers = {name: Enclosure.of(value) for name, value in point.items()}
+    factors: dict[int, Enclosure] = {}
+    return [
+        field.evaluate(each, numbers, Enclosure.of, enclosed_function, factors) for each in elements
+    ]
 
 
 def witness_nonzero(
@@ -141,6 +153,25 @@ def is_nonzero(field: Field, element: Element) -> bool:
     return field.function_free(element) or witness_nonzero(field, element) is not None
 
 
+def is_entire(field: Field, elements: Iterable[Element]) -> bool:
+    """Whether elements are quotients of functions that are analytic at all real points.
+
+    Then a numerator that is not zero at one point is not zero at almost every point. Roots and
+    logarithms are analytic on each connected part of their domain alone.
+    """
+    called = frozenset[str]().union(*map(field.functions_in, elements))
+    return all(
+        known.function in ("sin", "cos", "exp")
+        and not any(quotient.divisors for quotient in field.quotients(known.argument))
+        for known in map(field.adjoined.__getitem__, called)
+    )
+
+
+def point_text(point: Mapping[str, Fraction]) -> str:
+    """A point for people: ``m = 1, q = -3/5``."""
+    return ", ".join(f"{name} = {value}" for name, value in point.items())
+
+
 def points_inside(
     field: Field, elements: Iterable[Element], drawn: int = TRIES * DRAWN
 ) -> Iterator[Point]:
@@ -151,23 +182,37 @@ def points_inside(
     Args:
         field: Where the elements live.
         elements: What should be defined.
-        drawn: How many points are drawn; there may be none inside the domain.
+        drawn: How many points are drawn; there may be none inside the domain. Elements that are
+            analytic everywhere are then looked at outside: what is not zero there is not zero at
+            almost every point.
     """
     domain = Domain(field, tuple(elements))
+    found = False
     for start in islice(_starts(field, domain.names), drawn):
         point = domain.moved_inside(start)
         if point is not None:
+            found = True
             yield point
+    if not found and is_entire(field, domain.elements):
+        yield from islice(_starts(field, domain.names), TRIES)
 
 
 def _starts(field: Field, names: Iterable[str]) -> Iterator[Point]:
-    """Endless nonzero rationals with the declared signs: small ones first, then of any size."""
+    """Endless nonzero rationals with the declared signs: small ones first, then of any size.
+
+    After the first ones, every other point is at or near the defaults, as far as there are some.
+    """
     source, names = random.Random(1), list(names)  # noqa: S311 (not for secrets)
+    defaults = {name: x for name, x in field.region.defaults.items() if x}
     for count in range(10**9):
         scale = Fraction(10) ** (0 if count < TRIES else source.choice((-2, -1, 0, 1, 2, 3)))
         sizes = [scale * Fraction(source.randint(1, 9), source.randint(1, 5)) for _ in names]
         signs = [1 if name in field.positive else source.choice((-1, 1)) for name in names]
-        yield {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+        point = {name: s * size for name, s, size in zip(names, signs, sizes, strict=True)}
+        if count >= TRIES and count % 2:
+            near = 1 + source.choice((0, 1)) * Fraction(source.randint(-9, 9), 1000)
+            point |= {name: defaults[name] * near for name in names if name in defaults}
+        yield point
 
 
 @dataclass(frozen=True)
@@ -184,9 +229,9 @@ class Domain:
 
     @cached_property
     def positive(self) -> tuple[Element, ...]:
-        """What must be positive: arguments of roots and logarithms, inner ones first; conditions.
+        """What must be positive: symbols, arguments of roots and logarithms, and conditions.
 
-        A condition that allows 0 is asked for more, so that points lie inside.
+        Inner arguments come first. A condition that allows 0 is asked for more: points lie inside.
         """
         conditions = [condition.element for condition in self.field.conditions]
         reached = (*self.elements, *conditions)
@@ -196,7 +241,11 @@ class Domain:
             for name, known in self.field.adjoined.items()
             if name in called and known.function in ("sqrt", "log")
         ]
-        return (*inner, *conditions)
+        names = frozenset[str]().union(*map(self.field.reach, (*reached, *inner)))
+        signed = [
+            self.field[name] for name in self.field.names if name in names & self.field.positive
+        ]
+        return (*signed, *inner, *conditions)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -227,8 +276,7 @@ class Domain:
                     break
                 place = {name: place[name] + step[name] for name in self.names}
             point = {name: Fraction(x).limit_denominator(1000) for name, x in place.items()}
-            signed = all(x > 0 for name, x in point.items() if name in self.field.positive)
-            return point if signed and self.contains(point) else None
+            return point if self.contains(point) else None
         return None
 
     def _step(self, place: Mapping[str, float]) -> dict[str, float] | None:

@@ -272,6 +272,9 @@ def lower(equations: Equations) -> dict[str, Program]:
         for found in factors_of_solves(equations)
         for (i, k), value in found.items()
     ]
+    # what the residuals name has a derivative, whether or not the rates need it
+    inner = dict.fromkeys(each.by for each in slopes if each.by not in setting.state)
+    labelled += [(name, setting.field[name]) for name in inner]
     wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
     programs = {"rhs": rhs, "jacobian": jacobian(wide, equations, slopes)}
     if exact.energy is not None:

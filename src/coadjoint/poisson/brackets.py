@@ -14,6 +14,7 @@ from itertools import combinations
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import is_nonzero
 from coadjoint.poisson.structure import PoissonStructure, antisymmetric, places
 
 Number = int | Fraction | Element
@@ -158,8 +159,9 @@ def _check_closed(
         if defect != 0:
             x, y, z = (coordinates[a] for a in (i, j, k))
             text = element_text(field, defect)
+            known = "is not closed" if is_nonzero(field, defect) else "is not known to be closed"
             raise AlgebraError(
-                f"the magnetic two-form is not closed: dB has the component {text} along "
+                f"the magnetic two-form {known}: dB has the component {text} along "
                 f"d{x} d{y} d{z}; expected 0. Check the brackets of "
                 f"{momenta[i]}, {momenta[j]} and {momenta[k]}.",
                 triple=[momenta[i], momenta[j], momenta[k]],

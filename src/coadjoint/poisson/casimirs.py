@@ -253,7 +253,7 @@ def _search(
         )
         ways.extend(["invariants of the matrix dual by the trace form"] * (len(more) > len(found)))
         bound = f"at most {INVARIANT_TERMS} products of terms (INVARIANT_TERMS)"
-        searched.append(f"invariants of its matrices that take {bound}")
+        searched.append(f"traces of powers or Pfaffians of its matrix dual that take {bound}")
         found = more
 
     steps = search_polynomials, search_matrices
@@ -266,7 +266,7 @@ def _search(
         rational = quotients(structure, bracket, reached)
         generators = independent(structure, [*generators, *rational])
         ways += ["quotients of semi-invariants"] * (len(generators) > count)
-        searched.append(f"quotients of semi-invariants of degree <= {reached}")
+        searched.append(f"products of powers of semi-invariants of degree <= {reached}")
     skipped = "" if reached == degree else _skipped(structure.dimension, degree, reached)
     if known:  # long functions; these are independent of each other by now
         generators = independent(structure, [*known, *generators])[len(known) :]

@@ -1,261 +1,282 @@
-"""Ranks of matrices of functions at almost every point, by arithmetic modulo a large prime.
+"""Ranks of matrices of functions: never above the true rank at almost every point.
 
-Comes in: sparse rows of elements. Goes out: their rank at a random point. A rank modulo p at a
-point never exceeds the generic rank, and falls short of it only where a nonzero minor happens to
-vanish there: for polynomials of degree d with a chance below d/p, about 1e-17, at each of two
-points. Where sines or exponentials occur the rank is that of 50-digit values, and `is_exact` says
-that it bounds nothing; `certain_rank` does, since sin 0, cos 0 and exp 0 are whole numbers. The
-points are the same in every run.
+Comes in: sparse rows of elements. Goes out: the rank that was found, a certain bound from below.
+
+Rational entries are taken at a random point modulo a prime. Where no denominator is zero there,
+this is a homomorphism of rings: a minor with a nonzero value is a nonzero function. Entries with
+elementary functions are taken at a real point where they are defined, with bounds of all values
+(`coadjoint.exact.witness`): a minor whose bounds exclude zero is not zero there, hence at almost
+every point of the connected set around it on which the entries are analytic.
+
+From above nothing is certain. Rational minors of degree d that are not zero vanish at a random
+point with a chance below d/p, about 1e-15, and not at both of two points with two primes; values of
+functions bound no such chance. Who needs the rank itself has to bound it from above by other means,
+as Casimirs do the rank of a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
+primes are the same in every run.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import islice
 from typing import Any
 
 import mpmath
 
-from coadjoint.algebra.linear import PRIME, rank_modulo
-from coadjoint.exact import Element, Field
-from coadjoint.exact.written import Adjoined
+from coadjoint.algebra.linear import PRIME, primes, rank_modulo
+from coadjoint.errors import AlgebraError
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import UNDEFINED, Enclosure, enclosure, points_inside
 
 #: Points at which a rank is taken; the largest counts.
 POINTS = 2
-#: Decimal digits of values where a rank modulo a prime has no meaning, and the relative size below
-#: which a pivot is nothing but rounding.
-DIGITS = 50
-NEGLIGIBLE = mpmath.mpf(10) ** -30
-#: How ranks are known, in words; the last way proves nothing.
-MODULO = "at random points modulo a prime"
-AT_REST = f"{MODULO}, where the arguments of functions are 0"
-BY_VALUES = f"by {DIGITS}-digit values"
-#: Functions of 0, where they are rational.
-AT_ZERO = {"sin": 0, "cos": 1, "exp": 1}
-#: Points without a pole and with all square roots are looked for that often.
+#: Points without a pole are looked for that often, each modulo another prime.
 TRIES = 50
+#: How ranks are known, in words.
+MODULO = "at random points modulo a prime"
+ENCLOSED = "at a real point, with bounds that exclude zero"
+#: How likely it is that a rank is larger than the one found, in words.
+CHANCE = "the ranks are certain from below; that one is larger has a chance below 1e-12"
+NO_CHANCE = (
+    "the ranks are certain from below; that one is larger is excluded by values alone, which bound "
+    "no chance"
+)
+#: Characters of an entry that a message shows.
+SHOWN = 60
 
 
-@dataclass(frozen=True)
 class Residue:
-    """An integer modulo `PRIME`, with what evaluation needs."""
+    """An integer modulo a prime, with what evaluation needs.
 
-    value: int
+    Args:
+        value: The integer, reduced.
+        prime: The prime.
+    """
+
+    __slots__ = ("prime", "value")
+
+    def __init__(self, value: int, prime: int = PRIME) -> None:
+        self.value, self.prime = value, prime
+
+    def __repr__(self) -> str:
+        return f"Residue({self.value}, {self.prime})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Residue):
+            return NotImplemented
+        return (self.value, self.prime) == (other.value, other.prime)
+
+    def __hash__(self) -> int:
+        return hash(self.value)
 
     def __add__(self, other: Residue) -> Residue:
-        return Residue((self.value + other.value) % PRIME)
+        return Residue((self.value + other.value) % self.prime, self.prime)
 
     def __mul__(self, other: Residue) -> Residue:
-        return Residue(self.value * other.value % PRIME)
+        return Residue(self.value * other.value % self.prime, self.prime)
 
     def __neg__(self) -> Residue:
-        return Residue(-self.value % PRIME)
+        return Residue(-self.value % self.prime, self.prime)
 
     def __truediv__(self, other: Residue) -> Residue:
         if not other.value:
-            raise ZeroDivisionError(f"division by zero modulo {PRIME}")
-        return Residue(self.value * pow(other.value, -1, PRIME) % PRIME)
+            raise ZeroDivisionError(f"division by zero modulo {self.prime}")
+        return Residue(self.value * pow(other.value, -1, self.prime) % self.prime, self.prime)
 
 
-def residue(number: Fraction | int) -> Residue:
-    """A rational number modulo `PRIME`."""
-    exact = Fraction(number)
-    return Residue(exact.numerator) / Residue(exact.denominator % PRIME)
+def residue(number: Fraction | int, prime: int = PRIME) -> Residue:
+    """A rational number modulo a prime.
+
+    Raises:
+        ZeroDivisionError: The prime divides the denominator.
+    """
+    top, bottom = Residue(number.numerator % prime, prime), number.denominator
+    return top if bottom == 1 else top / Residue(bottom % prime, prime)
 
 
 def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
-    """Rank of a sparse matrix of elements at almost every point.
+    """The rank of a sparse matrix at almost every point, as found: never above the true one.
+
+    Raises:
+        AlgebraError: No real point was found at which all entries are defined.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
     >>> generic_rank(field, [{0: x, 1: y}, {0: x * y, 1: y**2}])
     1
     """
-    if is_exact(field, (entry for row in rows for entry in row.values())):
-        return _largest(map(rank_modulo, islice(_sampled(field, rows), POINTS)), len(rows))
-    with mpmath.workdps(DIGITS):
-        return _largest(map(_rank_of_values, islice(_valued(field, rows), POINTS)), len(rows))
-
-
-def certain_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
-    """A bound of the generic rank from below, without rounding.
-
-    Where functions occur, it is the rank where all symbols in their arguments are 0: no rank at a
-    point exceeds the generic one. 0 where they are not rational there, as ``log(x)``.
-
-    >>> field = Field(["x", "y"], slots=2)
-    >>> cosine = field.call("cos", field["x"])
-    >>> certain_rank(field, [{0: cosine, 1: field["y"]}, {0: field["x"], 1: cosine}])
-    2
-    """
-    entries = [entry for row in rows for entry in row.values()]
-    if is_exact(field, entries):
-        return generic_rank(field, rows)
-    functions = [f for f in _functions(field, entries) if f.function != "sqrt"]
-    resting = frozenset[str]().union(*(field.reach(f.argument) for f in functions))
-    if not all(_vanishes(field, f.argument) for f in functions):
+    largest, most = 0, _most(rows)
+    if not most:
         return 0
-    source = random.Random(1)  # noqa: S311 (not for secrets)
-    for _ in range(TRIES):
-        with suppress(ZeroDivisionError):
-            point = _random_point(field, source) | dict.fromkeys(resting, Residue(0))
-            return rank_modulo(_residues(field, rows, point))
-    return 0
-
-
-def source_of_ranks(field: Field, *ranks: tuple[Sequence[Mapping[int, Element]], int]) -> str:
-    """How the ranks of some matrices are known: `MODULO`, `AT_REST` or `BY_VALUES`.
-
-    >>> field = Field(["x"], slots=2)
-    >>> source_of_ranks(field, ([{0: field.call("cos", field["x"])}], 1))
-    'at random points modulo a prime, where the arguments of functions are 0'
-    """
-    if all(is_exact(field, row.values()) for rows, _ in ranks for row in rows):
-        return MODULO
-    certain = all(certain_rank(field, rows) == rank for rows, rank in ranks)
-    return AT_REST if certain else BY_VALUES
-
-
-def _vanishes(field: Field, argument: Element) -> bool:
-    """Whether an argument without functions is 0 where its symbols are."""
-    zeros = dict.fromkeys(field.names, Fraction(0))
-    with suppress(ZeroDivisionError):
-        return field.function_free(argument) and not field.evaluate(
-            argument, zeros, Fraction, lambda function, x: x
-        )
-    return False
-
-
-def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> list[int]:
-    """Places of the rows that do not depend on those before them, at almost every point.
-
-    >>> field = Field(["x", "y"])
-    >>> x, y = field["x"], field["y"]
-    >>> independent_rows(field, [{0: x}, {0: x * y}, {0: x, 1: y}])
-    [0, 2]
-    """
-    if is_exact(field, (entry for row in rows for entry in row.values())):
-        return _greedy(next(_sampled(field, rows)), rank_modulo)
-    with mpmath.workdps(DIGITS):
-        return _greedy(next(_valued(field, rows)), _rank_of_values)
-
-
-def _greedy(
-    rows: Sequence[dict[int, Any]], rank: Callable[[list[dict[int, Any]]], int]
-) -> list[int]:
-    """Places of rows of numbers, each of which raises the rank of those chosen before."""
-    chosen: list[int] = []
-    for place, row in enumerate(rows):
-        if rank([*(rows[n] for n in chosen), row]) > len(chosen):
-            chosen.append(place)
-    return chosen
-
-
-def _largest(ranks: Iterable[int], most: int) -> int:
-    """The largest of the ranks at several points; one that cannot grow ends the search."""
-    largest = 0
-    for rank in ranks:
+    exact = is_exact(field, _entries(rows))
+    ranks = _ranks_modulo(field, rows) if exact else map(_count, _bounded(field, rows))
+    for rank in islice(ranks, POINTS):
         largest = max(largest, rank)
         if largest == most:
             break
     return largest
 
 
+def source_of_ranks(field: Field, *ranks: tuple[Sequence[Mapping[int, Element]], int]) -> str:
+    """How the ranks of some matrices are known from below: `MODULO` or `ENCLOSED`.
+
+    >>> field = Field(["x"], slots=2)
+    >>> source_of_ranks(field, ([{0: field.call("cos", field["x"])}], 1))
+    'at a real point, with bounds that exclude zero'
+    """
+    exact = all(is_exact(field, _entries(rows)) for rows, _ in ranks)
+    return MODULO if exact else ENCLOSED
+
+
+def error_of_ranks(field: Field, *matrices: Sequence[Mapping[int, Element]]) -> str:
+    """How likely it is that the rank of one of some matrices is larger than found, in words."""
+    return CHANCE if all(is_exact(field, _entries(rows)) for rows in matrices) else NO_CHANCE
+
+
+def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> list[int]:
+    """Places of the rows that do not depend on those before them, at almost every point.
+
+    That these rows are independent is certain, that the others depend on them is not.
+
+    Raises:
+        AlgebraError: No real point was found at which all entries are defined.
+
+    >>> field = Field(["x", "y"])
+    >>> x, y = field["x"], field["y"]
+    >>> independent_rows(field, [{0: x}, {0: x * y}, {0: x, 1: y}])
+    [0, 2]
+    """
+    if not _most(rows):
+        return []
+    if not is_exact(field, _entries(rows)):
+        return max(islice(_bounded(field, rows), POINTS), key=len)
+    sampled = islice(_sampled(field, rows), POINTS)
+    return max((_chosen(numbers, prime) for prime, numbers in sampled), key=len)
+
+
+def _chosen(rows: Sequence[dict[int, int]], prime: int) -> list[int]:
+    """Places of rows of numbers that do not depend on those before them modulo a prime."""
+    chosen: list[int] = []
+    for place, row in enumerate(rows):
+        if rank_modulo([*(rows[n] for n in chosen), row], prime) > len(chosen):
+            chosen.append(place)
+    return chosen
+
+
 def is_exact(field: Field, elements: Iterable[Element]) -> bool:
-    """Whether ranks of such entries are exact: no function occurs but ``sqrt``."""
-    return all(known.function == "sqrt" for known in _functions(field, elements))
+    """Whether no elementary function occurs, so that ranks modulo a prime make sense.
+
+    A square root modulo a prime has no sign: that of x^2 may be -x there, which it is nowhere for
+    positive x.
+    """
+    return not field.adjoined or all(map(field.function_free, elements))
 
 
-def _functions(field: Field, elements: Iterable[Element]) -> Iterator[Adjoined]:
-    """The functions that occur in elements, or in the arguments of such."""
-    return (field.adjoined[name] for e in elements for name in field.functions_in(e))
+def _entries(rows: Sequence[Mapping[int, Element]]) -> Iterator[Element]:
+    return (entry for row in rows for entry in row.values())
 
 
-def _sampled(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[dict[int, int]]]:
-    """The matrix at random points; poles, and points without the square roots, are passed over."""
+def _most(rows: Sequence[Mapping[int, Element]]) -> int:
+    """The largest rank that the places of nonzero entries allow."""
+    columns = {place for row in rows for place, entry in row.items() if entry}
+    return min(sum(any(row.values()) for row in rows), len(columns))
+
+
+# -- modulo primes --------------------------------------------------------------------------------
+
+
+def _ranks_modulo(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[int]:
+    return (rank_modulo(numbers, prime) for prime, numbers in _sampled(field, rows))
+
+
+def _sampled(
+    field: Field, rows: Sequence[Mapping[int, Element]]
+) -> Iterator[tuple[int, list[dict[int, int]]]]:
+    """The matrix at random points, each modulo a prime of its own; poles are passed over.
+
+    A factor or a denominator that is one of the primes can mislead at one point only.
+    """
     source = random.Random(1)  # noqa: S311 (not for secrets)
-    while True:
+    for prime in islice(primes(), TRIES):
+        point = {name: Residue(source.randrange(1, prime), prime) for name in field.names}
         with suppress(ZeroDivisionError):
-            yield _residues(field, rows, _random_point(field, source))
-
-
-def _random_point(field: Field, source: random.Random) -> dict[str, Residue]:
-    return {name: Residue(source.randrange(1, PRIME)) for name in field.names}
+            yield prime, _residues(field, rows, point, partial(residue, prime=prime))
 
 
 def _residues(
-    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, Residue]
+    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, Residue], number: Any
 ) -> list[dict[int, int]]:
     """The matrix at a point."""
+    factors: dict[int, Residue] = {}
     return [
-        {j: field.evaluate(e, point, residue, residue_call).value for j, e in row.items()}
+        {j: field.evaluate(e, point, number, _no_call, factors).value for j, e in row.items()}
         for row in rows
     ]
 
 
-def residue_call(function: str, argument: Residue) -> Residue:
-    """A square root modulo `PRIME`, or another function where its argument is 0.
+def _no_call(function: str, argument: Residue) -> Residue:
+    raise AssertionError(f"{function}({argument}) in a function-free element")
+
+
+# -- at real points -------------------------------------------------------------------------------
+
+
+def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[int]]:
+    """Places of rows that are certainly independent, at several real points.
 
     Raises:
-        ZeroDivisionError: There is no such value, for roots at every other point.
+        AlgebraError: No real point was found.
     """
-    if function in AT_ZERO and not argument.value:
-        return Residue(AT_ZERO[function])
-    if function != "sqrt":
-        raise ZeroDivisionError(f"{function}({argument.value}) is not rational")
-    root = pow(argument.value, (PRIME + 1) // 4, PRIME)  # PRIME is 3 modulo 4
-    if root * root % PRIME != argument.value:
-        raise ZeroDivisionError(f"no square root of {argument.value} modulo {PRIME}")
-    return Residue(root)
+    found = False
+    for point in points_inside(field, list(_entries(rows))):
+        with suppress(*UNDEFINED):
+            values = [{j: enclosure(field, e, point) for j, e in row.items()} for row in rows]
+            found = True
+            yield _independent(values)
+    if not found:
+        entry = next(e for e in _entries(rows) if not field.function_free(e))
+        text = element_text(field, entry)
+        shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+        raise AlgebraError(
+            f"no point was found where {shown} and what stands with it are real; expected formulas "
+            "that are defined together somewhere. State in [domain] where they are.",
+            found=text,
+        )
 
 
-# -- 50-digit values ------------------------------------------------------------------------------
+def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
+    """Places of rows that are independent of those before, by bounds that exclude zero.
 
-
-def _valued(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[dict[int, Any]]]:
-    """The matrix at random points between 1/2 and 2; points outside a domain are passed over."""
-    source = random.Random(2)  # noqa: S311 (not for secrets)
-    while True:
-        point = {name: mpmath.mpf(source.randint(1000, 4000)) / 2000 for name in field.names}
-        with suppress(ZeroDivisionError, ValueError):
-            yield [
-                {j: field.evaluate(e, point, _decimal, _real) for j, e in row.items()}
-                for row in rows
-            ]
-
-
-def _rank_of_values(rows: Sequence[Mapping[int, Any]]) -> int:
-    """Rank by elimination with the largest pivot, until what is left is rounding."""
-    pending = [dict(row) for row in rows]
-    largest = max((abs(x) for row in pending for x in row.values()), default=0)
-    rank = 0
-    while True:
-        pivots = [(abs(x), i, j) for i, row in enumerate(pending) for j, x in row.items()]
-        size, i, j = max(pivots, default=(0, 0, 0))
-        if size <= NEGLIGIBLE * largest:
-            return rank
-        rank += 1
-        pivot = pending.pop(i)
-        for row in pending:
-            factor = row.get(j, 0) / pivot[j]
-            for column, x in pivot.items():
-                row[column] = row.get(column, 0) - factor * x
-
-
-def _decimal(value: Fraction) -> Any:
-    return mpmath.mpf(value.numerator) / value.denominator
-
-
-def _real(function: str, argument: Any) -> Any:
-    """A real elementary function.
-
-    Raises:
-        ValueError: The argument is outside the real domain.
+    The elimination is one of exact numbers that nobody knows better than their bounds: a pivot is
+    not zero, so that every row that has one raises the rank.
     """
-    if argument <= 0 and function in ("sqrt", "log"):
-        raise ValueError(f"{function} of {argument}")
-    return getattr(mpmath, function)(argument)
+    pivots: list[tuple[int, dict[int, Enclosure]]] = []
+    places, minus = [], Enclosure.of(-1)
+    for place, row in enumerate(rows):
+        rest = dict(row)
+        for column, pivot in pivots:
+            if column in rest:
+                factor = rest.pop(column) / pivot[column]
+                for other, value in pivot.items():
+                    if other != column:
+                        taken = minus * factor * value
+                        rest[other] = rest[other] + taken if other in rest else taken
+        largest = _largest(rest)
+        if largest is not None:
+            pivots.append((largest, rest))
+            places.append(place)
+    return places
+
+
+def _largest(row: Mapping[int, Enclosure]) -> int | None:
+    """The place of the entry that is farthest from zero; None if all may be zero."""
+    certain = {column: abs(value.bounds.mid) for column, value in row.items() if value.sign}
+    return max(certain, key=lambda column: mpmath.mpf(certain[column].a), default=None)
+
+
+def _count(places: Sequence[int]) -> int:
+    return len(places)

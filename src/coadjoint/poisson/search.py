@@ -13,16 +13,19 @@ import random
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import reduce
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, islice
 from math import lcm
 from operator import mul
 
-from coadjoint.algebra.linear import PRIME, nullspace, rank_modulo
+from coadjoint.algebra.linear import nullspace, primes, rank_modulo
 from coadjoint.exact import Element
 from coadjoint.poisson.gradings import Gradings, Weight
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Exponents, Number, Polynomial, monomial_order
 from coadjoint.poisson.structure import PoissonStructure
+
+#: Primes modulo which independence is looked for.
+PRIMES = 2
 
 #: Monomials of one weight, with the character by which the scaling coordinates act on them.
 MonomialClass = tuple[tuple[Number, ...], list[Exponents]]
@@ -112,21 +115,27 @@ def _solutions(
 def independent_polynomials(
     solutions: Iterable[Polynomial], size: int, most: int
 ) -> list[Polynomial]:
-    """Those whose gradients are independent of all before them at a random point, up to a number.
+    """Those whose gradients are independent of all before them, up to a number.
 
-    A rank modulo a prime is a lower bound, so that independence is proved.
+    A rank at a point modulo a prime is a lower bound, so that independence is proved. What is not
+    seen modulo one prime, as of a coefficient that it divides, is seen modulo the other.
     """
     source = random.Random(1)  # noqa: S311 (not for secrets)
-    point = [source.randrange(1, PRIME) for _ in range(size)]
+    points = {p: [source.randrange(1, p) for _ in range(size)] for p in islice(primes(), PRIMES)}
+    slopes: dict[int, list[dict[int, int]]] = {prime: [] for prime in points}
     kept: list[Polynomial] = []
-    slopes: list[dict[int, int]] = []
-    for p in solutions if most else ():
-        slope = p.slopes_modulo(point, PRIME)
-        if rank_modulo([*slopes, slope]) > len(slopes):
-            slopes.append(slope)
-            kept.append(p)
-            if len(kept) == most:
+    for solution in solutions if most else ():
+        for prime, point in points.items():
+            rows = [*slopes[prime], solution.slopes_modulo(point, prime)]
+            if rank_modulo(rows, prime) == len(rows):
                 break
+        else:
+            continue
+        kept.append(solution)
+        for other, point in points.items():
+            slopes[other].append(solution.slopes_modulo(point, other))
+        if len(kept) == most:
+            break
     return kept
 
 

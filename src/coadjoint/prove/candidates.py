@@ -1,17 +1,28 @@
 r"""Integrals of a constrained motion up to a degree: all of them, by an exact linear solve.
 
 A function F that is a polynomial of the velocities and of the positions has unknown numbers as
-coefficients; ``dF/dt = 0`` at random points modulo a prime is linear in them. A rank modulo a prime
-never exceeds the true one, so that there are no more integrals than solutions is a proof, and one
-for almost all parameters, since these are random as well. Functions that agree where the
-constraints hold, and where vectors have the length 1, count as one. Where the motion may run
-backwards, even and odd parts of an integral in the velocities are integrals, and looked for apart.
+coefficients; ``dF/dt = 0`` at random points modulo a prime is linear in them. Functions that agree
+where the constraints hold, and where vectors have the length 1, count as one. Where the motion may
+run backwards, even and odd parts of an integral in the velocities are integrals, and looked for
+apart.
+
+What is certain. Let b be the dimension of the space of all combinations of the monomials, as
+functions. The integrals among them have the dimension b - r, where r is the rank of the derivative
+d/dt on that space. Ranks of values modulo a prime never exceed true ones (`coadjoint.prove.samples`
+says why), so that r is bounded from below, and b too. From above b is bounded by the multiples of
+known relations among the monomials, such as ``x (dot(Gamma, Gamma) - 1)``, since the rank of their
+coefficients is again at least the one modulo the prime. Where both bounds of b meet there are no
+more integrals than were found. Known integrals are in the space as well: as many of their products
+as have independent values bound the dimension from below. Where these meet too, the dimension is
+proved, and all integrals are polynomials in those known. Otherwise there is a finding, which says
+what of it is certain. With random parameters the bound from above holds for almost all of their
+values, with numbers for these numbers.
 
 What is not made of known integrals is written out with the numbers that the parameters have by
-default, lowest degrees first, and proved by its rate there. So Jellett's and Routh's integrals of a
-ball of revolution are found (Routh 1884; Holm 2011, section 12.2.1).
-Comes in: the rates of a constrained motion. Goes out: what is known, what was found, as claims.
-Read next: `coadjoint.prove.measures`, which asks for a volume instead.
+default, lowest degrees first, and kept if it is proved by its rate there. So Jellett's and Routh's
+integrals of a ball of revolution are found (Routh 1884; Holm 2011, section 12.2.1).
+Comes in: the rates of a constrained motion. Goes out: what is known and found, as claims and
+findings. Read next: `coadjoint.prove.measures`, which asks for a volume instead.
 """
 
 from __future__ import annotations
@@ -22,23 +33,19 @@ from fractions import Fraction
 from functools import cached_property, partial
 from itertools import combinations_with_replacement, islice
 from math import gcd, lcm, prod
-from operator import mul
+from operator import add, mul
 
-from coadjoint.algebra.linear import (
-    PRIME,
-    Row,
-    echelon_modulo,
-    nullspace_modulo,
-    rational_vector,
-)
+from coadjoint.algebra.linear import Row, echelon_modulo, nullspace_modulo, rational_vector
 from coadjoint.derive.interpret import Quantity
-from coadjoint.exact import Element
+from coadjoint.exact import Element, element_text
+from coadjoint.poisson.ranks import residue
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.measures import Measure
 from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
-from coadjoint.prove.zero import Decision, Examined, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
 
 #: Degrees in the velocities and in the positions up to which integrals are looked for: those of
@@ -48,11 +55,21 @@ DEGREES = (2, 2)
 MONOMIALS = 200
 #: Points beyond as many as there are unknowns.
 SPARE = 5
+#: Products of known integrals that are tried.
+PRODUCTS = 1000
+#: How a function that a search has found is called.
+FOUND = "those found"
+#: How likely it is that more is wrong than what is certain.
+LUCK = "an error has a chance below 1e-9"
 #: Degrees in the order in which new integrals are looked for, so that generators come first.
 STEPS = ((1, 0), (1, 1), (2, 1), (2, 2))
 
 #: Exponents of the generators.
 Exponents = tuple[int, ...]
+#: A polynomial in the generators modulo the prime.
+Terms = dict[Exponents, int]
+#: The largest sums of exponents of velocities and of positions in a term.
+Degrees = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -75,6 +92,9 @@ class CandidateSearch:
         motion: The motion.
         known: Integrals that are known.
         parameters: Numbers for the parameters; by default they are random.
+
+    Attributes:
+        values_at: Values of the generators, and their rates, by point.
     """
 
     def __init__(
@@ -84,10 +104,12 @@ class CandidateSearch:
         parameters: Mapping[str, Fraction] | None = None,
     ) -> None:
         self.motion, self.field, self.known = motion, motion.field, tuple(known)
-        self.samples = Samples(motion, parameters)
+        self.samples = Samples(motion, parameters, [part for each in known for part in each.parts])
         self._source = self.samples.points()
         self._points: list[Point] = []
-        self.values_at: list[tuple[list[int], list[int]]] = []  # of the generators, and their rates
+        self.values_at: list[tuple[list[int], list[int]]] = []
+        self._rates = motion if parameters is None else AtNumbers(motion, parameters)
+        self._decided: dict[Element, Decision] = {}
 
     # -- the ansatz -----------------------------------------------------------------------
 
@@ -101,7 +123,7 @@ class CandidateSearch:
         """Positions, and functions of such in their place."""
         functions = [
             known
-            for known in self.field.adjoined.values()
+            for known in self.samples.functions.known
             if known.function != "sqrt"
             and self.field.reach(known.argument) & set(self.motion.distribution.frame.positions)
         ]
@@ -110,7 +132,7 @@ class CandidateSearch:
         plain = [name for name in self.motion.distribution.frame.positions if name in moved]
         return (*plain, *(known.generator for known in functions))
 
-    def monomials(self, degrees: tuple[int, int]) -> list[Exponents]:
+    def monomials(self, degrees: Degrees) -> list[Exponents]:
         """Those up to two degrees, the low ones first."""
         parts = [
             [
@@ -133,7 +155,7 @@ class CandidateSearch:
         defects = reversal_defects(self.motion)
         return all(map(self.field.is_zero, defects.values()))
 
-    def sectors(self, degrees: tuple[int, int]) -> list[list[Exponents]]:
+    def sectors(self, degrees: Degrees) -> list[list[Exponents]]:
         """Monomials that an integral can have together."""
         whole, count = self.monomials(degrees), len(self.velocities)
         if not self.reversible:
@@ -156,22 +178,147 @@ class CandidateSearch:
 
     def integrals(self, monomials: Sequence[Exponents]) -> list[Row]:
         """A basis of the integrals among combinations of monomials, by their places."""
-        count = len(self.points(len(monomials) + SPARE))
-        tables = [_table(*values, monomials) for values in self.values_at[:count]]
-        basis = sorted(echelon_modulo(dict(enumerate(values)) for values, _ in tables))
+        basis = self._basis(monomials)
+        tables = self._tables(monomials)
         rows = [{n: rates[place] for n, place in enumerate(basis)} for _, rates in tables]
         return [
             {basis[n]: value for n, value in vector.items()}
-            for vector in nullspace_modulo(rows, len(basis))
+            for vector in nullspace_modulo(rows, len(basis), self.samples.prime)
         ]
 
-    def found(self, degrees: tuple[int, int]) -> list[tuple[Sequence[Exponents], Row]]:
+    def _tables(self, monomials: Sequence[Exponents]) -> list[tuple[list[int], list[int]]]:
+        """Values of monomials, and their rates, at more points than there are monomials."""
+        count, prime = len(self.points(len(monomials) + SPARE)), self.samples.prime
+        return [_table(*values, monomials, prime) for values in self.values_at[:count]]
+
+    def _basis(self, monomials: Sequence[Exponents]) -> list[int]:
+        """Places of monomials that are independent as functions; of all others, points say no."""
+        rows = (dict(enumerate(values)) for values, _ in self._tables(monomials))
+        return sorted(echelon_modulo(rows, self.samples.prime))
+
+    def found(self, degrees: Degrees) -> list[tuple[Sequence[Exponents], Row]]:
         """A basis of the integrals up to some degrees, each as monomials and coefficients."""
         return [
             (monomials, vector)
             for monomials in self.sectors(degrees)
             for vector in self.integrals(monomials)
         ]
+
+    # -- what is certain ------------------------------------------------------------------
+
+    def bounded(self, degrees: Degrees) -> bool:
+        """Whether there are certainly no more integrals than `found`: all relations are known."""
+        return all(
+            len(self._basis(monomials)) + self._related(monomials, degrees) == len(monomials)
+            for monomials in self.sectors(degrees)
+        )
+
+    def _related(self, monomials: Sequence[Exponents], degrees: Degrees) -> int:
+        """How many independent relations between monomials are multiples of known ones."""
+        place = {exponents: n for n, exponents in enumerate(monomials)}
+        rows = list[Row]()
+        for terms in self._relations:
+            for shift in self.monomials(degrees):
+                moved = {tuple(map(add, e, shift)): x for e, x in terms.items()}
+                if moved.keys() <= place.keys():
+                    rows.append({place[e]: x for e, x in moved.items()})
+        return len(echelon_modulo(rows, self.samples.prime))
+
+    @cached_property
+    def _relations(self) -> list[Terms]:
+        """What is zero at all points: constraints, lengths, and sines and cosines on a circle."""
+        circles = [
+            self.field[known.generator] ** 2 + self.field[known.partner] ** 2 - 1
+            for known in self.samples.functions.known
+            if known.function == "sin" and known.generator in self.positions
+        ]
+        zero = [*self.samples.where.relations, *self._solved, *circles]
+        return [terms for terms in map(self._terms, filter(self._holds, zero)) if terms]
+
+    @property
+    def _solved(self) -> list[Element]:
+        """The kept constraints solved for velocities: what is a common factor of them is gone."""
+        allowed = Measure(self.motion).allowed.items()
+        return [self.field.normal(self.field[name] - root) for name, root in allowed]
+
+    def _holds(self, relation: Element) -> bool:
+        """Whether a relation holds at points; what does not is certainly none."""
+        return not any(point.value(relation) for point in self.points(SPARE))
+
+    def _terms(self, element: Element) -> Terms | None:
+        """The numerator as a polynomial in the generators; None where it is none."""
+        names, state = (*self.velocities, *self.positions), set(self.samples.state)
+        (point,), prime = self.points(1), self.samples.prime
+        terms = Terms()
+        for quotient in self.field.quotients(element.combined()):
+            for monomial in quotient.monomials:
+                powers, value = dict(monomial.powers), residue(monomial.number, prime).value
+                exponents = tuple(powers.pop(name, 0) for name in names)
+                for name, exponent in powers.items():
+                    if self.field.reach(self.field[name]) & state:
+                        return None
+                    value = value * pow(point.value(self.field[name]), exponent, prime) % prime
+                terms[exponents] = (terms.get(exponents, 0) + value) % prime
+        return {exponents: value for exponents, value in terms.items() if value}
+
+    def _degrees(self, function: Element) -> Degrees | None:
+        """The degrees of a polynomial, reduced by the relations; None for other functions."""
+        state = set(self.samples.state)
+        whole = self.field.normal(function).combined()
+        if any(
+            self.field.reach(d) & state for q in self.field.quotients(whole) for d, _ in q.divisors
+        ):
+            return None
+        forms = [self._terms(whole), self._terms(self.samples.where.remainder(whole))]
+        count, found = len(self.velocities), list[Degrees]()
+        for terms in forms:
+            if terms is not None:
+                sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
+                found.append((max(a for a, _ in sums), max(b for _, b in sums)))
+        return min(found, default=None)
+
+    def polynomials(self, degrees: Degrees) -> tuple[int, list[str]]:
+        """How many polynomials in known integrals are independent, and in which of these.
+
+        Only proved integrals count. The degrees of a product are the sums of those of its factors.
+        """
+        parts = [(each, part) for each in self.known for part in each.parts]
+        degrees_of = [self._degrees(part) for _, part in parts]
+        known = [(e, p, d) for (e, p), d in zip(parts, degrees_of, strict=True) if d and any(d)]
+        while True:
+            count, used = self._products(degrees, known)
+            unproved = [n for n in used if not self._is_proved(known[n][1])]
+            if not unproved:
+                return count, list(dict.fromkeys(known[n][0].text for n in used))
+            known = [each for n, each in enumerate(known) if n not in unproved]
+
+    def _products(
+        self, degrees: Degrees, known: Sequence[tuple[Known, Element, Degrees]]
+    ) -> tuple[int, list[int]]:
+        """The number of independent products, that of constants among them, and their factors."""
+        count, prime = len(self.points(len(self.monomials(degrees)) + SPARE)), self.samples.prime
+        values = [[p.value(part) for p in self._points[:count]] for _, part, _ in known]
+        pivots, used = dict[int, list[int]](), set[int]()
+        for factors in islice(_factors([d for *_, d in known], degrees), PRODUCTS):
+            row = [prod(values[n][p] for n in factors) % prime for p in range(count)]
+            for pivot, other in pivots.items():
+                row = [(x - row[pivot] * y) % prime for x, y in zip(row, other, strict=True)]
+            first = next((p for p, x in enumerate(row) if x), None)
+            if first is not None:
+                scale = pow(row[first], -1, prime)
+                pivots[first] = [x * scale % prime for x in row]
+                used |= {*factors}
+        return len(pivots), sorted(used)
+
+    def drift(self, part: Element) -> Decision:
+        """Whether a function is conserved where the points lie."""
+        if part not in self._decided:
+            rate = self._rates.rate(part)
+            self._decided[part] = decide_zero([rate], self.field, self.samples.where)
+        return self._decided[part]
+
+    def _is_proved(self, part: Element) -> bool:
+        return self.drift(part).verdict is Verdict.PROVED
 
     # -- what is new ----------------------------------------------------------------------
 
@@ -186,10 +333,10 @@ class CandidateSearch:
             [point.value(slope) for slope in self.field.gradient(part, state)]
             for part in (*self.samples.where.relations, *parts)
         ]
-        rank, places = _rank(span), []
+        rank, places = self._rank(span), []
         for place, (monomials, vector) in enumerate(found):
             slopes = self._gradient(point, monomials, vector)
-            if _rank([*span, slopes]) > rank:
+            if self._rank([*span, slopes]) > rank:
                 span, rank = [*span, slopes], rank + 1
                 places.append(place)
         return places
@@ -200,24 +347,32 @@ class CandidateSearch:
         slopes = dict.fromkeys(self.samples.state, 0)
         for place, outer in enumerate(self._slopes):
             along = [int(n == place) for n in range(len(x))]
-            rate = sum(map(mul, vector.values(), _table(x, along, used)[1]))
+            rate = sum(map(mul, vector.values(), _table(x, along, used, self.samples.prime)[1]))
             for name, inner in outer:
                 slopes[name] += rate * point.value(inner)
-        return [value % PRIME for value in slopes.values()]
+        return [value % self.samples.prime for value in slopes.values()]
 
-    def new(self, degrees: tuple[int, int]) -> Iterator[Element]:
-        """Integrals that are no functions of known ones, low degrees first, by numbers.
+    def _rank(self, rows: Sequence[Sequence[int]]) -> int:
+        """The rank of lists of residues."""
+        sparse = ({n: x for n, x in enumerate(row) if x} for row in rows)
+        return len(echelon_modulo(sparse, self.samples.prime))
 
-        They are known from then on; coefficients that are no small fractions are passed over.
+    def new(self, degrees: Degrees) -> Iterator[Element]:
+        """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
+
+        They are known from then on. Coefficients modulo the prime that are those of no small
+        fractions give functions that no proof holds for, and these are passed over.
         """
         for lower in (d for d in STEPS if d[0] <= degrees[0] and d[1] <= degrees[1]):
             found = self.found(lower)
             for place in self.independent(found):
                 monomials, vector = found[place]
-                numbers = rational_vector(vector)
-                if numbers is not None:
-                    element = self._function(monomials, numbers)
-                    self.known = (*self.known, Known("", (element,)))
+                numbers = rational_vector(vector, self.samples.prime)
+                if numbers is None:
+                    continue
+                element = self._function(monomials, numbers)
+                if self._is_proved(element):
+                    self.known = (*self.known, Known(FOUND, (element,)))
                     yield element
 
     def _function(self, monomials: Sequence[Exponents], numbers: Mapping[int, Fraction]) -> Element:
@@ -241,68 +396,93 @@ def about_candidates(motion: ConstrainedRates, known: Sequence[Known]) -> Iterat
         motion: The motion.
         known: Its known integrals; those that are constant where the motion is looked at may stay.
     """
-    search = CandidateSearch(motion, known)
-    names, where = [each.text for each in known], "for almost all parameters"
+    search, where = CandidateSearch(motion, known), _almost_all(motion)
     if search.samples.obstacle:
-        yield _passed_over(search, names)
+        yield _passed_over(search)
         return
     degrees = affordable(search)
-    found = search.found(degrees)
-    if search.independent(found):
-        values = default_numbers(motion.equations.spec)
-        numeric, at_numbers = AtNumbers(motion, values), CandidateSearch(motion, known, values)
+    if search.independent(search.found(degrees)):
+        at_numbers = CandidateSearch(motion, known, default_numbers(motion.equations.spec))
         if not at_numbers.samples.obstacle:
-            search, where = at_numbers, "at the default parameters"
-        for element in search.new(degrees) if search is at_numbers else ():
-            text = described(motion.field, element)
-            yield (
-                f"{text} is conserved {where}",
-                "integrals",
-                partial(_drift, numeric, search, element),
-            )
-        names += ["those found"] * (len(search.known) > len(known))
-        found = search.found(degrees)
+            search, where = at_numbers, _at_defaults(motion)
+            for element in search.new(degrees):
+                text = f"{described(motion.field, element)} is conserved{where.lstrip(',')}"
+                yield text, "integrals", partial(search.drift, element)
+    yield _counted(search, degrees, where)
+
+
+def _counted(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
+    """How many integrals there are: proved where bounds from both sides meet, else found."""
+    found, scope = search.found(degrees), f"integrals {_scope(search, degrees)}{where}"
+    (certain, names), bounded = search.polynomials(degrees), search.bounded(degrees)
+    points = f"ranks at {len(search.values_at)} random points modulo {search.samples.prime}"
+    listed = f"polynomials in {', '.join(names)}" if names else "constants"
+    size = f"a space of dimension {len(found)} with constants"
+    if bounded and certain == len(found):
+        decision = Decision(Verdict.PROVED, f"{points}, from above and from below")
+        text = f"{size}, all {listed}" if names else "none but constants"
+        return f"{scope}: {text}", "integrals", lambda: decision
     others = len(search.independent(found))
-    share = f"{len(found) - others} of them" if others else "all"
-    yield (
-        f"integrals {_scope(search, degrees)}: a space of dimension {len(found)} with constants, "
-        f"{share} functions of {', '.join(names) or 'nothing'}",
-        "integrals",
-        partial(_counted, search, where),
-    )
+    share = f"{len(found) - others} are" if others else "all are"
+    every = ", ".join(dict.fromkeys(each.text for each in search.known)) or "constants"
+    most, sure = "", "that there are so many polynomials is exact"
+    if bounded:
+        most, sure = " at the most", "the bound, and that there are so many polynomials, are exact"
+    text = f"{size}{most}, {certain} of it {listed}; {share} functions of {every}"
+    discovery = Discovery(points, where.strip(", "), f"{sure}; for the rest {LUCK}")
+    return f"{scope}: {text}", "integrals", lambda: discovery
 
 
-def _passed_over(search: CandidateSearch, names: Sequence[str]) -> Examined:
+def _almost_all(motion: ConstrainedRates) -> str:
+    return ", for almost all parameters" if motion.equations.setting.parameters else ""
+
+
+def _at_defaults(motion: ConstrainedRates) -> str:
+    """The numbers of the parameters, in words."""
+    if not motion.equations.setting.parameters:
+        return ""
+    whole = all(each.default is not None for each in motion.equations.spec.parameters)
+    return ", at the default parameters" + ("" if whole else " and 1 where there is none")
+
+
+def _passed_over(search: CandidateSearch) -> Examined:
     """That nothing was looked for, and why."""
-    text = f"integrals beside {', '.join(names) or 'constants'} were not looked for"
-    decision = Decision(Verdict.SUPPORTED, "no search")
-    return f"{text}: {search.samples.obstacle}", "integrals", lambda: decision
+    names = ", ".join(each.text for each in search.known) or "constants"
+    text = f"integrals beside {names} were not looked for: {search.samples.obstacle}"
+    return text, "integrals", lambda: Discovery("no search")
 
 
 def known_integrals(motion: ConstrainedRates, names: Mapping[str, Quantity]) -> list[Known]:
     """The energy, if it is conserved, and what a spec claims to be, as functions of the state.
 
+    What changes at a random point is none; what does not is proved where a proof rests on it.
+
     Args:
         motion: The motion.
         names: What claims may name beside the state.
     """
-    equations, samples = motion.equations, Samples(motion)
-    if samples.obstacle:
-        return []
-    setting, point, found = equations.setting, next(samples.points()), list[Known]()
+    equations, found = motion.equations, list[Known]()
+    setting, where = equations.setting, Samples(motion).where
     energy = [] if equations.exact.energy is None else [motion.closed(equations.exact.energy)]
     stated = [("energy", energy)]
     for claim in equations.spec.conserved:
         level = [motion.closed(g) for f in claim.where for g in setting.components(f, names)]
-        if all(samples.where.contains(g) for g in level):
+        if all(where.contains(g) for g in level):
             parts = list(map(motion.closed, setting.components(claim.formula, names)))
             stated.append((claim.formula.in_one_line, parts))
     known = {*setting.state, *setting.parameters}
     for text, parts in dict(stated).items():
         plain = parts and all(motion.field.reach(part) <= known for part in parts)
-        if plain and not any(point.moved(samples.slopes(part)) for part in parts):
+        if plain and not _changes(motion, parts):
             found.append(Known(text, tuple(parts)))
     return found
+
+
+def _changes(motion: ConstrainedRates, parts: Sequence[Element]) -> bool:
+    """Whether functions certainly change along the motion, or have no values at its points."""
+    samples = Samples(motion, None, parts)
+    point = next(samples.points(), None)
+    return point is None or any(point.moved(samples.slopes(part)) for part in parts)
 
 
 def default_numbers(spec: Spec) -> dict[str, Fraction]:
@@ -316,7 +496,7 @@ def default_numbers(spec: Spec) -> dict[str, Fraction]:
     }
 
 
-def affordable(search: CandidateSearch) -> tuple[int, int]:
+def affordable(search: CandidateSearch) -> Degrees:
     """The degrees that are searched, lower where there are very many monomials."""
     most, degree = DEGREES
     while max(map(len, search.sectors((most, degree)))) > MONOMIALS and degree:
@@ -324,41 +504,55 @@ def affordable(search: CandidateSearch) -> tuple[int, int]:
     return most, degree
 
 
-def _drift(motion: AtNumbers, search: CandidateSearch, element: Element) -> Decision:
-    return decide_zero([motion.rate(element)], motion.field, search.samples.where)
-
-
-def _scope(search: CandidateSearch, degrees: tuple[int, int]) -> str:
-    """What was searched, in words."""
-    text = f"of degree <= {degrees[0]} in the velocities"
+def _scope(search: CandidateSearch, degrees: Degrees) -> str:
+    """What was searched, in words: polynomials in these names."""
+    text = f"of degree <= {degrees[0]} in {_named(search, search.velocities)}"
     if search.positions:
-        text += f" and <= {degrees[1]} in the positions"
+        text += f" and <= {degrees[1]} in {_named(search, search.positions)}"
     lengths = search.samples.where.text
     return f"{text}, where {lengths}" if lengths else text
 
 
-def _counted(search: CandidateSearch, where: str) -> Decision:
-    """The dimensions are ranks, of which those that exclude more integrals are certain."""
-    count = len(search.values_at)
-    return Decision(Verdict.PROVED, f"ranks at {count} random points modulo {PRIME}, {where}")
+def _named(search: CandidateSearch, names: Sequence[str]) -> str:
+    """Generators as a statement names them: whole vectors by their name."""
+    spec, left, shown = search.motion.equations.spec, dict.fromkeys(names), list[str]()
+    for each in spec.state:
+        if len(each.components) > 1 and left.keys() >= set(each.components):
+            shown.append(each.name)
+            left = {name: None for name in left if name not in each.components}
+    return ", ".join([*shown, *(element_text(search.field, search.field[name]) for name in left)])
+
+
+def _factors(known: Sequence[Degrees], degrees: Degrees) -> Iterator[tuple[int, ...]]:
+    """Products of so high degrees at the most, each by its factors; few factors first.
+
+    >>> list(_factors([(1, 0), (2, 1)], (2, 2)))
+    [(), (0,), (1,), (0, 0)]
+    """
+    level: list[tuple[int, ...]] = [()]
+    while level:
+        yield from level
+        longer = (
+            (*factors, n) for factors in level for n in range(max(factors, default=0), len(known))
+        )
+        level = [
+            factors
+            for factors in longer
+            if all(sum(known[n][k] for n in factors) <= degrees[k] for k in (0, 1))
+        ]
 
 
 def _table(
-    x: Sequence[int], rates: Sequence[int], monomials: Sequence[Exponents]
+    x: Sequence[int], rates: Sequence[int], monomials: Sequence[Exponents], prime: int
 ) -> tuple[list[int], list[int]]:
     """Values of monomials at a point, and their rates."""
     values, moved = [], []
     for exponents in monomials:
         factors = [i for i, e in enumerate(exponents) for _ in range(e)]
-        values.append(prod(x[i] for i in factors) % PRIME)
+        values.append(prod(x[i] for i in factors) % prime)
         parts = (
             rates[i] * prod(x[j] for m, j in enumerate(factors) if m != n)
             for n, i in enumerate(factors)
         )
-        moved.append(sum(parts) % PRIME)
+        moved.append(sum(parts) % prime)
     return values, moved
-
-
-def _rank(rows: Sequence[Sequence[int]]) -> int:
-    """The rank of lists of residues."""
-    return len(echelon_modulo({n: x for n, x in enumerate(row) if x} for row in rows))

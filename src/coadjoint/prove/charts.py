@@ -13,23 +13,28 @@ Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property, reduce
-from itertools import combinations_with_replacement, islice
+from itertools import combinations, combinations_with_replacement, islice, product
 from operator import mul
 from typing import Any
 
-from coadjoint.algebra.linear import nullspace
+from coadjoint.algebra.linear import nullspace, rank_modulo
 from coadjoint.derive import Equations, Relation
+from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
-from coadjoint.poisson.ranks import BY_VALUES, generic_rank, source_of_ranks
+from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, decide_zero, random_points
+from coadjoint.prove.zero import Decision, Discovery, decide_zero, random_points
 
 #: How the dimension of an image is decided.
 RANK = "rank of the map's derivative"
+ON_QUADRIC = "at rational points of the relation"
+#: Points of a relation of degree two at which ranks are taken, and how often they are looked for.
+POINTS, TRIES = 2, 20
 
 
 class ChartMap:
@@ -120,9 +125,27 @@ class ChartMap:
     @cached_property
     def source_of_rank(self) -> str:
         """How the rank is known."""
+        if self._is_quadric:
+            return ON_QUADRIC
         bound, rows = self._derivatives
-        ranks = (bound, self._ranks[0]), ([*bound, *rows], self._ranks[1])
-        return source_of_ranks(self.field, *ranks)
+        return source_of_ranks(self.field, (bound, self._ranks[0]), ([*bound, *rows], self.rank))
+
+    @cached_property
+    def error_of_rank(self) -> str:
+        """How likely it is that the rank is larger."""
+        return error_of_ranks(self.field, *self._derivatives)
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether the dimension of the image is certainly no less than the rank.
+
+        The rank of the relations and of the map is certain from below. That of the relations alone
+        is no more than their number: so it must be that. And both must have been taken where the
+        relations hold: with the solution in their place, or at points of the quadric.
+        """
+        count = len(self.domain.relations)
+        placed = self.domain.is_solved or self._is_quadric
+        return not count or (placed and self._ranks[0] == count)
 
     @cached_property
     def _derivatives(self) -> tuple[list[dict[int, Element]], list[dict[int, Element]]]:
@@ -134,12 +157,89 @@ class ChartMap:
     def _ranks(self) -> tuple[int, int]:
         """The ranks of the derivatives of the relations, and of these and the map."""
         bound, rows = self._derivatives
-        return generic_rank(self.field, bound), generic_rank(self.field, [*bound, *rows])
+        return self._rank_on_domain(bound), self._rank_on_domain([*bound, *rows])
 
     def _slopes(self, function: Element) -> dict[int, Element]:
         """The nonzero derivatives of a function, where the relations hold."""
         slopes = self.field.gradient(function, self.chart.variables)
         return {n: self.domain.on_zero_set(slope) for n, slope in enumerate(slopes) if slope}
+
+    def _rank_on_domain(self, rows: Sequence[Mapping[int, Element]]) -> int:
+        """The rank of a matrix at points where the relations hold, if such are known."""
+        plain = all(self.field.function_free(entry) for row in rows for entry in row.values())
+        if not (self._is_quadric and plain):
+            return generic_rank(self.field, rows)
+        largest = 0
+        for point in self._quadric:
+            with suppress(ZeroDivisionError):
+                numbers = (
+                    {n: self.field.evaluate(e, point, Fraction, _no_call) for n, e in row.items()}
+                    for row in rows
+                )
+                largest = max(largest, rank_modulo(numbers))
+        return largest
+
+    @property
+    def _is_quadric(self) -> bool:
+        """Whether points of a relation are known that none of its symbols is solved for."""
+        plain = all(
+            self.field.function_free(entry)
+            for rows in self._derivatives
+            for row in rows
+            for entry in row.values()
+        )
+        return plain and not self.domain.is_solved and bool(self._quadric)
+
+    @cached_property
+    def _quadric(self) -> list[dict[str, Fraction]]:
+        """Rational points of a single relation of degree two.
+
+        A line through one of them, which has few entries other than 0, meets it once more.
+        """
+        if len(self.domain.relations) != 1 or not self.field.function_free(
+            self.domain.relations[0]
+        ):
+            return []
+        found = list[dict[str, Fraction]]()
+        for start in islice(random_points(self.field.names, self.field.positive), TRIES):
+            corner = next(filter(self._is_on, self._corners(start)), None)
+            if corner is None:
+                continue
+            along = {name: start[name] for name in self.chart.variables}
+            points = [
+                corner | {name: corner[name] + t * x for name, x in along.items()} for t in (1, -1)
+            ]
+            a, b = map(self._residual, points)  # of a t^2 + b t at 1 and -1
+            if a + b and a - b:
+                turn = (b - a) / (a + b)
+                point = corner | {name: corner[name] + turn * x for name, x in along.items()}
+                found += [point] if self._is_on(point) and self._is_regular(point) else []
+            if len(found) == POINTS:
+                break
+        return found
+
+    def _corners(self, start: Mapping[str, Fraction]) -> Iterator[dict[str, Fraction]]:
+        """Points with one entry 1 or -1, or two of them, and parameters as given."""
+        names = self.chart.variables
+        flat = dict(start) | dict.fromkeys(names, Fraction(0))
+        for count in (1, 2):
+            for chosen in combinations(names, count):
+                for signs in product((1, -1), repeat=count):
+                    yield flat | dict(zip(chosen, map(Fraction, signs), strict=True))
+
+    def _is_regular(self, point: Mapping[str, Fraction]) -> bool:
+        """Whether the derivative of the relation is not zero, so that its zero set is smooth."""
+        (row,) = self._derivatives[0]
+        return any(self.field.evaluate(e, point, Fraction, _no_call) for e in row.values())
+
+    def _residual(self, point: Mapping[str, Fraction]) -> Fraction:
+        return self.field.evaluate(self.domain.relations[0], point, Fraction, _no_call)
+
+    def _is_on(self, point: Mapping[str, Fraction]) -> bool:
+        try:
+            return not self._residual(point)
+        except ZeroDivisionError:
+            return False
 
     @cached_property
     def image_relations(self) -> tuple[Relation, ...]:
@@ -155,8 +255,9 @@ class ChartMap:
         candidates = self._candidates()  # all polynomials, once the Casimirs have been tried
         while len(found) < len(state) - self.rank and (relation := next(candidates, None)):
             slope = map(self.pull_back, self.field.gradient(relation.element, state))
-            row = {n: value for n, each in enumerate(slope) if (value := self.field.normal(each))}
-            if generic_rank(self.field, [*slopes, row]) > len(slopes):
+            placed = map(self.domain.on_zero_set, slope)
+            row = {n: value for n, each in enumerate(placed) if (value := self.field.normal(each))}
+            if self._rank_on_domain([*slopes, row]) > len(slopes):
                 found.append(relation)
                 slopes.append(row)
         return tuple(found)
@@ -207,26 +308,35 @@ def _no_call(function: str, argument: Fraction) -> Fraction:
     raise AssertionError(f"{function}({argument}) in a function-free element")
 
 
-def reach(chart_map: ChartMap) -> tuple[str, Decision]:
+def reach(chart_map: ChartMap) -> tuple[str, Decision | Discovery]:
     """What of the state a chart reaches, as a statement with its decision.
 
-    A rank at a point bounds the dimension from below, and relations that vanish on the image bound
-    it from above: where the two meet, both are proved.
+    A rank at a point bounds the dimension from below, and independent relations that vanish on the
+    image bound it from above: where the two meet, both are proved.
     """
     route, dimension = chart_map.other.route, len(chart_map.first.setting.state)
-    missing, source = dimension - chart_map.rank, chart_map.source_of_rank
+    try:
+        missing = dimension - chart_map.rank
+    except AlgebraError as error:
+        return f"what the route {route} reaches was not decided", Discovery(str(error))
     if not missing:
-        return f"the route {route} reaches an open set of states", _decision(source)
+        return f"the route {route} reaches an open set of states", _decision(chart_map, True)
     relations = chart_map.image_relations
+    met = len(relations) == missing and chart_map.is_certain
+    least = "" if met else "at least " if chart_map.is_certain else "probably "
     named = ", ".join(f"{relation.text} = 0" for relation in relations)
     statement = (
-        f"the states that the route {route} reaches have dimension {chart_map.rank} of {dimension}"
-        + (f": {named}" if named else "")
+        f"the states that the route {route} reaches have dimension {least}{chart_map.rank} of "
+        f"{dimension}" + (f": {named}" if named else "")
     )
-    return statement, _decision(source, met=len(relations) == missing)
+    return statement, _decision(chart_map, met)
 
 
-def _decision(source: str, met: bool = True) -> Decision:
+def _decision(chart_map: ChartMap, met: bool) -> Decision | Discovery:
     """What a rank proves, if it meets its bound from the other side."""
-    proved = met and source != BY_VALUES
-    return Decision(Verdict.PROVED if proved else Verdict.SUPPORTED, f"{RANK} {source}")
+    method = f"{RANK} {chart_map.source_of_rank}"
+    if met and chart_map.is_certain:
+        return Decision(Verdict.PROVED, method)
+    if chart_map.is_certain:
+        return Discovery(method, "", chart_map.error_of_rank)
+    return Discovery(method, "", "that the relations are no more than they seem is not proved")

@@ -22,7 +22,7 @@ from coadjoint.derive.structure import momentum_algebra
 from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, Region
-from coadjoint.prove.almost_poisson import about_reduced_bracket
+from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
 from coadjoint.prove.candidates import about_candidates, known_integrals
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
@@ -66,6 +66,8 @@ from coadjoint.spec.model import Integral, SpatialMomentum
 
 def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     """Examine every claim about a declared system.
+
+    Time and memory are not bounded; for specs of strangers there is `coadjoint.prove_bounded`.
 
     Args:
         spec: What `coadjoint.read_spec` returned.
@@ -138,6 +140,7 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
                     first.spec, ("claims", "conserved", place), claimed, motion.field
                 )
         yield from about_momenta(motion)
+        yield from about_reduced_bracket(motion)
         yield from _searched(motion, _emitted(first))
         return
     yield from _about_bracket(first)
@@ -155,7 +158,7 @@ def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iter
     """What is found out about a constrained motion, each search with a budget of its own."""
     searches: dict[tuple[str, str], Iterator[Examined]] = {
         ("integrability", "the growth vector"): about_integrability(motion.equations),
-        ("bracket", "the bracket of the reduced momenta"): about_reduced_bracket(motion),
+        ("jacobi", "the Jacobi identity of the reduced bracket"): about_reduced_jacobi(motion),
         ("transformation", "the reversal of time"): about_reversal(motion),
         ("integrals", "integrals"): _integrals(motion, emitted),
         ("measure", "invariant measures"): about_measure(motion),
@@ -218,10 +221,11 @@ def _constants(algebra: LieAlgebra) -> Decision:
 
 def _about_legendre(routes: Sequence[Equations], pulled: LegendreMap) -> Iterator[Examined]:
     """The Legendre transform and its energy, on every route."""
+    found = pulled.invertible
     yield (
-        "the Legendre transform is invertible for generic parameters",
+        f"the Legendre transform is invertible {found.where}",
         "legendre",
-        lambda: _invertible(pulled),
+        lambda: Decision(Verdict.PROVED, found.method),
     )
     for equations in routes:
         yield from about_duality(equations)
@@ -245,12 +249,6 @@ def _about_legendre(routes: Sequence[Equations], pulled: LegendreMap) -> Iterato
                 "legendre",
                 partial(pulled.velocity_defects, equations),
             )
-
-
-def _invertible(pulled: LegendreMap) -> Decision:
-    """That no block of the mass matrix is singular everywhere."""
-    assert pulled.is_invertible(), "legendre_transform refuses these"
-    return Decision(Verdict.PROVED, "nonzero determinants of the blocks of d2l/dxi2")
 
 
 def _about_equality(

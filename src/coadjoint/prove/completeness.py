@@ -16,10 +16,11 @@ from coadjoint.derive import Equations
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import is_entire
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, independent, search_summands
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import BY_VALUES, MODULO, source_of_ranks
+from coadjoint.poisson.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.poisson.summands import restricted_algebra
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import casimir_defects
@@ -31,11 +32,12 @@ DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
 #: What decides the number of independent Casimirs.
-RANKS = "rank of the gradients and of the bracket"
+RANKS = "ranks of the gradients and of the bracket"
+MEET = f"{RANKS} that add up to the dimension,"
 #: Where a count of independent functions holds.
 ALMOST = "near almost every point"
-#: How a count may be wrong where only one side of a rank is certain.
-LARGER = "a rank at a random point modulo a prime falls short with a probability below 1e-12"
+#: Where it holds if roots or logarithms occur, which one analytic function is in such a part alone.
+IN_PART = f"{ALMOST} of a connected part of the domain"
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,7 @@ class Completeness:
         missing: How many of these are not known, and what was searched; empty if none is missing.
         generating: Places of coordinates whose brackets give all others.
         source: How the ranks are known.
+        error: How likely a rank is larger, in words; empty where the two ranks bound each other.
         degree: Where some are missing: every polynomial Casimir up to this degree is a function of
             those known; 0 if this was not found out.
         scope: Where all of this holds.
@@ -60,6 +63,7 @@ class Completeness:
     missing: str
     generating: tuple[int, ...] = ()
     source: str = MODULO
+    error: str = ""
     degree: int = 0
     scope: str = ALMOST
 
@@ -71,12 +75,9 @@ class Completeness:
         the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
         missing, a rank may be larger than at the points where it was taken, so that it is found.
         """
-        method = f"{RANKS} {self.source}"
-        if self.source == BY_VALUES:
-            return Discovery(method, self.scope, "ranks of rounded values, not bounded")
-        if self.known == self.expected:
-            return Decision(Verdict.PROVED, method)
-        return Discovery(method, self.scope, LARGER)
+        if self.error:
+            return Discovery(f"{RANKS} {self.source}", self.scope, self.error)
+        return Decision(Verdict.PROVED, f"{MEET} {self.source}")
 
     @property
     def statement(self) -> str:
@@ -145,23 +146,39 @@ def completeness(
     whole = len(known) + len(found)
     if whole == expected:
         missing, reached = "", 0
-    source = source_of_ranks(
-        structure.field,
-        ([structure.gradient(casimir) for casimir in (*known, *found)], whole),
-        ([dict(enumerate(row)) for row in structure.tensor], structure.dimension - expected),
-    )
+    source, error = _source(structure, (*known, *found), expected)
     scope = scope_of(structure, (*known, *found))
     return Completeness(
-        tuple(found), whole, expected, missing, tuple(generating), source, reached, scope
+        tuple(found), whole, expected, missing, tuple(generating), source, error, reached, scope
     )
+
+
+def _source(
+    structure: PoissonStructure, known: Sequence[Element], expected: int
+) -> tuple[str, str]:
+    """How the ranks are known, and how likely one is larger.
+
+    Ranks at a point bound each other where they add up to the dimension. Modulo a prime each holds
+    at almost every point; with functions both are taken at one point, as one matrix.
+    """
+    field, size = structure.field, structure.dimension
+    gradients = [structure.gradient(casimir) for casimir in known]
+    tensor = [{size + n: entry for n, entry in enumerate(row)} for row in structure.tensor]
+    both = [*gradients, *tensor]
+    source = source_of_ranks(field, (both, size))
+    met = len(known) == expected
+    if met and source != MODULO:
+        met = generic_rank(field, both) == size
+    return source, "" if met else error_of_ranks(field, both)
 
 
 def scope_of(structure: PoissonStructure, functions: Sequence[Element]) -> str:
     """Where a count of Casimirs holds: for almost all parameters, too, if it rests on such."""
     entries = {id(entry): entry for row in structure.tensor for entry in row if entry}
-    reached = [structure.field.reach(e) for e in (*entries.values(), *functions)]
-    free = frozenset[str]().union(*reached) <= {*structure.names}
-    return ALMOST if free else f"{ALMOST}, for almost all parameters"
+    field, present = structure.field, (*entries.values(), *functions)
+    free = frozenset[str]().union(*map(field.reach, present)) <= {*structure.names}
+    where = ALMOST if is_entire(field, present) else IN_PART
+    return where if free else f"{where}, for almost all parameters"
 
 
 def _generating(structure: PoissonStructure) -> Sequence[int]:

@@ -25,7 +25,8 @@ from coadjoint.derive.legendre import LARGEST_BLOCK
 from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.exact.witness import is_entire
+from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Examined, decide_zero
@@ -217,8 +218,10 @@ def _rank(found: Distribution) -> tuple[str, Decision]:
     gram = _gram(found)
     text = "" if gram is None else element_text(field, gram)
     if gram is None or len(text) > SHORT:
-        random = Decision(Verdict.PROVED, "rank of A at a random point")
-        return f"{rank} at almost every point", random
+        entire = is_entire(field, (entry for row in rows for entry in row.values()))
+        where = "almost every point" + ("" if entire else " of a connected part of the domain")
+        method = f"rank of A {source_of_ranks(field, (rows, len(rows)))}"
+        return f"{rank} at {where}", Decision(Verdict.PROVED, method)
     where = "everywhere" if field.as_number(gram) is not None else f"wherever {text} is not 0"
     method = "det(A A^T) of the constraints that give no velocity"
     return f"{rank} {where}", Decision(Verdict.PROVED, method)
@@ -262,18 +265,20 @@ def _solved(first: Equations) -> list[Element]:
 
 
 def _same_solves(first: Equations, other: Equations) -> list[Element]:
-    """Differences of the linear equations of two routes, and of the rates they do not solve for.
+    """Differences of the linear equations of two routes, and of the rates.
 
     The equations are compared entry by entry, whatever blocks each route has found in them.
     """
     one, two = _linear_equations(first), _linear_equations(other)
-    zero = first.setting.field.zero
+    field = first.setting.field
+    defects = [one.get(at, field.zero) - two.get(at, field.zero) for at in {**one, **two}]
     solved = {name for solve in first.exact.solves for name in solve.names}
-    rates = zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True)
-    return [
-        *(one.get(place, zero) - two.get(place, zero) for place in {**one, **two}),
-        *(first.closed(a) - other.closed(b) for x, a, b in rates if rate_name(x) not in solved),
-    ]
+    for x, a, b in zip(first.setting.state, first.exact.rates, other.exact.rates, strict=True):
+        if rate_name(x) in solved:  # each is what its own equations are solved for
+            defects += [a - field[rate_name(x)], b - field[rate_name(x)]]
+        else:
+            defects.append(first.closed(a) - other.closed(b))
+    return defects
 
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:

@@ -3,12 +3,13 @@
 Comes in: Equations by two routes of one Spec, in one Setting. Goes out: elements that must be zero,
 by the claim they belong to. Where a Lagrangian is given, the map is the Legendre transform
 ``mu = dl/dxi``: both sides are pulled back to velocities, where everything is polynomial. It
-loses nothing, since the transform is invertible (a claim of its own).
+loses nothing where the transform is invertible; a claim of its own says where that is proved.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive import Equations
@@ -21,8 +22,23 @@ from coadjoint.derive.legendre import (
     mass_matrix,
 )
 from coadjoint.derive.solver import Solve, solution_defects
-from coadjoint.exact import Element
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.exact import Element, Field
+from coadjoint.exact.regular import witness_regular
+from coadjoint.exact.signs import sign
+from coadjoint.exact.witness import is_entire, point_text
+
+
+@dataclass(frozen=True)
+class Invertible:
+    """Where a Legendre transform is invertible, and how that is known.
+
+    Attributes:
+        where: In words, after "is invertible".
+        method: The proof.
+    """
+
+    where: str
+    method: str
 
 
 class LegendreMap:
@@ -67,18 +83,29 @@ class LegendreMap:
             for block in coupled_blocks(mass)
         ]
 
-    def is_invertible(self) -> bool:
-        """Whether no determinant of a block vanishes, so that the map is invertible somewhere.
+    @cached_property
+    def invertible(self) -> Invertible:
+        """Where the map is invertible.
 
-        One of full rank at a point modulo a prime does not.
+        Raises:
+            AssertionError: Nowhere, as far as is known; `legendre_transform` refuses those.
         """
         field = self.setting.field
-        return all(
-            generic_rank(field, [dict(enumerate(row)) for row in matrix]) == len(block)
-            if len(block) > LARGEST_BLOCK
-            else not field.is_zero(determinant(matrix))
-            for block, matrix in self.blocks
-        )
+        left = [matrix for _, matrix in self.blocks if not _keeps_sign(field, matrix)]
+        if not left:
+            return Invertible(
+                "wherever the Lagrangian is defined and the declared signs hold",
+                "the determinants of the blocks of d2l/dxi2 keep their signs there",
+            )
+        point = witness_regular(field, *left)
+        assert point is not None, "legendre_transform refuses these"
+        at = point_text(point)
+        method = "the determinants of the blocks of d2l/dxi2 exclude 0 by interval bounds"
+        method += f" at {at}" if at else ""
+        if is_entire(field, (entry for matrix in left for row in matrix for entry in row)):
+            return Invertible("almost everywhere", method)
+        part = f"almost everywhere on the connected part of its domain with {at}"
+        return Invertible(part, method)
 
     def solution_defects(self, equations: Equations) -> list[Element]:
         """What vanishes if the kernel solves ``mass * xi = mu - dl/dxi(0)`` for its velocities."""
@@ -129,6 +156,11 @@ class LegendreMap:
             self.pull_back(first, a) - self.pull_back(second, b)
             for a, b in zip(first.exact.rates, second.exact.rates, strict=True)
         ]
+
+
+def _keeps_sign(field: Field, matrix: Matrix) -> bool:
+    """Whether a determinant is small enough to write out, and has a sign on the whole domain."""
+    return len(matrix) <= LARGEST_BLOCK and sign(field, determinant(matrix)) != 0
 
 
 def kept_velocities(equations: Equations) -> list[str]:

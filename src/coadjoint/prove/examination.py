@@ -20,8 +20,9 @@ from coadjoint.derive.equations import algebra_bracket, symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import search_summands
+from coadjoint.poisson.ranks import CHANCE
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
-from coadjoint.prove.completeness import DEGREE, LARGER, Completeness, described, scope_of
+from coadjoint.prove.completeness import DEGREE, Completeness, described, scope_of
 from coadjoint.prove.zero import CONSTANTS, NORMAL_FORM, Decision, decide_zero, make_entry
 
 #: Columns of text that a table of brackets may take.
@@ -170,8 +171,8 @@ class Examination:
         if isinstance(self.casimirs.decision, Decision):
             return f"{self.rank}, so {count} {self.casimirs.scope}"
         return (
-            f"{self.rank} at random points modulo a prime, so at most {count} "
-            f"{self.casimirs.scope} ({LARGER})"
+            f"{self.rank} {self.casimirs.source}, so {count} {self.casimirs.scope} "
+            f"({self.casimirs.error})"
         )
 
     def _casimirs(self) -> Section:
@@ -264,6 +265,7 @@ def _search(algebra: LieAlgebra, structure: PoissonStructure, degree: int) -> Co
         known,
         search.expected,
         search.missing,
+        error=CHANCE if search.missing else "",
         degree=search.degree,
         scope=scope,
     )

@@ -1,27 +1,30 @@
-"""Findings: statements that say what was found, so that what is found is what is proved.
+"""Statements that depend on whether something is zero: what is found is what is proved.
 
 Nobody claims that constraints are integrable or a motion reversible; the engine finds out. What is
-zero is proved as ever; what is not is proved by a point where it is not.
-Comes in: elements that are zero or not. Goes out: the decision for the certificate.
+zero is proved as ever; what is not is proved by a point where it is not: an analytic function that
+is not zero there is not zero at almost every point, and on no open set. What numbers alone support
+is a finding.
+Comes in: elements that are zero or not. Goes out: the entry for the certificate.
 Read next: `coadjoint.prove.integrability`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 
+from coadjoint.derive import Setting
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
-#: (statement, kind, the decision already made)
-Finding = tuple[str, str, Callable[[], Decision]]
 #: Longest value that a statement shows; beyond it a point shows as much.
 SHOWN = 72
+#: How a finding may be wrong that no proof and no counter-example decides.
+NUMBERS = "numbers at some points, no proof"
 
 
-def finding(kind: str, decision: Decision, zero: str, nonzero: str) -> Finding:
+def finding(kind: str, decision: Decision, zero: str, nonzero: str) -> Examined:
     """What was found: that something is zero, or that it is not.
 
     Args:
@@ -30,10 +33,22 @@ def finding(kind: str, decision: Decision, zero: str, nonzero: str) -> Finding:
         zero: The statement if it is.
         nonzero: The statement if it is not, proved by the point that refutes the other.
     """
-    if decision.verdict is not Verdict.REFUTED:
-        return zero, kind, lambda: decision
-    proof = Decision(Verdict.PROVED, nonzero_at(decision.defect, decision.point))
-    return nonzero, kind, lambda: proof
+    if decision.verdict is Verdict.REFUTED:
+        proof = Decision(Verdict.PROVED, nonzero_at(decision.defect, decision.point))
+        return nonzero, kind, lambda: proof
+    found = decision if decision.verdict is Verdict.PROVED else guess(decision)
+    return zero, kind, lambda: found
+
+
+def guess(decision: Decision) -> Discovery:
+    """What numbers alone support, as a finding."""
+    return Discovery(decision.method, error=NUMBERS)
+
+
+def for_parameters(setting: Setting, values: Iterable[Element]) -> str:
+    """The scope of what is not zero: almost all parameters, where it depends on such."""
+    reached = frozenset[str]().union(*map(setting.field.reach, values))
+    return ", for almost all parameters" if reached & {*setting.parameters} else ""
 
 
 def nonzero_at(value: str, point: Mapping[str, str]) -> str:

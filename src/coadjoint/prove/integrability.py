@@ -5,7 +5,7 @@ and only if it has the brackets of its fields; with the constraints as forms A, 
 :math:`A([D_i, D_j]) = 0`. How the fields grow by brackets, first once, then again, until they grow
 no more, is the growth vector: if they reach every direction the constraints are completely
 nonholonomic (Chow 1939, Rashevskii 1938), else some combination of them is holonomic. Of affine
-constraints the linear part is spoken of.
+constraints the linear part is spoken of. Ranks are those at almost every point.
 Comes in: Equations with a distribution. Goes out: findings for the certificate.
 Read next: `coadjoint.prove.almost_poisson`.
 """
@@ -21,10 +21,18 @@ from coadjoint.derive import Equations
 from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, Field
+from coadjoint.exact.witness import is_entire, is_nonzero
 from coadjoint.poisson.ranks import independent_rows
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.findings import Finding, finding, first_nonzero, shown
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.completeness import ALMOST, IN_PART
+from coadjoint.prove.findings import (
+    finding,
+    first_nonzero,
+    for_parameters,
+    guess,
+    shown,
+)
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 
 @dataclass(frozen=True)
@@ -48,7 +56,7 @@ class Basis:
         for _, residual in self.found.kept:
             value = field.substitute(self._linear(residual), known)
             name = next(
-                n for n in self.found.independent if not field.is_zero(field.derivative(value, n))
+                n for n in self.found.independent if is_nonzero(field, field.derivative(value, n))
             )
             rest = field.substitute(value, {name: field.zero})
             root = -rest / field.derivative(value, name)
@@ -87,7 +95,7 @@ class Basis:
         )
 
 
-def about_integrability(first: Equations) -> Iterator[Finding]:
+def about_integrability(first: Equations) -> Iterator[Examined]:
     """Whether the constraints are integrable, and if not, what their brackets reach."""
     found = first.distribution
     assert found is not None, first.route
@@ -98,11 +106,14 @@ def about_integrability(first: Equations) -> Iterator[Finding]:
     subject = "the constraints are" if many else "the constraint is"
     if not found.is_linear:
         subject = f"of the linear parts, {subject}"
+    value = values.get(name, field.zero)
+    where = "on any open set" if is_entire(field, [value]) else "near some point"
     yield finding(
         "integrability",
         decision,
         f"{subject} integrable: [D_i, D_j] stays in the distribution",
-        f"{subject} not integrable: {name}{shown(field, values[name]) if name else ''}",
+        f"{subject} not integrable {where}{for_parameters(found.setting, [value])}: "
+        f"{name}{shown(field, value)}",
     )
     if name:
         growth = Growth(basis)
@@ -184,24 +195,31 @@ class Growth:
 
     @property
     def statement(self) -> str:
-        """The growth vector, and what it says."""
-        text = "the constraints are completely nonholonomic"
-        if len(self.basis.found.equations) == 1:
-            text = "the constraint is completely nonholonomic"
+        """The growth vector, and what it says.
+
+        It may be smaller where a minor vanishes.
+        """
+        count, many = len(self.basis.found.equations), self.holonomic > 1
+        text = f"the constraint{' is' if count == 1 else 's are'} completely nonholonomic there"
         if self.holonomic:
-            text = f"{self.holonomic} of the {len(self.basis.found.equations)} is holonomic"
-        return f"growth vector {self.vector}: {text}"
+            combinations = f"{self.holonomic} independent combinations" if many else "1 combination"
+            verb = "are" if many else "is"
+            text = f"{combinations} of the {count} constraints {verb} holonomic there, and no more"
+        where = ALMOST if is_entire(self._field, self._minors) else IN_PART
+        scope = for_parameters(self.basis.found.setting, self._minors)
+        return f"growth vector {self.vector} {where}{scope}: {text}"
 
     @cached_property
-    def decision(self) -> Decision:
+    def decision(self) -> Decision | Discovery:
         """Ranks from below by minors that are not zero, from above by bordered ones that are."""
         for minor in self._minors:
-            if decide_zero([minor], self._field).verdict is not Verdict.REFUTED:
-                return Decision(Verdict.SUPPORTED, "ranks at random points")
+            lower = decide_zero([minor], self._field)
+            if lower.verdict is not Verdict.REFUTED:
+                return guess(lower)
         found = decide_zero(self._zeros, self._field)
         if found.verdict is Verdict.PROVED:
             return Decision(Verdict.PROVED, "exact minors of the matrix of brackets")
-        return found
+        return found if found.verdict is Verdict.REFUTED else guess(found)
 
 
 def _minor(rows: Sequence[Row], places: Sequence[int], columns: Sequence[int]) -> Element:

@@ -23,11 +23,13 @@ from coadjoint.derive.integrals import (
 )
 from coadjoint.derive.pairs import LaxPair, lax_equations, text_of_entry
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import MODULO, generic_rank
+from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.completeness import ALMOST
 from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.findings import for_parameters
 from coadjoint.prove.identities import drift
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 #: Addends of an integral up to which it is differentiated along the motion: 40 take 0.1 seconds in
 #: six dimensions, 800 a minute.
@@ -35,8 +37,6 @@ LONGEST = 100
 #: Products of addends in a bracket of two integrals up to which it is multiplied out.
 LARGEST = 2000
 TRACE_IDENTITY = "d tr L^k/dt = k tr(L^(k-1) [L, M]) by the proved Lax equation"
-
-Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
 
 
 def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
@@ -119,16 +119,24 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
     return generic_rank(first.setting.field, rows)
 
 
-def _complete(first: Equations, found: Integrals, rank: int) -> Decision:
-    """Every coefficient depends on what is emitted, and nothing of that is there in vain."""
+def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Discovery:
+    """Every coefficient depends on what is emitted, and nothing of that is there in vain.
+
+    That the emitted ones are independent is certain, that the others depend on them is not.
+    """
     emitted = dict(first.exact.observables)
     known = known_integrals(first.setting)
     before = _rank(first, known)
     known += [emitted[name] for name, _ in found.named]
     own = _rank(first, known)
-    together = _rank(first, [*known, *(each.value for each in found.coefficients)])
+    values = [each.value for each in found.coefficients]
+    together = _rank(first, [*known, *values])
     if own == together == before + len(found.named):
-        return Decision(Verdict.PROVED, f"rank of the gradients {MODULO}")
+        gradients = [slope_row(first.setting, f) for f in (*known, *values)]
+        source = source_of_ranks(first.setting.field, (gradients, own))
+        error = error_of_ranks(first.setting.field, gradients)
+        scope = ALMOST + for_parameters(first.setting, [*known, *values])
+        return Discovery(f"rank of the gradients {source}", scope, error)
     return Decision(
         Verdict.REFUTED,
         f"gradients of rank {own}, with all coefficients of rank {together}",

@@ -32,20 +32,17 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
-from sympy.polys.domains import QQ
-from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyElement, PolyRing
-
-from coadjoint.algebra.linear import PRIME, echelon_modulo, rational_vector
+from coadjoint.algebra.linear import echelon_modulo, rational_vector
 from coadjoint.derive.interpret import determinant
-from coadjoint.exact import Element, Field
-from coadjoint.exact.element import remove_factor
+from coadjoint.exact import Element, element_text
+from coadjoint.poisson.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.invariant_factors import LONGEST as COMMON
+from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors, factors
 from coadjoint.prove.samples import AtNumbers, Point, Samples, leading
-from coadjoint.prove.zero import Decision, Examined, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 #: Largest denominator of an exponent that is taken for one.
 DENOMINATOR = 12
@@ -55,6 +52,15 @@ SIZE = 6
 SEEDS = 20
 #: Points at which exponents are found.
 POINTS = 6
+
+#: Characters of a factor with velocities that a statement shows; a longer one is described.
+LONGEST = 240
+#: Among what densities are looked for that depend on velocities.
+SEARCHED = (
+    "products of powers of invariant factors: velocities, the common divisor of rates of up to "
+    f"{COMMON} terms, and in up to {SYMBOLS} symbols of the state and {TERMS} terms the factors of "
+    "rates and of det(eta, d eta/dt, ...)"
+)
 
 #: Factors of a density with their exponents.
 Powers = list[tuple[Element, Fraction]]
@@ -123,9 +129,15 @@ class Measure:
     @cached_property
     def allowed(self) -> Mapping[str, Element]:
         """The velocities that kept constraints give in terms of the others."""
-        kept, closed = self.motion.where, self.motion.closed
-        relations, nonzero = map(closed, kept.relations), list(map(closed, kept.nonzero))
-        return Ideal(self.field, list(relations), "", self.velocities, nonzero).solved
+        field, known = self.field, dict[str, Element]()
+        for _, residual in self.motion.distribution.kept:
+            value = field.substitute(self.motion.closed(residual), known)
+            slopes = zip(self.velocities, field.gradient(value, self.velocities), strict=True)
+            name, slope = next((n, s) for n, s in slopes if not field.is_zero(s))
+            root = -field.substitute(value, {name: field.zero}) / slope
+            known = {n: field.substitute(v, {name: root}) for n, v in known.items()}
+            known[name] = root
+        return known
 
     @cached_property
     def free(self) -> list[str]:
@@ -182,12 +194,12 @@ class Measure:
             grown = False
             for condition in waiting:
                 row = [point.value(part) for part in condition.parts]
-                if _rank([*rows, row]) == len(rows):
+                if _rank([*rows, row], point.samples.prime) == len(rows):
                     continue
                 rows, kept, grown = [*rows, row], [*kept, condition], True
-                rank = _rank([known[:-1] for known in rows])
+                rank = _rank([known[:-1] for known in rows], point.samples.prime)
                 if rank < len(rows):
-                    return kept[-1:] if not any(row[:-1]) else kept, rank
+                    return (kept, rank) if any(row[:-1]) else (kept[-1:], 0)
             waiting = [self.bracket(a, b) for a, b in combinations(kept, 2)] if grown else []
         return None
 
@@ -207,18 +219,24 @@ class Measure:
 
     def exponents(self, factors: Sequence[Element], points: Sequence[Point]) -> Powers | None:
         """``rho = product of factors ** exponents`` that satisfies the conditions at points."""
-        rows, last = list[dict[int, int]](), len(factors)
+        rows = list[list[int]]()
         for point, condition in ((p, c) for p in points for c in self.conditions):
             slopes = [self._along(condition, factor) / factor for factor in factors]
-            entries = [point.value(x) for x in (*slopes, condition.parts[-1])]
-            rows.append({n: x for n, x in enumerate(entries) if x})
-        solved = echelon_modulo(rows)
-        if last in solved:
-            return None
-        numbers = rational_vector({pivot: row.get(last, 0) for pivot, row in solved.items()})
-        if numbers is None or any(x.denominator > DENOMINATOR for x in numbers.values()):
-            return None
-        return [(factors[n], x) for n, x in sorted(numbers.items()) if x]
+            rows.append([point.value(x) for x in (*slopes, condition.parts[-1])])
+        return _powers(factors, rows, points[0].samples.prime)
+
+    def powers_along(self, factors: Sequence[Element], samples: Samples) -> Powers | None:
+        """``rho`` as before whose rate is right at points, where factors depend on velocities."""
+        slopes = [samples.slopes(factor) for factor in factors]
+        rows = list[list[int]]()
+        for point in islice(samples.points(), len(factors) + POINTS):
+            pairs = zip(factors, slopes, strict=True)
+            rates = [
+                point.moved(each) * pow(point.value(factor), -1, samples.prime)
+                for factor, each in pairs
+            ]
+            rows.append([*rates, -point.value(self.divergence)])
+        return _powers(factors, rows, samples.prime)
 
     def defect(self, powers: Powers) -> Element:
         """``d ln rho / dt + div X``, zero if the measure is invariant."""
@@ -226,80 +244,154 @@ class Measure:
         return self.field.sum([self.divergence, *growth])
 
 
-def factors(field: Field, element: Element, known: Sequence[Element] = ()) -> list[Element]:
-    """The irreducible factors of the numerator of an element, without numbers and repetition.
-
-    Known ones are divided out first: to find factors of many terms takes far longer.
-
-    >>> field = Field(["x", "y"])
-    >>> x, y = field["x"], field["y"]
-    >>> factors(field, (x**2 - y**2) ** 3 / x)
-    [x - y, x + y]
-    >>> factors(field, (x**2 - y**2) ** 3 / x, [x + y, x - 2])
-    [x + y, x - y]
-    """
-    if element == 0:
-        return []
-    rest, found = _numerator(element), list[Element]()
-    for divisor in (p for p in map(_numerator, known) if not p.is_ground):
-        count, rest = remove_factor(rest, divisor)
-        found += [_polynomial(field, divisor)] * bool(count)
-    places = [n for n, e in enumerate(map(max, zip(*rest, strict=True))) if e]
-    if not places:
-        return found
-    # among the symbols that occur: one nesting for each of a hundred others takes very long
-    ring = PolyRing([rest.ring.symbols[n] for n in places], QQ, lex)
-    whole = ring.from_dict({tuple(e[n] for n in places): x for e, x in rest.items()})
-    return [*found, *(_polynomial(field, factor) for factor, _ in whole.factor_list()[1])]
-
-
-def _polynomial(field: Field, p: PolyElement) -> Element:
-    """A polynomial in some symbols of a field, as an element of it."""
-    names = [str(symbol) for symbol in p.ring.symbols]
-    return field.polynomial(names, {e: Fraction(str(x)) for e, x in p.items()})
-
-
-def _numerator(element: Element) -> PolyElement:
-    """The numerator of a nonzero element."""
-    (quotient,) = element.combined().parts
-    return quotient.numer
+def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]], prime: int) -> Powers | None:
+    """Exponents with ``sum of row[n] exponent_n = row[-1]`` in each row; None if there are none."""
+    last = len(factors)
+    reduced = ([x % prime for x in row] for row in rows)
+    solved = echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in reduced), prime)
+    if last in solved:
+        return None
+    vector = {pivot: row.get(last, 0) for pivot, row in solved.items()}
+    numbers = rational_vector(vector, prime)
+    if numbers is None or any(x.denominator > DENOMINATOR for x in numbers.values()):
+        return None
+    return [(factors[n], x) for n, x in sorted(numbers.items()) if x]
 
 
 def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
-    """Whether a density of the positions alone is kept."""
-    if max(len(solve.block) for solve in motion.equations.exact.solves) > SIZE:
-        return
+    """Whether a measure is invariant: first with a density of the positions alone."""
     numbers = _numbers(motion)
     measure, samples = Measure(AtNumbers(motion, numbers)), Samples(motion, numbers)
-    if samples.obstacle:
+    coupled = max(len(solve.block) for solve in motion.equations.exact.solves)
+    obstacle = samples.obstacle
+    if coupled > SIZE:
+        obstacle = f"{coupled} unknowns are solved for together, more than {SIZE}"
+    if obstacle:
+        skipped = Discovery("no search")
+        yield f"an invariant measure was not looked for: {obstacle}", "measure", lambda: skipped
         return
-    form, points = _form(motion), list(islice(samples.points(), POINTS))
-    if any(points[0].value(second) for second in measure.curved):
-        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {PRIME}")
-        yield (
-            f"no invariant measure rho {form}: div X is not affine in the velocities",
-            "measure",
-            lambda: decision,
-        )
+    points = list(islice(samples.points(), POINTS))
+    assert points, "a motion without an obstacle has points"
+    refusal = _refusal(motion, measure, samples, points[0])
+    if refusal is None:
+        yield _of_positions(motion, measure, samples, points)
         return
-    contradiction = measure.contradiction(points[0])
-    if contradiction is not None:
-        yield _none(measure, samples, form, *contradiction)
-        return
-    powers = _closed_form(motion, measure, points)
-    if powers is not None:
-        proof = decide_zero([Measure(motion).defect(powers)], motion.field, samples.where)
-        if proof.verdict is not Verdict.REFUTED:  # as where exponents depend on parameters
-            statement = f"an invariant measure: {_written(motion, powers)}{form}"
-            yield statement, "measure", lambda: proof
-            return
-    ranks = f"ranks of brackets at a random point modulo {PRIME}"
-    yield (
-        f"an invariant measure rho {form} exists near almost every point, its density no product "
-        "of powers of minors of the mass matrix and their factors",
-        "measure",
-        lambda: Decision(Verdict.SUPPORTED, ranks),
+    yield refusal
+    yield _of_velocities(motion, measure, samples)
+
+
+def _refusal(
+    motion: ConstrainedRates, measure: Measure, samples: Samples, point: Point
+) -> Examined | None:
+    """That there is no density of the positions alone; None where nothing speaks against one."""
+    moved = [
+        v.name for v in motion.equations.spec.state if set(v.components) & {*measure.positions}
+    ]
+    density = f"a smooth positive density rho({', '.join(moved)})" if moved else "a constant rho"
+    none = (
+        f"no measure rho {_form(motion)} with {density} is invariant on any open set of states"
+        f"{_where(samples)}{_generic(motion)}"
     )
+    if any(point.value(second) for second in measure.curved):
+        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
+        return f"{none}: div X is not affine in the velocities", "measure", lambda: decision
+    contradiction = measure.contradiction(point)
+    if contradiction is None:
+        return None
+    found, rank = contradiction
+    text = f"what it asks for along {', '.join(each.name for each in found)} contradicts itself"
+    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {samples.prime}"
+    if _is_certain(motion, measure, samples, found, rank):
+        proof = Decision(Verdict.PROVED, method)
+        return f"{none}: {text}", "measure", lambda: proof
+    guess = Discovery(method, _generic(motion).lstrip(", "), CHANCE)
+    return f"{none}: {text}", "measure", lambda: guess
+
+
+def _is_certain(
+    motion: ConstrainedRates,
+    measure: Measure,
+    samples: Samples,
+    found: Sequence[Condition],
+    rank: int,
+) -> bool:
+    """Whether the fields of contradicting conditions have no larger rank at other points.
+
+    Their rank with the right sides is certain, since it is one more at a point.
+    """
+    if rank == len(measure.positions) - len(samples.unit):
+        return True
+    whole = {each.name: each for each in Measure(motion).conditions} if rank == 0 else {}
+    last = whole.get(found[-1].name)
+    return last is not None and all(map(motion.field.is_zero, last.parts[:-1]))
+
+
+def _of_positions(
+    motion: ConstrainedRates, measure: Measure, samples: Samples, points: Sequence[Point]
+) -> Examined:
+    """A density of the positions alone, as a formula if there is one."""
+    powers = measure.exponents(_factors_of_minors(motion, measure), points)
+    found = None if powers is None else _stated(motion, powers)
+    if found is not None:
+        return found
+    search = Discovery(
+        f"ranks of brackets at a random point modulo {samples.prime}",
+        f"near almost every point{_generic(motion)}",
+        CHANCE,
+    )
+    statement = (
+        f"an invariant measure rho {_form(motion)} exists, rho a function of the positions; no "
+        "formula was found among products of powers of the minors of the mass matrix and their "
+        f"factors, with denominators of exponents up to {DENOMINATOR}"
+    )
+    return statement, "measure", lambda: search
+
+
+def _of_velocities(motion: ConstrainedRates, measure: Measure, samples: Samples) -> Examined:
+    """A density that depends on velocities: a product of powers of invariant factors."""
+    short, tried = InvariantFactors(measure.motion, measure.allowed), list[Element]()
+    if short.short() or short.all():
+        whole = InvariantFactors(motion, Measure(motion).allowed)
+        others = _factors_of_minors(motion, measure)
+        for search in (whole.short, whole.all):
+            tried = search()
+            powers = measure.powers_along([*others, *tried], samples)
+            found = None if powers is None else _stated(motion, powers)
+            if found is not None:
+                return found
+    names = ", ".join(described(motion.field, factor) for factor in tried)
+    text = f" that is a product of powers of {names}" if names else " that depends on velocities"
+    ended = Discovery(SEARCHED, _generic(motion).lstrip(", "))
+    return f"no invariant measure was found with a density{text}", "measure", lambda: ended
+
+
+def _stated(motion: ConstrainedRates, powers: Powers) -> Examined | None:
+    """A measure, on vectors of any length if it can be; None if it is refuted."""
+    defect, samples = [Measure(motion).defect(powers)], Samples(motion)
+    finite = ", where its density is finite" if any(x < 0 for _, x in powers) else ""
+    written = f"{_written(motion, powers)}{_form(motion)}"
+    proof = decide_zero(defect, motion.field, motion.where)
+    if proof.verdict is Verdict.PROVED:
+        return f"an invariant measure{finite}: {written}", "measure", lambda: proof
+    proof = decide_zero(defect, motion.field, samples.where)
+    if proof.verdict is Verdict.REFUTED:  # as where exponents depend on parameters
+        return None
+    statement = f"an invariant measure{_where(samples)}{finite}: {written}"
+    if proof.verdict is Verdict.PROVED:
+        return statement, "measure", lambda: proof
+    seen = Discovery(proof.method, error="numbers at some points, no proof")
+    return statement, "measure", lambda: seen
+
+
+def _generic(motion: ConstrainedRates) -> str:
+    """The scope of what was found at random parameters."""
+    return ", for almost all parameters" if motion.equations.setting.parameters else ""
+
+
+def _where(samples: Samples) -> str:
+    """The lengths of vectors at which conditions are examined."""
+    lengths = [f"dot({each.name}, {each.name}) = 1" for each in samples.unit]
+    return f" where {', '.join(lengths)}" if lengths else ""
 
 
 def _numbers(motion: ConstrainedRates) -> dict[str, Fraction]:
@@ -313,25 +405,8 @@ def _numbers(motion: ConstrainedRates) -> dict[str, Fraction]:
     return numbers
 
 
-def _none(
-    measure: Measure, samples: Samples, form: str, found: Sequence[Condition], rank: int
-) -> Examined:
-    """That conditions contradict each other: certain where their fields can have no larger rank."""
-    resting = not any(found[-1].parts[:-1])
-    certain = resting or rank == len(measure.positions) - len(samples.unit)
-    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {PRIME}"
-    decision = Decision(Verdict.PROVED if certain else Verdict.SUPPORTED, method)
-    statement = (
-        f"no invariant measure rho {form} for almost all parameters: what it asks for along "
-        f"{', '.join(each.name for each in found)} contradicts itself"
-    )
-    return statement, "measure", lambda: decision
-
-
-def _closed_form(
-    motion: ConstrainedRates, measure: Measure, points: Sequence[Point]
-) -> Powers | None:
-    """A density in all parameters, from exponents at numbers.
+def _factors_of_minors(motion: ConstrainedRates, measure: Measure) -> list[Element]:
+    """The factors of the minors of the mass matrix that depend on positions.
 
     With numbers for the parameters it shows at once whether there are factors; the others are not
     tried, since to find that a polynomial of many symbols is irreducible may take minutes.
@@ -348,7 +423,7 @@ def _closed_form(
         moving = motion.field.reach(motion.field.normal(factor)) & set(measure.positions)
         if moving and factor not in known:
             known.append(factor)
-    return measure.exponents(known, points)
+    return known
 
 
 def _form(motion: ConstrainedRates) -> str:
@@ -362,9 +437,14 @@ def _form(motion: ConstrainedRates) -> str:
 
 def _written(motion: ConstrainedRates, powers: Powers) -> str:
     """A density in front of a volume; a long determinant goes by its name."""
-    text = ""
+    text, velocities = "", {*motion.distribution.independent}
     for factor, exponent in powers:
-        base = _name(motion, factor) or f"({described(motion.field, factor)})"
+        base = _name(motion, factor)
+        if not base:
+            turning = bool(motion.field.reach(factor) & velocities)
+            whole = element_text(motion.field, factor) if turning else ""
+            short = turning and len(whole) <= LONGEST
+            base = f"|{whole if short else described(motion.field, factor)}|"
         text += base + (f"^({exponent})" if exponent != 1 else "") + " "
     return text
 
@@ -377,10 +457,10 @@ def _name(motion: ConstrainedRates, factor: Element) -> str:
     for solve in motion.equations.exact.solves:
         whole = determinant(tuple(tuple(map(motion.closed, row)) for row in solve.matrix))
         if len(solve.block) == len(motion.distribution.independent) + len(kept) and whole == factor:
-            return "det [[B^T M B, A^T], [A, 0]]" if kept else "det(B^T M B)"
+            return "|det [[B^T M B, A^T], [A, 0]]|" if kept else "det(B^T M B)"
     return ""
 
 
-def _rank(rows: Sequence[Sequence[int]]) -> int:
+def _rank(rows: Sequence[Sequence[int]], prime: int) -> int:
     """The rank of lists of residues."""
-    return len(echelon_modulo({n: x for n, x in enumerate(row) if x} for row in rows))
+    return len(echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in rows), prime))

@@ -29,10 +29,11 @@ def about_projection(first: Equations) -> Iterator[Examined]:
     found = first.projection.distribution
     assert found is not None
     names = ", ".join(equation.name for equation, _ in found.kept)
-    kept = f"every state onto {names}"
-    yield f"the projection moves {kept}", "constraint", partial(_arrival, first.projection)
+    arrives = f"the projection moves every state onto {names}, where its equations are regular"
+    yield arrives, "constraint", partial(_arrival, first.projection)
     yield (
-        "the projection changes velocities alone, by the least kinetic energy of the change",
+        "the projection changes velocities alone, and the kinetic energy of the change is "
+        "stationary: the least one where kinetic energy is positive",
         "constraint",
         partial(_least, first.projection),
     )

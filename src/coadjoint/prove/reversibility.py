@@ -2,8 +2,8 @@ r"""Time reversal: whether the motion runs back when its velocities are turned r
 
 The map :math:`(\eta, z) \mapsto (-\eta, z)` takes a motion to its reverse if and only if
 accelerations are even and rates of positions odd in the velocities, and constraints that are kept
-hold on both sides. The kernel solves :math:`\mathcal{M}(z)\,\dot\eta = k(\eta, z)`, so that k is to
-be even. Dissipation, forces linear in velocities and moving constraints break it.
+hold on both sides. The kernel solves :math:`\mathcal{M}(z)\,\dot\eta = k(\eta, z)`, so that it is
+enough that k is even. Dissipation, forces linear in velocities and moving constraints break it.
 Comes in: rates along a constrained motion. Goes out: a finding for the certificate.
 Read next: `coadjoint.prove.constrained`.
 """
@@ -15,21 +15,40 @@ from collections.abc import Iterator
 from coadjoint.derive.kinematics import rate_name
 from coadjoint.exact import Element
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.findings import Finding, finding, first_nonzero
+from coadjoint.prove.findings import finding, first_nonzero, for_parameters
+from coadjoint.prove.zero import Examined
 
 
-def about_reversal(motion: ConstrainedRates) -> Iterator[Finding]:
+def about_reversal(motion: ConstrainedRates) -> Iterator[Examined]:
     """Whether the motion is time reversible."""
     values = reversal_defects(motion)
     name, decision = first_nonzero(values, motion.field, motion.where)
+    if name and motion.distribution.kept:  # a force along a constraint is lost in its reaction
+        values = rate_defects(motion)
+        name, decision = first_nonzero(values, motion.field, motion.where)
     names = [v.name for v in motion.equations.spec.state if v.role == "velocity"]
     turned = ", ".join(f"{name} -> -{name}" for name in names)
+    scope = for_parameters(motion.equations.setting, [values.get(name, motion.field.zero)])
     yield finding(
         "transformation",
         decision,
         f"the motion is time reversible: it runs back with {turned}",
-        f"the motion is not time reversible by {turned}: {name}",
+        f"the motion is not time reversible by {turned}{scope}: {name}",
     )
+
+
+def rate_defects(motion: ConstrainedRates) -> dict[str, Element]:
+    """What is zero if and only if the motion is reversible: of accelerations, not of forces."""
+    field, found = motion.field, motion.distribution
+    back = {name: -field[name] for name in found.independent}
+    values = {}
+    for name in motion.rates:
+        rate = motion.rate(field[name])
+        turned = field.substitute(rate, back)
+        parity = "even" if name in back else "odd"
+        defect = rate - turned if name in back else rate + turned
+        values[f"{rate_name(name)} is not {parity} in them"] = defect
+    return values | _kept_defects(motion)
 
 
 def reversal_defects(motion: ConstrainedRates) -> dict[str, Element]:
@@ -46,7 +65,14 @@ def reversal_defects(motion: ConstrainedRates) -> dict[str, Element]:
     for name, rate in motion.rates.items():
         if name not in back:
             values[f"{rate_name(name)} is not odd in them"] = rate + field.substitute(rate, back)
-    for equation, residual in found.kept:
-        turned = residual + field.substitute(residual, back)
-        values[f"{equation.name} is not odd in them"] = turned
-    return values
+    return values | _kept_defects(motion)
+
+
+def _kept_defects(motion: ConstrainedRates) -> dict[str, Element]:
+    """What is zero if kept constraints hold on both sides."""
+    field, found = motion.field, motion.distribution
+    back = {name: -field[name] for name in found.independent}
+    return {
+        f"{equation.name} is not odd in them": residual + field.substitute(residual, back)
+        for equation, residual in found.kept
+    }

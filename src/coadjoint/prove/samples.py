@@ -1,35 +1,49 @@
 r"""Random points of a constrained motion modulo a prime, and the motion there.
 
 Comes in: the rates of a constrained motion. Goes out: points at which its constraints hold and its
-unit vectors are of length one, with the values of any function and of its rate. What is an identity
-over the rationals is one modulo the prime, so a rank there never exceeds the true one; it falls
-short with a chance of about 1e-17 (`coadjoint.poisson.ranks`). The accelerations are those that the
-kernel computes, definition by definition. Parameters are random as well unless numbers are given:
-what is found then holds for almost all of their values.
+unit vectors are of length one, with the values of any function and of its rate.
+
+A point is a homomorphism from the functions of the motion to the integers modulo the prime: what is
+zero on the constraints is zero there. It is one of a rational parametrization: velocities solve the
+constraints, whose rank is full there, unit vectors come by stereographic projection, and elementary
+functions satisfy all relations between them (`coadjoint.prove.functions`), or there is no point.
+So a rank of values at points never exceeds the true one. The accelerations are those that the
+kernel computes, definition by definition. Parameters, and functions of parameters alone, have one
+value in all points. They are random unless numbers are given: then a rank bounds that for almost
+all of their values, since a minor that is not zero for some is zero for almost none.
 Read next: `coadjoint.prove.candidates`, `coadjoint.prove.measures`.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 
-from coadjoint.algebra.linear import PRIME, echelon_modulo
+from coadjoint.algebra.linear import PRIME, echelon_modulo, primes
 from coadjoint.derive.kinematics import kept_rows
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import Residue, residue, residue_call
+from coadjoint.poisson.ranks import Residue, residue
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
 from coadjoint.prove.ideals import Ideal
 from coadjoint.spec import Variable
 
+#: Why there are no points where no prime has all that is needed.
+NOWHERE = "no point has all square roots modulo a prime"
 #: Values by name.
 Values = dict[str, Residue]
-#: How often a first point is tried.
-TRIES = 200
+#: Primes that are tried, each with other parameters: so many times 2^n for n square roots, which
+#: all exist in one of 2^n cases, and the most of them.
+PRIMES, MOST = 40, 4000
+#: Numbers below which none of the primes divides any.
+SMALL = 10**12
+#: How often a next point is tried.
+TRIES = 2000
 #: The derivatives of a function that are not zero, by the names of the state.
 Slopes = list[tuple[str, Element]]
 
@@ -46,17 +60,18 @@ class Point:
 
     samples: Samples
     values: Values
-    call: Callable[[str, Residue], Residue]
+    call: FunctionsAtPoint
     factors: dict[int, Residue] = field(default_factory=dict)
 
     def value(self, element: Element) -> int:
         """The value of a function."""
-        ring = self.samples.field
-        return ring.evaluate(element, self.values, residue, self.call, self.factors).value
+        ring, number = self.samples.field, self.call.number
+        return ring.evaluate(element, self.values, number, self.call, self.factors).value
 
     def moved(self, slopes: Slopes) -> int:
         """``dF/dt`` of a function of the state, from its slopes."""
-        return sum(self.value(s) * self.velocity[name] for name, s in slopes) % PRIME
+        total = sum(self.value(s) * self.velocity[name] for name, s in slopes)
+        return total % self.samples.prime
 
     @cached_property
     def velocity(self) -> dict[str, int]:
@@ -67,60 +82,107 @@ class Point:
 
 
 class Samples:
-    """Points of a constrained motion modulo `PRIME`, the same in every run.
+    """Points of a constrained motion modulo a prime, the same in every run.
 
     Args:
         motion: The motion.
         parameters: Values of the parameters; by default random ones, the same at all points.
+        others: Functions that will be evaluated beside the motion.
+
+    Attributes:
+        prime: The prime; another than `PRIME` where that has not the square roots of some numbers.
     """
 
     def __init__(
-        self, motion: ConstrainedRates, parameters: Mapping[str, Fraction] | None = None
+        self,
+        motion: ConstrainedRates,
+        parameters: Mapping[str, Fraction] | None = None,
+        others: Iterable[Element] = (),
     ) -> None:
         self.motion, self.field = motion, motion.field
         self.state = motion.equations.setting.state
-        self._source = random.Random(3)  # noqa: S311 (not for secrets)
-        self._given = parameters
-        self._parameters = self._choice()
+        self.prime, self._source = PRIME, random.Random(3)  # noqa: S311 (not for secrets)
+        self._given, self._others = parameters, tuple(others)
+        self._parameters = Values()
 
     def points(self) -> Iterator[Point]:
-        """Endless points, but none beside an obstacle.
+        """Points, as many as are asked for, but none beside an obstacle.
 
         Poles, and points without the square roots, are passed over.
         """
         while not self.obstacle:
+            point = self._next()
+            if point is None:
+                return
+            yield point
+
+    def _next(self) -> Point | None:
+        for _ in range(TRIES):
             with suppress(ZeroDivisionError):
-                yield self._point()
+                return self._point()
+        return None
+
+    @cached_property
+    def functions(self) -> Functions:
+        """The elementary functions of the motion, with what is known of relations between them."""
+        parameters = self.motion.equations.setting.parameters
+        return Functions(self.field, self._evaluated, self.state, parameters, self._given or {})
+
+    @cached_property
+    def _evaluated(self) -> list[Element]:
+        """All that points are made for."""
+        equations = self.motion.equations
+        solved = [e for s in equations.exact.solves for row in (*s.matrix, s.known) for e in row]
+        return [
+            *equations.exact.rates,
+            *(value for _, value in self._needed),
+            *(entry for row in self._kept for entry in row),
+            *self.where.relations,
+            *solved,
+            *self._others,
+        ]
+
+    @cached_property
+    def _long_numbers(self) -> set[int]:
+        """Numerators and denominators that a prime might divide."""
+        written = [q for e in self._evaluated for q in self.field.quotients(e)]
+        divisors = [d for quotient in written for d, _ in quotient.divisors]
+        written += [q for divisor in divisors for q in self.field.quotients(divisor)]
+        numbers = {m.number for quotient in written for m in quotient.monomials}
+        numbers |= {*(self._given or {}).values()}
+        parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
+        return {part for part in parts if part >= SMALL}
 
     @cached_property
     def obstacle(self) -> str:
         """Why there are no points; else empty.
 
-        Functions of one argument, or of a symbol each, take values that no algebra relates; sines
-        of x, y and x + y do not.
+        Primes and parameters are tried until a point has all square roots, and until each of these
+        has once been missing where those before it were there: so it is none of their combinations.
         """
-        needed = [*self.motion.equations.exact.rates, *(value for _, value in self._needed)]
-        names = sorted(frozenset[str]().union(*map(self.field.functions_in, needed)))
-        called = [self.field.adjoined[name] for name in names]
-        arguments = list[Element]()
-        for known in called:
-            if known.function != "sqrt" and known.argument not in arguments:
-                arguments.append(known.argument)
-        symbols = [self.field[name] for name in self.field.names]
-        if len(arguments) > 1 and not all(argument in symbols for argument in arguments):
-            return f"functions of {len(arguments)} arguments occur, which may be related"
-        for _ in range(TRIES):  # a square root of parameters alone is there at all points or none
+        if self.functions.obstacle:
+            return self.functions.obstacle
+        reached = False
+        count = min(PRIMES << len(self.functions.roots) + len(self.functions.surds), MOST)
+        for prime in islice(primes(), count):
+            if any(number % prime == 0 for number in self._long_numbers):
+                continue
             with suppress(ZeroDivisionError):
+                self.prime = prime
+                self._experiment = Experiment(self.functions, prime, self._source)
+                self._parameters = self._choice()
                 self._point()
-                return ""
-            self._parameters = self._choice()
-        return "no point has all square roots modulo a prime"
+                reached = True
+                if self.functions.proper == self.functions.roots:
+                    return ""
+        return "square roots occur that may be made of each other" if reached else NOWHERE
 
     def _choice(self) -> Values:
         """The parameters: as given, or random."""
         if self._given is not None:
-            return {name: residue(value) for name, value in self._given.items()}
-        return {name: self._draw() for name in self.motion.equations.setting.parameters}
+            return {name: residue(value, self.prime) for name, value in self._given.items()}
+        names = self.motion.equations.setting.parameters
+        return {name: self._experiment.draw() for name in names}
 
     @cached_property
     def unit(self) -> tuple[Variable, ...]:
@@ -139,12 +201,22 @@ class Samples:
 
     @cached_property
     def where(self) -> Ideal:
-        """The relations that hold at the points: kept constraints and the lengths of vectors."""
+        """The relations that hold at the points: kept constraints and the lengths of vectors.
+
+        With the numbers of the parameters, where these are given.
+        """
         kept = self.motion.where
         lengths = [self.squared(each) - 1 for each in self.unit]
         texts = [f"dot({each.name}, {each.name}) = 1" for each in self.unit]
         text = ", ".join(filter(None, (kept.text, *texts)))
-        return kept.also(lengths, text)
+        if not self._given:
+            return kept.also(lengths, text)
+        numbers = {name: self.field.number(value) for name, value in self._given.items()}
+        relations, nonzero = (
+            [self.field.substitute(each, numbers) for each in elements]
+            for elements in (kept.relations, kept.nonzero)
+        )
+        return Ideal(self.field, [*relations, *lengths], text, nonzero=nonzero)
 
     def slopes(self, function: Element) -> Slopes:
         """The derivatives of a function by the state."""
@@ -152,63 +224,60 @@ class Samples:
         return [(name, slope) for name, slope in pairs if slope != 0]
 
     def _draw(self) -> Residue:
-        return Residue(self._source.randrange(1, PRIME))
+        return self._experiment.draw()
 
     def _point(self) -> Point:
+        """One point.
+
+        Raises:
+            ZeroDivisionError: It is a pole, or a square root is missing there.
+        """
         values = self._parameters | {name: self._draw() for name in self.state}
         for variable in self.unit:
             values |= dict(zip(variable.components, self._on_sphere(variable), strict=True))
-        point = Point(self, values, self._functions())
+        velocities = self.motion.distribution.independent
+        call = FunctionsAtPoint(self._experiment)
+        call.learn({name: x for name, x in values.items() if name not in velocities})
+        point = Point(self, values, call)
         values |= self._allowed(point)
+        call.learn(values)
         for name, definition in self._needed:
-            values[name] = Residue(point.value(definition))
+            values[name] = Residue(point.value(definition), self.prime)
         return point
 
     def _on_sphere(self, variable: Variable) -> list[Residue]:
         """A point of the unit sphere, by stereographic projection."""
         flat = [self._draw() for _ in variable.components[1:]]
-        square = residue(0)
+        if not flat:  # 1 or -1
+            return [residue(x, self.prime) for x in variable.default or ()]
+        one, square = Residue(1, self.prime), Residue(0, self.prime)
         for x in flat:
             square += x * x
-        below = square + residue(1)
-        return [(square + residue(-1)) / below, *((x + x) / below for x in flat)]
-
-    def _functions(self) -> Callable[[str, Residue], Residue]:
-        """Functions of symbols at random values: those of one symbol are independent of it."""
-        known: dict[tuple[str, int], Residue] = {}
-
-        def call(function: str, argument: Residue) -> Residue:
-            if function == "sqrt":
-                return residue_call(function, argument)
-            at = argument.value
-            if (function, at) not in known:
-                known["cos", at], known["sin", at] = self._on_circle()
-                known["exp", at], known["log", at] = self._draw(), self._draw()
-            return known[function, at]
-
-        return call
-
-    def _on_circle(self) -> tuple[Residue, Residue]:
-        t, one = self._draw(), residue(1)
-        below = one + t * t
-        return (one + -(t * t)) / below, (t + t) / below
+        below = square + one
+        return [(square + -one) / below, *((x + x) / below for x in flat)]
 
     def _allowed(self, point: Point) -> Values:
-        """Velocities that the kept constraints allow: some of them, from the others."""
+        """Velocities that the kept constraints allow: some of them, from the others.
+
+        Raises:
+            ZeroDivisionError: The rank of the constraints drops here, and velocities would be free
+                that are not so elsewhere.
+        """
         names = self.motion.distribution.independent
         rows = [
             {n: v for n, entry in enumerate(row) if (v := point.value(entry))} for row in self._kept
         ]
+        solved = echelon_modulo(rows, self.prime)
+        if len(solved) < len(rows) or len(names) in solved:
+            raise ZeroDivisionError("the constraints depend on each other here")
         found = {}
-        for pivot, row in echelon_modulo(rows).items():
-            if pivot == len(names):
-                raise ZeroDivisionError("the constraints contradict each other here")
+        for pivot, row in solved.items():
             others = (
                 value * (point.values[names[n]].value if n < len(names) else 1)
                 for n, value in row.items()
                 if n != pivot
             )
-            found[names[pivot]] = Residue(-sum(others) % PRIME)
+            found[names[pivot]] = Residue(-sum(others) % self.prime, self.prime)
         return found
 
     @cached_property

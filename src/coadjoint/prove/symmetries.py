@@ -20,8 +20,9 @@ from coadjoint.derive.symmetries import momentum_map, moved_components, position
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import MomentumMap
+from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import drift
-from coadjoint.prove.zero import Examined, claimed_by
+from coadjoint.prove.zero import Examined, claimed_by, decide_zero
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
 
 #: Entries of a cocycle that a statement shows.
@@ -140,19 +141,27 @@ def _flows(first: Equations, formula: Formula, known: Mapping[str, Quantity]) ->
 
 
 def _kind_of(first: Equations, flows: Sequence[VectorField]) -> str:
-    """Whether positions move by themselves, or only with the momenta."""
-    space = set(positions(first.setting))
+    """Whether positions move by themselves, or only with the momenta; empty where none can tell.
+
+    The flow moves positions by themselves if their rates along it depend on positions alone.
+    """
+    field, space = first.setting.field, set(positions(first.setting))
     if not space:
         return ""
-    moved = [
-        first.setting.field.reach(part) & set(X.names)
+    slopes = [
+        field.derivative(part, momentum)
         for X in flows
         for name, part in zip(X.names, X.components, strict=True)
         if name in space
+        for momentum in X.names
+        if momentum not in space
     ]
-    if all(names <= space for names in moved):
+    verdict = decide_zero(slopes, field).verdict
+    if verdict is Verdict.SUPPORTED:
+        return ""
+    if verdict is Verdict.PROVED:
         return ", a transformation of positions"
-    return ", a hidden symmetry: no transformation of positions alone"
+    return ", a hidden symmetry: its flow is no transformation of positions alone"
 
 
 def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element]:

@@ -138,8 +138,9 @@ class Kernels:
                 self._loaded[target] = None
                 if str(error) not in _said:
                     _said.add(str(error))
+                    advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
                     warnings.warn(
-                        f"{error} The NumPy kernels are used instead. {HOW_TO_GET_ONE}",
+                        f"{error} The NumPy kernels are used instead. {advice}".rstrip(),
                         CompilerWarning,
                         stacklevel=6,
                     )

@@ -1,0 +1,87 @@
+"""The standing adversary: random specs and claims, each certificate judged by independent numbers.
+
+One claim, or one count of Casimirs or integrals, is one case. 500 are tried in every run, 50000 in
+campaigns; a case that fails prints its spec, and its seed brings it back.
+"""
+
+import pytest
+
+from tests.adversary.judge import statements
+from tests.adversary.motion import motion_of
+from tests.adversary.renamed import renamed, reversed_tables
+from tests.adversary.run import campaign, faults_of, record_of, shorten
+from tests.adversary.specs import FAMILIES, generate
+
+#: Cases of one test, and specs that are enough for them.
+CASES, SPECS = 100, 40
+#: Tests of every run, and of campaigns.
+REGULAR, WHOLE = 5, 500
+KINDS = ("proved", "refuted", "numerically supported", "count")
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        pytest.param(n, marks=() if n < REGULAR else pytest.mark.campaign, id=f"part{n}")
+        for n in range(WHOLE)
+    ],
+)
+def test_no_certificate_is_refuted(part, record_property):
+    """What is proved holds at every point, what is refuted fails at its point, counts are ranks."""
+    counts, found = campaign(range(part * SPECS, (part + 1) * SPECS), CASES)
+    record_property("adversary", dict(counts))
+    print(f"part {part}: {dict(counts)}")
+    assert not found, "\n\n".join(found)
+    assert sum(counts.values()) >= CASES, counts
+    assert all(counts[kind] for kind in KINDS), f"a kind of verdict is missing: {counts}"
+    assert counts["unjudged"] <= CASES // 10, f"too many were not judged: {counts}"
+
+
+def test_the_specs_are_the_same_in_every_run_and_of_every_kind():
+    """A seed gives one text; the seeds of a run differ, and every family is among them."""
+    texts = [generate(seed) for seed in range(REGULAR * SPECS)]
+    assert texts == [generate(seed) for seed in range(REGULAR * SPECS)]
+    assert len(set(texts)) == len(texts)
+    titles = {text.splitlines()[0] for text in texts}
+    assert len(titles) >= len(FAMILIES), titles
+
+
+def test_a_failing_spec_is_shortened_to_its_guilty_claim():
+    """Claims that a fault does not need are left out; the guilty one stays."""
+    text = generate(0)
+    guilty = next(line for line in text.splitlines() if line.startswith("  "))
+    short = shorten(text, lambda shorter: guilty in shorter)
+    assert [line for line in short.splitlines() if line.startswith("  ")] == [guilty]
+    assert short.startswith(text.partition("[claims]")[0])
+
+
+def test_a_spec_that_is_refused_is_a_fault():
+    """A generator that writes what cannot be read would try nothing."""
+    faults, counts = faults_of(generate(0).replace("[variables]", "[variable]"))
+    assert "the spec is refused" in faults[0]
+    assert not counts
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(n, marks=() if n < 2 else pytest.mark.campaign, id=f"from{n * 8}")
+        for n in range(40)
+    ],
+)
+def test_no_verdict_depends_on_names_or_on_order(seed):
+    """Names from the other end of the alphabet, in reverse order: all verdicts are the same."""
+    for n in range(seed * 8, seed * 8 + 8):
+        text = generate(n)
+        other = reversed_tables(renamed(text))
+        assert other != text
+        before, after = spec_verdicts(text), spec_verdicts(other)
+        assert len(before) > 2
+        assert list(before.values()) == list(after.values()), f"seed {n}: {before}\n{other}"
+
+
+def spec_verdicts(text):
+    """The verdicts of a spec's own claims by their statements, in the order of the spec."""
+    found = {claim["statement"]: claim["verdict"] for claim in record_of(text)["claims"]}
+    known = {"energy is conserved": "the energy is conserved"}
+    return {each: found[known.get(each, each)] for each in statements(motion_of(text))}

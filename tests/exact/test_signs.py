@@ -1,0 +1,101 @@
+"""Signs on a whole domain: what is certain is said, anything else is not."""
+
+import random
+from fractions import Fraction
+
+import mpmath
+import pytest
+
+from coadjoint.exact import Condition, Field
+from coadjoint.exact.signs import sign
+from coadjoint.exact.witness import UNDEFINED, Domain, enclosure
+
+NAMES = ("m", "k", "q", "v")
+
+
+def written(field, text):
+    """An element from Python text."""
+    calls = {f: lambda u, f=f: field.call(f, field.zero + u) for f in ("sqrt", "sin", "cos", "exp")}
+    return eval(text, {"__builtins__": {}}, {name: field[name] for name in NAMES} | calls)
+
+
+CASES = [
+    ("m", 1, 1),
+    ("-m*k", -1, -1),
+    ("q", 0, 0),
+    ("q**2", 0, 1),
+    ("m + k*q**2", 1, 1),
+    ("m*q**2 + k*v**2", 0, 1),
+    ("m - k", 0, 0),
+    ("m**2 - 2*m*k + k**2", 0, 1),
+    ("(m + q**2)**3*(-k)", -1, -1),
+    ("exp(q)", 1, 1),
+    ("exp(q) - 1", 0, 0),
+    ("sqrt(q)", 0, 1),
+    ("sqrt(m)", 1, 1),
+    ("m + sqrt(q)", 1, 1),
+    ("1/sqrt(q)", 1, 1),
+    ("1/q**2", 1, 1),
+    ("m/q", 0, 0),
+    ("m + k - k*cos(q)**2", 1, 1),
+    ("m - m*cos(q)**2", 0, 1),
+    ("m + m*sin(q)", 0, 0),
+    ("2*m + m*sin(q)", 1, 1),
+    ("m*q**2*cos(v) - 2*m*q**2 - k", -1, -1),
+    ("2*q + q*sin(v)", 0, 0),
+    ("q**2 - 2*q*v + v**2 + m", 1, 1),
+    ("q**2 - 3*q*v + v**2 + m", 0, 0),
+    ("q**2 + 2*q*v + v**2", 0, 1),
+    ("k + m*(q**2 + v**2 - 2*q*v*cos(m))", 1, 1),
+    ("2*q*v - q**2 - v**2 - exp(q)", -1, -1),
+    ("m**2 - m*k + k**2 - 2*m*k", 0, 0),
+    ("m**4 + q**4 - 2*m**2*q**2 + k", 1, 1),
+]
+
+
+@pytest.mark.parametrize(("text", "strict", "weak"), CASES)
+def test_signs_follow_from_declared_ones(text, strict, weak):
+    """Of positive m and k, and q and v of any sign: the sign of each sum is worked out by hand."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    element = written(field, text)
+    assert sign(field, element) == strict
+    assert sign(field, element, strict=False) == weak
+
+
+@pytest.mark.parametrize("text", [text for text, strict, _ in CASES if strict])
+def test_a_certain_sign_holds_at_points(text):
+    """Interval bounds at points of the domain have the sign that was said."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    element = written(field, text)
+    source, seen = random.Random(4), 0
+    for _ in range(60):
+        point = {name: Fraction(source.randint(-40, 40), 7) for name in NAMES}
+        point |= {name: abs(point[name]) + Fraction(1, 9) for name in ("m", "k")}
+        try:
+            found = enclosure(field, element, point).sign
+        except UNDEFINED:
+            continue
+        seen += 1
+        assert found == sign(field, element)
+    assert seen > 10
+
+
+def test_conditions_are_used_as_they_stand():
+    """The condition m > k makes m - k and its multiples positive, m >= k but for zeros."""
+    for strict in (True, False):
+        field = Field(NAMES, positive=["m", "k"])
+        m, k, q = (field[name] for name in "mkq")
+        field.assume([Condition(m - k, strict=strict)])
+        assert sign(field, k * (k - m)) == (-1 if strict else 0)
+        assert sign(field, 3 * m - 3 * k, strict=False) == 1
+        assert sign(field, m - k - 1) == sign(field, (m - k) * q) == 0
+
+
+def test_points_of_a_domain_keep_declared_signs():
+    """A point outside is moved inside, with positive symbols left positive."""
+    field = Field(NAMES, slots=2, positive=["m"])
+    domain = Domain(field, (field.call("sqrt", field["q"] - field["m"] - 50),))
+    point = domain.moved_inside({"m": Fraction(1), "q": Fraction(1)})
+    assert point["m"] > 0
+    assert point["q"] > point["m"] + 50
+    assert mpmath.sqrt(mpmath.mpf(float(point["q"] - point["m"] - 50))) > 0
