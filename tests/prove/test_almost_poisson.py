@@ -4,12 +4,14 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
+from operator import mul
 
 import pytest
 
 from coadjoint.prove import Verdict
 from coadjoint.prove.almost_poisson import (
     ReducedBracket,
+    _inverse_of_numbers,
     about_reduced_bracket,
     about_reduced_jacobi,
 )
@@ -179,3 +181,14 @@ def test_bounds_that_hold_zero_show_no_defect():
     """With dz = cos(x) dx the constraint is holonomic, whatever is rounded."""
     bracket = ReducedBracket(motion(PARTICLE, ("w == y*u", "w == cos(x)*u")).equations)
     assert bracket.defect_somewhere() is None
+
+
+def test_matrices_of_numbers_are_inverted_by_elimination():
+    """A product with the inverse is 1, also where a pivot must be looked for; singular ones end."""
+    rows = [[0, 2, 1], [3, 0, 1], [1, 1, 1]]
+    matrix = [[Fraction(x) for x in row] for row in rows]
+    back = _inverse_of_numbers(matrix)
+    product = [[sum(map(mul, row, column)) for column in zip(*back, strict=True)] for row in matrix]
+    assert product == [[int(i == j) for j in range(3)] for i in range(3)]
+    with pytest.raises(ZeroDivisionError):
+        _inverse_of_numbers([[Fraction(1), Fraction(2)], [Fraction(2), Fraction(4)]])

@@ -16,7 +16,7 @@ Read next: `coadjoint.prove.momenta`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
@@ -180,7 +180,7 @@ class ReducedBracket:
                 for row in rows
             )
 
-        tensor, back = at(self.tensor), inverse(at(self.turn))
+        tensor, back = at(self.tensor), _inverse_of_numbers(at(self.turn))
         slopes = dict(zip(self.entry_slopes, at(self.entry_slopes.values()), strict=True))
         turned = {
             pair: [_dot(row, column) for column in zip(*back, strict=True)]
@@ -257,6 +257,27 @@ def _jacobi(bracket: ReducedBracket) -> Decision:
     if defects:
         return decide_zero(defects, bracket.field)
     return Decision(Verdict.PROVED, NORMAL_FORM)
+
+
+def _inverse_of_numbers(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:
+    """The inverse of a matrix of fractions or of bounds, by elimination.
+
+    Raises:
+        ZeroDivisionError: No pivot is certainly not zero.
+    """
+    size = len(matrix)
+    rows = [[*row, *(int(i == j) for j in range(size))] for i, row in enumerate(matrix)]
+    for n in range(size):
+        place = next((i for i in range(n, size) if rows[i][n] > 0 or rows[i][n] < 0), None)
+        if place is None:
+            raise ZeroDivisionError("a matrix that may be singular")
+        rows[n], rows[place] = rows[place], rows[n]
+        share = 1 / rows[n][n]
+        rows[n] = [x * share for x in rows[n]]
+        for i, row in enumerate(rows):
+            if i != n and row[n] != 0:
+                rows[i] = [x - row[n] * y for x, y in zip(row, rows[n], strict=True)]
+    return [row[size:] for row in rows]
 
 
 def _dot(a: Iterable[Any], b: Iterable[Any]) -> Any:
