@@ -20,7 +20,7 @@ from coadjoint.errors import ClaimError
 class Verdict(StrEnum):
     """How a claim was decided.
 
-    A proof is exact and rests on no random number. A refutation shows a point where the claim
+    A proof is exact: a random point may be its witness, but not its luck. A refutation shows a point where the claim
     fails. Numerical support means that no proof was found, and no point where the claim fails.
     """
 
