@@ -20,8 +20,9 @@ from coadjoint.errors import ClaimError
 class Verdict(StrEnum):
     """How a claim was decided.
 
-    A proof is exact: a random point may be its witness, but not its luck. A refutation shows a point where the claim
-    fails. Numerical support means that no proof was found, and no point where the claim fails.
+    A proof is exact: a random point may be a witness in it, but luck plays no part. A refutation
+    shows a point where the claim fails. Numerical support means that no proof was found, and no
+    point where the claim fails.
     """
 
     PROVED = "proved"
