@@ -68,7 +68,7 @@ def _print(record: Mapping[str, Any]) -> None:
     title = f"Certificate of {record['system']}"
     print_table(("verdict", "statement", "method", ">time"), claims, title=title)
     findings = [
-        (each["statement"], each["method"], each["scope"], each["error"] or "exact", _time(each))
+        (each["statement"], each["method"], each["scope"], each["error"] or "none", _time(each))
         for each in record["findings"]
     ]
     if findings:
