@@ -16,7 +16,7 @@ from tests.adversary.specs import FAMILIES, generate
 CASES, SPECS = 100, 40
 #: Tests of every run, and of campaigns.
 REGULAR, WHOLE = 5, 500
-KINDS = ("proved", "refuted", "numerically supported", "count")
+KINDS = ("proved", "refuted", "numerically supported", "count", "integrals")
 
 
 @pytest.mark.parametrize(
