@@ -358,6 +358,19 @@ def test_an_invariant_measure_is_tried(density, caught):
     assert bool(judge(text, record).faults) is caught
 
 
+@pytest.mark.parametrize(("energy", "caught"), [("m*a*omega*u", False), ("0*m*a*omega*u", True)])
+def test_that_no_density_of_the_positions_is_invariant_is_tried(energy, caught):
+    """The sleigh has the divergence -k v; without its arm there is none, and 1 is a density."""
+    text = SLEIGH.replace("m*(v^2 + (u + a*omega)^2)/2", f"m*(v^2 + u^2)/2 + {energy}")
+    statement = "no measure rho dv domega with a constant rho is invariant on any open set: so"
+    record = {
+        "claims": [claim("the energy is conserved", "conserved"), claim(statement, "measure")]
+    }
+    report = judge(text, record)
+    assert bool(report.faults) is caught, report.faults
+    assert report.verdicts["no measure"] == (not caught)
+
+
 def test_the_reader_knows_the_language():
     """Precedence, powers, vectors and functions, against closed forms."""
     names = {"x": mpf(2), "a": [mpf(1), mpf(2), mpf(3)], "b": [mpf(0), mpf(1), mpf(-1)]}
