@@ -2,8 +2,9 @@
 
 Comes in: a statement of a certificate or of its findings. Goes out: faults in words, or None where
 it holds no count. A statement about Casimirs or integrals in words that the judge does not know is
-a fault: no count passes unread. Ranks are those of NumPy's singular values at random points, which bound them
-from below with certainty and from above almost surely. Where values leave no gap nothing is said.
+a fault: no count passes unread. Ranks are those of NumPy's singular values at random points, which
+bound them from below with certainty and from above almost surely. Where values leave no gap nothing
+is said.
 """
 
 from __future__ import annotations
