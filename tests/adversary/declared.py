@@ -53,10 +53,8 @@ def symmetric(seed, is_true):
     )
     spoil = "" if is_true else source.choice((" + q1/3", " + sin(q1)", " + q1*q2"))
     shift = source.random() < 0.5
-    algebra, time = (
-        ("R^2", 'time = "xi[2]"\n') if shift else ("R^1", "")
-    )  # a vector of one is a number
-    part = "xi[1]" if shift else "xi"
+    algebra, time = ("R^2", 'time = "xi[2]"\n') if shift else ("R^1", "")
+    part = "xi[1]" if shift else "xi"  # a vector of one component is a number
     return f"""title = "Particle with a symmetry"
 routes = ["euler-lagrange"]
 [variables]

@@ -255,7 +255,7 @@ casimirs = ["dot(Pi, Pi)"]
 
 
 #: On Omega3 = 0 with p3 = k' Omega1: I1 dOmega1/dt = -k' Omega1 Omega2 and
-#: I2 dOmega2/dt = k' Omega1^2, so that div X = -k' Omega2/I1 is not zero and d ln|Omega1|/dt the same.
+#: I2 dOmega2/dt = k' Omega1^2, so that div X = -k' Omega2/I1, which is d ln|Omega1|/dt as well.
 SUSLOV = """title = "Suslov"
 routes = ["nonholonomic", "hamel"]
 [algebra]
@@ -496,18 +496,6 @@ CASES = (
         "a root of three in a constrained motion",
         free("v1 - sqrt(3)*v2 == 0", "v1^2/2 + v2^2/2", conserved("v2")),
         {"v2 is conserved": PROVED},
-    ),
-    # functions of parameters keep their values
-    Fixed(
-        "an inclined constraint",
-        free(
-            "cos(alpha)*v1 - sin(alpha)*v2 == 0",
-            "m*(v1^2 + v2^2 + v3^2)/2",
-            conserved("cos(alpha)*q1 - sin(alpha)*q2"),
-            TRIG_PARAMETERS,
-            3,
-        ),
-        {"cos(alpha)*q1 - sin(alpha)*q2 is conserved": PROVED},
     ),
     # constrained motions without accelerations
     Fixed(

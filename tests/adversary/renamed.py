@@ -45,8 +45,8 @@ def _kept(line, change):
 def permuted(text):
     """The text with parameters, variables and claims in reverse order.
 
-    Formulas and names stay, so that every statement does. Variables keep their order where a
-    domain or a law names the order of the state: in a Nambu bracket, and in what is canonical.
+    Formulas and names stay, so that every statement does. Variables keep their order where it
+    matters: the sign of a Nambu bracket is that of the order of the coordinates.
     """
     parts = re.split(r"(?m)^(?=\[[a-z])", text)
     turned = ["[parameters]"]

@@ -1,4 +1,4 @@
-"""Submanifolds, symmetries and transformations, true and false by construction, and spoiled ones."""
+"""Submanifolds, symmetries and transformations, true and false by construction, and spoiled."""
 
 import copy
 
