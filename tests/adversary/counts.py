@@ -1,8 +1,10 @@
 """Counts of a certificate against numeric ranks: Casimirs, and integrals up to a degree.
 
 Comes in: a statement of a certificate or of its findings. Goes out: faults in words, or None where
-it holds no count. Ranks are those of NumPy's singular values at random points, which bound them
-from below with certainty and from above almost surely. Where values leave no gap nothing is said.
+it holds no count. A statement about Casimirs or integrals in words that the judge does not know is
+a fault: no count passes unread. Ranks are those of NumPy's singular values at random points, which
+bound them from below with certainty and from above almost surely. Where values leave no gap nothing
+is said.
 """
 
 from __future__ import annotations
@@ -21,11 +23,29 @@ _ALL = re.compile(r"every Casimir is a function of the (one|\d+) known")
 _SOME = re.compile(r"(\d+) of (\d+) independent Casimirs are known")
 _NONE = re.compile(r"there are no Casimirs but constants")
 _SPACE = re.compile(
-    r"of degree <= (\d+) in the velocities(?: and <= (\d+) in the positions)?.*"
-    r"a space of dimension (\d+) with constants"
+    r"integrals of degree <= (?P<first>\d+) in (?P<velocities>.+?)"
+    r"(?: and <= (?P<second>\d+) in (?P<positions>.+?))?(?:, where (?P<where>.+?))?"
+    r"(?P<scope>, for almost all parameters|, at the default parameters"
+    r"(?: and 1 where there is none)?)?: (?P<text>[^:]*)"
 )
+#: What is said of a space: its dimension, and where that is a bound, how much of it is certain.
+_EXACT = re.compile(r"a space of dimension (\d+) with constants, all polynomials in .+")
+_FOUND = re.compile(
+    r"a space of dimension (\d+) with constants( at the most)?, (\d+) of it "
+    r"(?:polynomials in .+|constants); (?:all|\d+) are functions of .+"
+)
+#: What says that nothing was counted, and what a claim about one function says.
+_SILENT = re.compile(
+    r"(?:integrals|Casimirs): not searched further|integrals beside .+ were not looked for: .+"
+)
+_OF_ONE = re.compile(r".+ is (?:a Casimir|conserved)(?: .*| at the default parameters.*)?")
+_SQUARE = re.compile(r"(dot\(\w+, \w+\)) = 1")
+#: Monomials of the largest space that is counted: one takes as many points.
+LARGEST = 500
 #: Singular values below the first count as zero, above the second as not.
 ZERO, CLEAR = 1e-9, 1e-6
+#: Points beyond as many as there are unknowns.
+SPARE = 6
 
 
 class NoGapError(ArithmeticError):
@@ -49,14 +69,25 @@ def rank_of(rows):
 
 
 def judge_count(motion, entry, claims, source):
-    """Faults of a statement that counts; None if it counts nothing."""
-    text = " ".join((entry["statement"], entry.get("scope", ""), entry["method"]))
-    if _ALL.search(text) or _SOME.search(text) or _NONE.search(text):
-        return _casimirs(motion, text, claims, source) if motion.has_bracket else None
-    found = _SPACE.search(text)
-    if found and isinstance(motion, Constrained):
-        return _integrals(motion, text, found, source)
-    return None
+    """What is wrong with a statement that counts.
+
+    Returns:
+        The kind of the count, ``count`` for Casimirs, ``integrals``, or ``unjudged`` where numbers
+        do not tell, and faults; None for other statements.
+    """
+    if entry["kind"] not in ("casimir", "integrals"):
+        return None
+    statement = entry["statement"]
+    space = _SPACE.fullmatch(statement)
+    if space is not None:
+        faults = _integrals(motion, statement, space, source)
+        return ("unjudged", []) if faults is None else ("integrals", faults)
+    if any(pattern.match(statement) for pattern in (_ALL, _SOME, _NONE)):
+        text = " ".join((statement, entry.get("scope", ""), entry["method"]))
+        return "count", _casimirs(motion, text, claims, source)
+    if _SILENT.fullmatch(statement) or _OF_ONE.fullmatch(statement):
+        return None
+    return "count", [f"the judge does not know this kind of statement: {statement}"]
 
 
 def _casimirs(motion, text, claims, source):
@@ -118,14 +149,35 @@ def defaults_of(motion):
     return found
 
 
-def _integrals(motion, text, found, source):
-    """The dimension of the space of integrals: functions that rest, less those that vanish."""
-    degrees = int(found[1]), int(found[2] or 0)
-    generators = _generators(motion)
-    if generators is None:
-        return []
-    velocities = [v for v in motion.velocities if v not in motion.given]
-    parts = [velocities, generators]
+def _stated_space(text):
+    """The smallest and the largest dimension that a statement allows; None for unknown words."""
+    if text == "none but constants":
+        return 1, 1
+    exact, found = _EXACT.fullmatch(text), _FOUND.fullmatch(text)
+    if exact:
+        return int(exact[1]), int(exact[1])
+    if found:
+        return int(found[3]) if found[2] else int(found[1]), int(found[1])
+    return None
+
+
+def _integrals(motion, statement, space, source):
+    """The dimension of the space of integrals: functions that rest, less those that vanish.
+
+    Returns:
+        Faults; None where the motion is of another kind, or values do not tell.
+    """
+    allowed = _stated_space(space["text"])
+    if allowed is None:
+        return [f"the judge does not know this kind of statement: {statement}"]
+    if not isinstance(motion, Constrained):
+        return None
+    try:
+        parts = [_names(motion, space[part]) for part in ("velocities", "positions")]
+        sets = _relations(motion, space["where"])
+    except ValueError as error:
+        return [f"{statement}: {error}"]
+    degrees = int(space["first"]), int(space["second"] or 0)
     monomials = [
         (*a, *b)
         for da in range(degrees[0] + 1)
@@ -133,64 +185,68 @@ def _integrals(motion, text, found, source):
         for db in range(degrees[1] + 1)
         for b in combinations_with_replacement(parts[1], db)
     ]
+    if len(monomials) > LARGEST:
+        return None
+    at_defaults = "default" in (space["scope"] or "")
+    values, rates = _tables(motion, monomials, parts, sets, source, at_defaults)
+    if len(values) < len(monomials) + SPARE:
+        return None
+    try:
+        dimension = rank_of(values) - rank_of(rates)
+    except NoGapError:
+        return None
+    if not allowed[0] <= dimension <= allowed[1]:
+        return [f"{statement}: singular values give the dimension {dimension}"]
+    return []
+
+
+def _names(motion, text):
+    """What a statement says that monomials are products of: components, and functions of such."""
+    found = []
+    for name in (text or "").split(", ") if text else ():
+        found += motion.components.get(name, [name])
+        if not motion.reach(name) <= {*motion.state, *defaults_of(motion)}:
+            raise ValueError(f"{name} is no function of the state")
+    return found
+
+
+def _relations(motion, text):
+    """What vanishes beside the constraints: squares of lengths less 1; constraints have names."""
+    found, rest = [], text or ""
+    for square in _SQUARE.findall(rest):
+        found.append(read(f"{square} - 1"))
+    names = [part for part in _SQUARE.sub("", rest).split(", ") if part]
+    known = {f"{name} = 0" for name in motion.table.get("constraints", {})}
+    for part in names:
+        if part not in known and not re.fullmatch(r"\w+[\d_]* = 0", part):
+            raise ValueError(f"{part} is no constraint")
+    return found
+
+
+def _tables(motion, monomials, parts, sets, source, at_defaults):
+    """Values of monomials and their rates at points, with one choice of parameters for all."""
     defaults = defaults_of(motion)
-    if "default" not in text:  # one choice of parameters for the whole count
+    if not at_defaults:
         drawn = motion.draw(source, 1)
         defaults = {name: abs(drawn[name]) + mpf(1) / 3 for name in defaults}
     values, rates = [], []
-    for _ in range(20 * len(monomials)):
-        if len(values) == len(monomials) + 6:
+    for _ in range(4 * len(monomials) + 40):
+        if len(values) == len(monomials) + SPARE:
             break
         try:
             point = motion.project(
-                {**motion.draw(source, mpf(1) / 2), **defaults}, motion.relations, motion.state
+                {**motion.draw(source, mpf(1) / 2), **defaults},
+                [*motion.relations, *sets],
+                motion.state,
             )
             if point is None or not motion.inside(point):
                 continue
-            pair = _row(motion, point, velocities, generators, monomials)
+            pair = _row(motion, point, *parts, monomials)
         except UndefinedError:
             continue
         values.append(pair[0])
         rates.append(pair[1])
-    if len(values) < len(monomials) + 6:
-        return []
-    try:
-        dimension = rank_of(values) - rank_of(rates)
-    except NoGapError:
-        return []
-    if dimension != int(found[3]):
-        return [f"{text}: singular values give the dimension {dimension}"]
-    return []
-
-
-def _generators(motion):
-    """Positions, with sine and cosine in the place of angles; None if other functions occur."""
-    texts = [
-        motion.table["lagrangian"]["l"],
-        *motion.table.get("constraints", {}).values(),
-        *motion.table.get("forces", {}).values(),
-        *motion.table.get("definitions", {}).values(),
-    ]
-    trees = [read(side) for text in texts for side in text.split("==")]
-    angles, others = set(), set()
-
-    def walk(tree):
-        if tree[0] == "call":
-            if tree[1] in ("sin", "cos") and tree[2][0] == "name":
-                angles.add(tree[2][1])
-            elif tree[1] not in ("dot", "vector", "cross", "diag"):
-                others.add(tree[1])
-        for part in tree[1:]:
-            if isinstance(part, tuple):
-                walk(part)
-
-    for tree in trees:
-        walk(tree)
-    if others or motion.having("advected"):
-        return None
-    angles &= set(motion.positions)
-    plain = [name for name in motion.positions if name not in angles]
-    return [*plain, *(f"{f}({name})" for name in sorted(angles) for f in ("sin", "cos"))]
+    return values, rates
 
 
 def _row(motion, point, velocities, generators, monomials):

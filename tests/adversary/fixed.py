@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tests.constrained import APPELL, CYLINDER, ROUND
+
 PROVED, REFUTED, SUPPORTED = "proved", "refuted", "numerically supported"
 
 
@@ -252,6 +254,74 @@ casimirs = ["dot(Pi, Pi)"]
 """
 
 
+#: On Omega3 = 0 with p3 = k' Omega1: I1 dOmega1/dt = -k' Omega1 Omega2 and
+#: I2 dOmega2/dt = k' Omega1^2, so that div X = -k' Omega2/I1, which is d ln|Omega1|/dt as well.
+SUSLOV = """title = "Suslov"
+routes = ["nonholonomic", "hamel"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+[parameters]
+I = { shape = [3], positive = true, default = [1, 2, 3] }
+k = { positive = true, default = "1/4" }
+[lagrangian]
+l = "dot(Omega, diag(I)*Omega)/2 + k*Omega1*Omega3/(1 + k)"
+[constraints]
+c = "Omega3 == 0"
+"""
+
+
+def _inclined(count, dimension):
+    """A particle on an inclined line of the plane, or in an inclined plane of space.
+
+    With u along the line and w = cos(alpha) q1 - sin(alpha) q2 the integrals of degree (2, 2) are
+    u^a w^c in the plane of q1 and q2: 3*3 = 9. In space they are u^a v3^b w^c L^d with
+    L = q3 u - s v3, a + b + d <= 2 and c + d <= 2: 6*3 + 3*2 + 1 = 25.
+    """
+    energy = " + ".join(f"v{n}^2" for n in range(1, count + 1))
+    integral = "cos(alpha)*q1 - sin(alpha)*q2"
+    rule = "cos(alpha)*v1 - sin(alpha)*v2 == 0"
+    return Fixed(
+        f"an inclined constraint in {count} dimensions",
+        free(rule, f"m*({energy})/2", conserved(integral), TRIG_PARAMETERS, count),
+        {f"{integral} is conserved": PROVED},
+        (f"a space of dimension {dimension} with constants",),
+    )
+
+
+def _constrained_motions():
+    """Kept constraints where free motion has no acceleration, and where it has blocks."""
+    claims = "[claims]\nconserved = [{}]"
+    yield _inclined(2, 9)
+    yield _inclined(3, 25)
+    yield Fixed(
+        "a ball in an upright cylinder",  # s3 = -R u/r, and the wall turns no ball about its axis
+        CYLINDER + claims.format('"energy", "s3", "w"'),
+        {"s3 is conserved": PROVED, "w is conserved": REFUTED},
+    )
+    yield Fixed(
+        "Appell's machine",  # z - b phi is constant by the thread
+        APPELL + claims.format('"energy", "z - b*phi", "z - phi"'),
+        {"z - b*phi is conserved": PROVED, "z - phi is conserved": REFUTED},
+    )
+    yield Fixed(
+        "a body of unit inertia with a gear",
+        ROUND + claims.format('"w1", "w3", "w2 - w1"'),
+        {"w1 is conserved": PROVED, "w3 is conserved": PROVED, "w2 - w1 is conserved": PROVED},
+    )
+    yield Fixed(
+        "a driven particle with translation and time shift",
+        MOVING_TIME.replace('"v^2/2"', '"v^2/2 - q^2/2"'),
+        {"J is conserved": REFUTED},
+    )
+    yield Fixed(
+        "a driven plane with rotation and time shift",
+        TURNED.replace('dot(q, q)/2"', 'dot(q, q)/2 + q1/3"'),
+        {"J is conserved": REFUTED},
+    )
+
+
 def spins(count):
     """A chain of spins, each with a Casimir of its own."""
     parts = ", ".join(['"so(3)"'] * count)
@@ -427,24 +497,20 @@ CASES = (
         free("v1 - sqrt(3)*v2 == 0", "v1^2/2 + v2^2/2", conserved("v2")),
         {"v2 is conserved": PROVED},
     ),
-    # functions of parameters keep their values
-    Fixed(
-        "an inclined constraint",
-        free(
-            "cos(alpha)*v1 - sin(alpha)*v2 == 0",
-            "m*(v1^2 + v2^2 + v3^2)/2",
-            conserved("cos(alpha)*q1 - sin(alpha)*q2"),
-            TRIG_PARAMETERS,
-            3,
-        ),
-        {"cos(alpha)*q1 - sin(alpha)*q2 is conserved": PROVED},
-    ),
     # constrained motions without accelerations
     Fixed(
         "a constraint on a free particle",
         free("v1 + v2 == 0", "v1^2/2 + v2^2/2", conserved("v1")),
         {"v1 is conserved": PROVED},
     ),
+    *_constrained_motions(),
     # negative statements with their scope
+    Fixed(
+        "Suslov's problem",
+        SUSLOV,
+        {},
+        ("no measure rho dOmega on c = 0 with a constant rho", "|Omega1|^(-1) dOmega on c = 0"),
+        ("no invariant measure rho",),
+    ),
     Fixed("a sleigh", SLEIGH, {}, (), ("no invariant measure rho dv domega for almost",)),
 )

@@ -36,6 +36,9 @@ VERDICTS = ("proved", "refuted", "numerically supported")
 _TRIED = re.compile(r"(\d+)(?: random)? points?")
 _MEASURE = re.compile(r"an invariant measure(?:, where its density is finite)?: (\|.*)")
 _EXPONENT = re.compile(r"(?:\^\(?([-0-9/]+)\)?)?")
+_CHANCE = re.compile(r"\b(?:chance|likely|probab\w+|odds|error)\b")
+_OF_A_SEARCH = re.compile(r"\bnot looked for\b|^no \w[\w ]* was found\b")
+_NO_MEASURE = re.compile(r"no measure rho .* with (?:a constant rho|a smooth positive density)")
 _FLOW = re.compile(r"the flow of (.*) takes motions to motions")
 _FOUND = re.compile(
     r"(.*) is (a Casimir|conserved)( at the default parameters| for almost all.*)?$"
@@ -98,16 +101,43 @@ def judge(text, record, seed=0):
             if claim["statement"] in stated:
                 report.verdicts[claim["verdict"]] += 1
             case.judge(known, claim)
-        elif claim["verdict"] == "refuted":
+        elif _NO_MEASURE.match(claim["statement"]) and claim["verdict"] == "proved":
+            case.no_measure(claim)
+        elif claim["verdict"] == "refuted" and not case.is_broken(claim):
             report.faults.append(f"a claim of the engine itself is refuted: {claim}")
         elif claim["verdict"] == "numerically supported" and not _points_of(claim):
             report.faults.append(f"supported without a point: {claim}")
     for entry in (*claims, *record.get("findings", ())):
         counted = judge_count(motion, entry, claims, random.Random(f"counts {seed} {text}"))
-        if counted is not None:
-            report.verdicts["count"] += 1
-            report.faults += counted
+        if counted is not None and counted[0] == "unjudged":
+            report.unjudged.append(entry["statement"])
+        elif counted is not None:
+            report.verdicts[counted[0]] += 1
+            report.faults += counted[1]
+    report.faults += [fault for entry in claims for fault in chance_faults(entry)]
+    report.faults += [f for entry in record.get("findings", ()) for f in finding_faults(entry)]
     return report
+
+
+def chance_faults(claim):
+    """A claim that is proved rests on no luck, and every claim says how it was decided."""
+    if not claim["method"]:
+        return [f"no method: {claim}"]
+    words = " ".join((claim["statement"], claim["method"], claim.get("error", "")))
+    lucky = claim["verdict"] == "proved" and (claim.get("error") or _CHANCE.search(words))
+    return [f"proved with luck: {claim}"] if lucky else []
+
+
+def finding_faults(entry):
+    """A finding has a method, and says where it holds or how likely it is wrong.
+
+    What only says that nothing was found, or looked for, holds of the search and not of the motion.
+    """
+    if not entry["method"]:
+        return [f"no method: {entry}"]
+    if entry.get("scope") or entry.get("error") or _OF_A_SEARCH.search(entry["statement"]):
+        return []
+    return [f"a finding without scope and error: {entry}"]
 
 
 def statements(motion):
@@ -389,6 +419,23 @@ class _Case:
         """The motion whose state has the points: the whole one for functions that vanish there."""
         motion = self.motion
         return motion.whole if isinstance(motion, Restricted) and where else motion
+
+    def no_measure(self, claim):
+        """Judge that no density of the positions is invariant: it is, where div X is zero."""
+        stated = measure(self.motion, "an invariant measure: |1|")
+        if stated is None or not self.points():
+            self.report.unjudged.append(claim["statement"])
+        elif not self._is_false(stated):
+            self.fault("a constant density is invariant", claim)
+        else:
+            self.report.verdicts["no measure"] += 1
+
+    def is_broken(self, claim):
+        """Whether it is about a symmetry that the spec declares and the motion does not have."""
+        maps = self.motion.table.get("symmetries", {})
+        return claim["kind"] == "symmetry" and any(
+            self._is_false(conserved(self.motion, name)) for name in maps
+        )
 
     def fault(self, words, claim, **more):
         told = ", ".join(f"{name} = {_short(x)}" for name, x in more.items())

@@ -375,7 +375,8 @@ class Motion:
         size, found = _dimension(part["algebra"]), []
         for place in range(size):
             values = Values(self, point)
-            values[part["vector"]] = [mpf(place == n) for n in range(size)]
+            unit = [mpf(place == n) for n in range(size)]
+            values[part["vector"]] = unit if size > 1 else unit[0]
             if "map" in part:
                 found += entries(value(read(part["map"]), values, self.functions))
                 continue

@@ -1,7 +1,7 @@
 """The same spec with other names and in another order: nothing that is true changes.
 
 Comes in: the text of a spec. Goes out: its text with variables and parameters renamed, so that the
-alphabet runs the other way, and with the lines of both tables in reverse order.
+alphabet runs the other way, and with declarations and claims in reverse order.
 """
 
 from __future__ import annotations
@@ -42,11 +42,23 @@ def _kept(line, change):
     return "".join(word if n % 2 else change(word) for n, word in enumerate(words))
 
 
-def reversed_tables(text):
-    """The text with the parameters in reverse order, and those variables that allow it."""
-    parts = re.split(r"(?m)^(?=\[)", text)
+def permuted(text):
+    """The text with parameters, variables and claims in reverse order.
+
+    Formulas and names stay, so that every statement does. Variables keep their order where it
+    matters: the sign of a Nambu bracket is that of the order of the coordinates.
+    """
+    parts = re.split(r"(?m)^(?=\[[a-z])", text)
+    turned = ["[parameters]"]
+    if "nambu" not in text:
+        turned.append("[variables]")
     for place, part in enumerate(parts):
-        if part.startswith("[parameters]"):
-            head, *lines = part.splitlines()
+        head, *lines = part.splitlines()
+        if head in turned:
             parts[place] = "\n".join([head, *reversed(lines)]) + "\n"
+        if head == "[claims]":
+            own = [line for line in lines if line.startswith("  ")]
+            rest = iter(own[::-1])
+            lines = [next(rest) if line.startswith("  ") else line for line in lines]
+            parts[place] = "\n".join([head, *lines]) + "\n"
     return "".join(parts)

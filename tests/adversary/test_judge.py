@@ -254,28 +254,97 @@ l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
 [constraints]
 blade = "u == 0"
 """
-SPACE = "integrals of degree <= {}: a space of dimension {} with constants, all functions of v2"
+SPACE = "integrals of degree <= {}: a space of dimension {} with constants"
+#: What the certificate of the skate claims beside counts.
+SKATE = (
+    claim("v2 is conserved", "conserved"),
+    claim("the energy is conserved", "conserved"),
+)
+IN_V = "2 in v1, v2"
+SOME = "polynomials in v2; 2 are functions of v2"
+WITH_Q = "2 in v1, v2 and <= 0 in q1"
 
 
-@pytest.mark.parametrize(("dimension", "caught"), [(3, True), (4, False), (5, True)])
-def test_the_dimension_of_a_space_of_integrals_is_counted(dimension, caught):
-    """There are four: 1, v2, v2^2 and v1^2 + v3^2."""
-    record = {
-        "claims": [
-            claim("v2 is conserved", "conserved"),
-            claim("the energy is conserved", "conserved"),
-        ],
-        "findings": [
-            {
-                "statement": SPACE.format("2 in the velocities", dimension),
-                "kind": "integrals",
-                "method": "ranks",
-                "scope": "for almost all parameters",
-                "error": "",
-            }
-        ],
-    }
-    assert bool(judge(FREE, record).faults) is caught
+def counted(statement, kind="integrals"):
+    """What the judge says of the skate with one more finding."""
+    entry = {"statement": statement, "kind": kind, "method": "ranks", "scope": "x", "error": ""}
+    return judge(FREE, {"claims": list(SKATE), "findings": [entry]})
+
+
+@pytest.mark.parametrize(
+    ("text", "caught"),
+    [
+        (f"{SPACE.format(IN_V, 3)}, all polynomials in v2", False),
+        (f"{SPACE.format('2 in v', 4)}, all polynomials in v2, energy", False),
+        (f"{SPACE.format('2 in v', 3)}, all polynomials in v2", True),
+        (f"{SPACE.format(WITH_Q, 3)}, all polynomials in v2", False),
+        (f"{SPACE.format(IN_V, 2)}, all polynomials in v2", True),
+        (f"{SPACE.format(IN_V, 4)}, all polynomials in v2", True),
+        (f"integrals of degree <= {IN_V}: none but constants", True),
+        ("integrals of degree <= 0 in v1: none but constants", False),
+        (f"{SPACE.format(IN_V, 3)}, 3 of it polynomials in v2; all are functions of v2", False),
+        (f"{SPACE.format(IN_V, 4)}, 3 of it polynomials in v2; 3 are functions of v2", True),
+        (f"{SPACE.format(IN_V, 4)} at the most, 3 of it {SOME}", False),
+        (f"{SPACE.format(IN_V, 2)} at the most, 2 of it {SOME}", True),
+        (f"{SPACE.format(IN_V, 5)} at the most, 4 of it {SOME}", True),
+        (f"{SPACE.format('2 in v1, u9', 3)}, all polynomials in v2", True),
+        (f"{SPACE.format(IN_V, 3)}, what a luck", True),
+    ],
+)
+def test_the_dimension_of_a_space_of_integrals_is_counted(text, caught):
+    """In v1 and v2 there are 1, v2 and v2^2; with v3 = q2 v1 also v1^2 + v3^2."""
+    report = counted(text)
+    assert bool(report.faults) is caught, report.faults
+    assert caught or report.verdicts["integrals"] == 1
+
+
+@pytest.mark.parametrize(
+    ("statement", "kind", "caught"),
+    [
+        ("integrals: not searched further", "integrals", False),
+        ("Casimirs: not searched further", "casimir", False),
+        ("integrals beside energy were not looked for: no points", "integrals", False),
+        ("integrals of degree <= 2 in the velocities are all known", "integrals", True),
+        ("there is no further integral", "integrals", True),
+        ("all Casimirs are known", "casimir", True),
+    ],
+)
+def test_no_count_passes_unread(statement, kind, caught):
+    """What no pattern knows fails, but for what says that nothing was counted."""
+    report = counted(statement, kind)
+    assert bool(report.faults) is caught, report.faults
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"method": "ranks; an error has a chance below 1e-9"}, "proved with luck"),
+        ({"error": "1e-9"}, "proved with luck"),
+        ({"method": ""}, "no method"),
+    ],
+)
+def test_a_claim_that_is_proved_rests_on_no_luck(changes, words):
+    """A probability belongs to findings."""
+    faults = judge(BODY, spoiled("mu3 is conserved", **changes)).faults
+    assert any(words in fault for fault in faults), faults
+
+
+@pytest.mark.parametrize(
+    ("statement", "changes", "caught"),
+    [
+        ("the motion is reversible", {}, True),
+        ("the motion is reversible", {"scope": "near almost every point"}, False),
+        ("the motion is reversible", {"error": "numbers at some points"}, False),
+        ("the motion is reversible", {"error": "numbers", "method": ""}, True),
+        ("an invariant measure was not looked for: no points", {}, False),
+        ("no invariant measure was found with a density that depends on velocities", {}, False),
+    ],
+)
+def test_a_finding_has_a_scope_or_an_error(statement, changes, caught):
+    """What was found says where it holds or how it may be wrong."""
+    entry = {"statement": statement, "kind": "x", "method": "ranks", "scope": "", "error": ""}
+    record = copy.deepcopy(GOOD) | {"findings": [entry | changes]}
+    assert bool(judge(BODY, record).faults) is caught
 
 
 @pytest.mark.parametrize(("density", "caught"), [("|omega|^(-1)", False), ("|omega|", True)])
@@ -287,6 +356,19 @@ def test_an_invariant_measure_is_tried(density, caught):
         "claims": [claim("the energy is conserved", "conserved"), claim(statement, "measure")]
     }
     assert bool(judge(text, record).faults) is caught
+
+
+@pytest.mark.parametrize(("energy", "caught"), [("m*a*omega*u", False), ("0*m*a*omega*u", True)])
+def test_that_no_density_of_the_positions_is_invariant_is_tried(energy, caught):
+    """The sleigh has the divergence -k v; without its arm there is none, and 1 is a density."""
+    text = SLEIGH.replace("m*(v^2 + (u + a*omega)^2)/2", f"m*(v^2 + u^2)/2 + {energy}")
+    statement = "no measure rho dv domega with a constant rho is invariant on any open set: so"
+    record = {
+        "claims": [claim("the energy is conserved", "conserved"), claim(statement, "measure")]
+    }
+    report = judge(text, record)
+    assert bool(report.faults) is caught, report.faults
+    assert report.verdicts["no measure"] == (not caught)
 
 
 def test_the_reader_knows_the_language():
