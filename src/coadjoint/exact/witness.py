@@ -233,7 +233,7 @@ class Domain:
 
         Inner arguments come first. A condition that allows 0 is asked for more: points lie inside.
         """
-        conditions = [condition.element for condition in self.field.conditions]
+        conditions = [condition.element for condition in self.field.region.conditions]
         reached = (*self.elements, *conditions)
         called = frozenset[str]().union(*map(self.field.functions_in, reached))
         inner = [

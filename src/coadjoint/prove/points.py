@@ -106,7 +106,7 @@ class Points:
     @cached_property
     def _conditions(self) -> tuple[Condition, ...]:
         """What is assumed of the symbols beside their signs."""
-        return (*self.ring.conditions, *self.ring.region.conditions)
+        return (*self.ring.region.conditions, *self.ring.region.bounds)
 
     @cached_property
     def definitions(self) -> dict[str, Element]:
