@@ -6,7 +6,7 @@ import json
 import pytest
 
 from coadjoint.derive import derive
-from coadjoint.derive.domain import bounds
+from coadjoint.derive.domain import bounds, region
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
@@ -26,6 +26,16 @@ def test_conditions_are_what_is_to_be_positive():
     assert found.pop("heavy")[1] is False
     signs = {"a": (1, True), "b": (1, False), "c": (-1, True), "d": (-1, False)}
     assert found == {name: (difference * sign, strict) for name, (sign, strict) in signs.items()}
+
+
+def test_a_condition_of_the_field_is_no_bound_besides():
+    """Claims are looked at where conditions and bounds hold; no inequality stands in both."""
+    found = region(derive(spec(STONE)))
+    assert [each.strict for each in found.conditions] == [True, False]
+    assert found.bounds == ()
+    pivots = region(derive(spec(SUSLOV))).bounds
+    assert len(pivots) == 4
+    assert all(each.strict for each in pivots)
 
 
 def test_a_bound_names_what_it_depends_on():

@@ -117,7 +117,7 @@ def test_points_lie_inside_the_domain(text):
     for point in points:
         assert field.evaluate(inside, point, Fraction, None) > 0
         assert point.get("x1", 1) > 0
-        for each in field.conditions:
+        for each in field.region.conditions:
             assert field.evaluate(each.element, point, Fraction, None) > 0
     assert is_nonzero(field, element)
 

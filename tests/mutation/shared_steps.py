@@ -57,7 +57,7 @@ SHARED = (
         "interpret",
         TOP,
         ("    return a - b\n", "    return a + b\n"),
-        ("_scale(1 / b, a)", "_scale(b, a)"),
+        ("_scale(1 / below[1], below[0])", "_scale(below[1], below[0])"),
     ),
     *of(
         "formulas",

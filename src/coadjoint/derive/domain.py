@@ -66,10 +66,12 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
         equations: By the emitted route.
         momenta: The momenta in terms of velocities, for what is written in these.
     """
+    known = equations.setting.field.region
     found = [Condition(each.element, each.strict) for each in bounds(equations)]
+    found += _arguments(equations)
     return replace(
-        equations.setting.field.region,
-        conditions=(*found, *_arguments(equations)),
+        known,
+        bounds=tuple(each for each in found if each not in known.conditions),
         definitions=dict(equations.exact.definitions),
         momenta=momenta,
     )

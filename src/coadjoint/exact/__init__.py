@@ -5,9 +5,9 @@ SymPy's sparse polynomial rings do the work and stay hidden here. Read next:
 """
 
 from coadjoint.exact.element import BudgetSpent, Element
-from coadjoint.exact.field import Condition, Field
+from coadjoint.exact.field import Field
 from coadjoint.exact.jets import JetField
-from coadjoint.exact.region import Region
+from coadjoint.exact.region import Condition, Region
 from coadjoint.exact.text import element_text
 
 __all__ = ["BudgetSpent", "Condition", "Element", "Field", "JetField", "Region", "element_text"]

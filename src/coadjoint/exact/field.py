@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
 from operator import mul, truediv
@@ -23,7 +23,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.element import Element, Factors, Quotient
-from coadjoint.exact.region import Region
+from coadjoint.exact.region import Condition, Region
 from coadjoint.exact.written import Adjoined, Monomial, Written
 
 Value = TypeVar("Value")
@@ -39,19 +39,6 @@ def _paired(addends: list[Any]) -> Any:
     return addends[0]
 
 
-@dataclass(frozen=True)
-class Condition:
-    """An element that is positive, or not negative, wherever anything in its field is asked for.
-
-    Attributes:
-        element: The element.
-        strict: Whether it is never 0.
-    """
-
-    element: Element
-    strict: bool
-
-
 class Field:
     """Rational functions over Q in named symbols and in elementary functions of them.
 
@@ -61,7 +48,7 @@ class Field:
         positive: The symbols that may be assumed positive.
 
     Attributes:
-        conditions: What else may be assumed, as ``cos(phi) > 0``.
+        region: What else may be assumed, and where values are looked at.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
@@ -72,7 +59,6 @@ class Field:
     def __init__(self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()) -> None:
         self.names = tuple(names)
         self.positive = frozenset(positive)
-        #: Where values are looked at.
         self.region = Region()
         # A spec name cannot begin with an underscore, so a slot cannot meet one.
         # Two for each function: sine and cosine come together.
@@ -87,7 +73,6 @@ class Field:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self.adjoined: dict[str, Adjoined] = {}
-        self.conditions: tuple[Condition, ...] = ()
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
@@ -97,7 +82,7 @@ class Field:
 
     def assume(self, conditions: Iterable[Condition]) -> None:
         """Take it that conditions hold, besides those that do."""
-        self.conditions = (*self.conditions, *conditions)
+        self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
 
     def _element(self, p: PolyElement) -> Element:

@@ -1,8 +1,8 @@
 """Regions: where values of the functions of a field are looked at.
 
 Comes in: what a spec declares: its parameters, defaults and the conditions of ``[domain]``. Goes
-out: a record that stays with the `Field`, so that nothing is decided outside of the domain. What is
-assumed of signs alone, `Field.conditions`, holds besides.
+out: a record that stays with the `Field`, so that nothing is decided outside of the domain. Beside
+it the field knows only which symbols are positive.
 Read next: `coadjoint.prove.points`, which draws points in it.
 """
 
@@ -11,12 +11,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from coadjoint.exact.element import Element
 
-if TYPE_CHECKING:
-    from coadjoint.exact.field import Condition
+
+@dataclass(frozen=True)
+class Condition:
+    """An element that is positive, or not negative, wherever something is asked for.
+
+    Attributes:
+        element: The element.
+        strict: Whether it is never 0.
+    """
+
+    element: Element
+    strict: bool
 
 
 @dataclass(frozen=True)
@@ -26,7 +35,10 @@ class Region:
     Attributes:
         parameters: The symbols that are parameters: claims hold for almost all of their values.
         defaults: A value for each symbol that has one.
-        conditions: What holds there.
+        conditions: What holds wherever anything in the field is asked for, as ``cos(phi) > 0``;
+            normal forms rest on it. `Field.assume` adds to it.
+        bounds: What holds besides where claims are looked at, of reactions and pivots for example;
+            normal forms know nothing of it.
         definitions: Values of further names, each in terms of symbols and of names before it.
         momenta: Momenta in terms of velocities, for functions that are written in velocities.
     """
@@ -34,5 +46,6 @@ class Region:
     parameters: frozenset[str] = frozenset()
     defaults: Mapping[str, Fraction] = field(default_factory=dict)
     conditions: tuple[Condition, ...] = ()
+    bounds: tuple[Condition, ...] = ()
     definitions: Mapping[str, Element] = field(default_factory=dict)
     momenta: Mapping[str, Element] = field(default_factory=dict)

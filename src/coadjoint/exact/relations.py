@@ -82,7 +82,7 @@ class Relations:
         self._alone: dict[tuple[Fraction, ...], tuple[Element, Element]] = {}
         for known in called:
             self._images[known.generator] = self._image_of(known)
-        for condition in field.conditions:
+        for condition in field.region.conditions:
             if condition.element and field.functions_in(condition.element) <= self.names:
                 self.products.note_positive(self.products.factored(self._image(condition.element)))
 

@@ -132,7 +132,7 @@ class Signs:
 
     def _conditions(self) -> Iterator[PolyElement]:
         """Monic factors that the conditions of the field say are positive, and minus the others."""
-        for condition in self.field.conditions:
+        for condition in self.field.region.conditions:
             if self.strict and not condition.strict:
                 continue
             element = self.field.normal(condition.element).combined()

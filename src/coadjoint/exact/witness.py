@@ -3,6 +3,9 @@
 Comes in: an element. Goes out: a rational point inside the domain at which bounds of the value
 exclude zero, or nothing. A normal form that is not 0 proves nothing where functions occur, since
 their field does not know every relation; a witness does. The points are the same in every run.
+Normal forms, divisors, brackets and ranks ask here: what is not zero at one point is not zero at
+almost every point. Claims are looked at by `coadjoint.prove.points`, which knows zero sets, bounds
+and definitions too.
 Read next: `coadjoint.exact.signs`, which knows signs at all points of a domain.
 """
 
@@ -233,7 +236,7 @@ class Domain:
 
         Inner arguments come first. A condition that allows 0 is asked for more: points lie inside.
         """
-        conditions = [condition.element for condition in self.field.conditions]
+        conditions = [condition.element for condition in self.field.region.conditions]
         reached = (*self.elements, *conditions)
         called = frozenset[str]().union(*map(self.field.functions_in, reached))
         inner = [

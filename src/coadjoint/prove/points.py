@@ -5,7 +5,13 @@ at. Goes out: points of the branch at which every declared sign and every condit
 holds and no square root or logarithm leaves its domain. Where random points do not do, they are
 moved: by Newton's method onto the branch, and to where the conditions that fail hold. Points
 where nothing has to be solved for are rational, all others have the working precision of mpmath.
-The sequence is the same in every run. Read next: `coadjoint.prove.zero`.
+The sequence is the same in every run.
+
+`coadjoint.exact.witness` has points of its own, which lie strictly inside a domain, as intervals
+prove. Here a point may lie where a value is 0 that need not be positive, it has to satisfy the
+bounds of `Region` with the definitions that these name, and it moves along all that fails at once:
+a level set leaves no room for one step after another.
+Read next: `coadjoint.prove.zero`.
 """
 
 from __future__ import annotations
@@ -106,7 +112,7 @@ class Points:
     @cached_property
     def _conditions(self) -> tuple[Condition, ...]:
         """What is assumed of the symbols beside their signs."""
-        return (*self.ring.conditions, *self.ring.region.conditions)
+        return (*self.ring.region.conditions, *self.ring.region.bounds)
 
     @cached_property
     def definitions(self) -> dict[str, Element]:

@@ -63,7 +63,7 @@ class Signs:
     @cached_property
     def _positive(self) -> tuple[Element, ...]:
         """What is declared to be positive."""
-        known = (*self.field.conditions, *self.field.region.conditions)
+        known = (*self.field.region.conditions, *self.field.region.bounds)
         return tuple(each.element for each in known if each.strict)
 
     @cached_property
