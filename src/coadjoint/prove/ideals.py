@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice
@@ -185,7 +186,37 @@ class Ideal:
             self._declared = first.rest
             start = Branch(first.solved, (), first.nonzero)
             found += self._split([*first.rest, *others], start)
-        return tuple(found)
+        return tuple(regular for branch in found for regular in self._regular(branch))
+
+    def _regular(self, branch: Branch) -> list[Branch]:
+        """A branch with what must not vanish there; none if that vanishes on all of it."""
+        rest, found = Ideal(self.field, branch.rest), list[Element]()
+        for element in self.nonzero:
+            try:
+                value = self.field.normal(self._on(branch, element))
+            except ZeroDivisionError:  # no value, and so no motion
+                return []
+            if rest.contains(value):
+                self._exclude(self._vanishing_factor(element, branch, rest))
+                return []
+            if self.field.as_number(value) is None and value not in found:
+                found.append(value)
+        return [replace(branch, regular=tuple(found))]
+
+    def _vanishing_factor(self, element: Element, branch: Branch, rest: Ideal) -> Element:
+        """The factor that makes an element vanish on a branch; all of it if no factor does."""
+        for factor in self._all_factors(element):
+            with suppress(ZeroDivisionError):
+                if rest.contains(self._on(branch, factor)):
+                    return factor
+        return element
+
+    def _all_factors(self, element: Element) -> Iterator[Element]:
+        """The irreducible factors of a numerator that is not too long."""
+        numerator = _numerator(element)
+        if len(numerator) <= FACTORED:
+            for names, factor in _irreducible(numerator):
+                yield self.field.normal(self.field.polynomial(names, dict(factor.terms())))
 
     @cached_property
     def some_points(self) -> tuple[tuple[Points, Values], ...]:
@@ -199,7 +230,8 @@ class Ideal:
             defined: Functions that must have values there.
         """
         functions = (*self.given, *defined)
-        whole = Points(self.field, (), Branch(rest=self.relations), functions)
+        start = Branch(rest=self.relations, regular=self.nonzero)
+        whole = Points(self.field, (), start, functions)
         yield from ((whole, point) for point in whole.near_defaults())
         for branch in self.branches:
             with suppress(ZeroDivisionError):
@@ -290,8 +322,7 @@ class Ideal:
         numerator, found = _numerator(relation), list[Element]()
         if len(numerator) > FACTORED:
             return [relation]
-        for names, factor in _irreducible(numerator):
-            element = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
+        for element in self._all_factors(relation):
             if self._signs.is_nonzero(element, nonzero):
                 continue
             if self._signs.is_factor(element, self.nonzero):
