@@ -255,7 +255,10 @@ l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
 blade = "u == 0"
 """
 
-@pytest.mark.parametrize(("v", "caught"), [("0.777281587757401253796206295193", False), ("0.7773", True)])
+
+@pytest.mark.parametrize(
+    ("v", "caught"), [("0.777281587757401253796206295193", False), ("0.7773", True)]
+)
 def test_coordinates_of_thirty_digits_lie_on_their_set(v, caught):
     """At omega = 1/4 the set v^2 + omega^2 = 2/3 holds up to rounding, and u = 0 is not shown.
 

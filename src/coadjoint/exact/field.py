@@ -62,6 +62,8 @@ class Field:
 
     Attributes:
         conditions: What else may be assumed, as ``cos(phi) > 0``.
+        has_called: Whether any function was called, so that zeros may rest on relations of
+            functions that are gone: ``sin(-x) + sin(x)`` has none left.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
@@ -88,6 +90,7 @@ class Field:
         }
         self.adjoined: dict[str, Adjoined] = {}
         self.conditions: tuple[Condition, ...] = ()
+        self.has_called = False
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
@@ -183,6 +186,7 @@ class Field:
         """
         from coadjoint.exact.values import known_value  # which needs fields
 
+        self.has_called = True
         if function == "tan":
             return self.call("sin", argument) / self.call("cos", argument)
         if function in ("sin", "cos") and argument and argument.parts[0].numer.LC < 0:
