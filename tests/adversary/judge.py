@@ -140,6 +140,20 @@ def finding_faults(entry):
     return [f"a finding without scope and error: {entry}"]
 
 
+def is_empty(text, statement, seed=0):
+    """Whether the judge finds no point either at which a claim of a spec has a value."""
+    motion = motion_of(text)
+    case = _Case(motion, Report(), random.Random(f"judge {seed} {text}"))
+    stated = statements(motion)[statement]
+    for point in case.points(stated.where):
+        try:
+            stated.differences(point)
+        except UndefinedError:
+            continue
+        return False
+    return True
+
+
 def statements(motion):
     """Every claim of a spec by its statement."""
     found, claims = {}, motion.table.get("claims", {})

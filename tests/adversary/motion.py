@@ -33,6 +33,8 @@ from tests.adversary.reader import (
 STEP = mpf(10) ** -16
 #: How far a point found by iteration may be from its set, relative to the point.
 ON_SET = mpf(10) ** -40
+#: The same beside coordinates that are known to some 30 digits, as certificates show them.
+ON_SHOWN = mpf(10) ** -22
 #: How far inside a strict condition a point must be: iteration may end on an edge but for rounding.
 EDGE = mpf(10) ** -15
 #: Steps of Newton's method; it converges within ten where the set is smooth.
@@ -258,15 +260,23 @@ class Motion:
             point[name] = drawn if positive else -drawn
         return point
 
-    def project(self, point, trees, names, steps=STEPS):
-        """The nearest zero of some formulas by Newton's method; None where it finds none."""
+    def project(self, point, trees, names, steps=STEPS, near=ON_SET):
+        """The nearest zero of some formulas by Newton's method; None where it finds none.
+
+        Args:
+            point: Where it starts.
+            trees: The formulas.
+            names: What is moved.
+            steps: How many at most.
+            near: Values below this, relative to the size of what is moved, are zero.
+        """
         trees = [read(tree) if isinstance(tree, str) else tree for tree in trees]
         residual = lambda p: [x for tree in trees for x in self.at(tree, p)]  # noqa: E731
         point = dict(point)
         for _ in range(steps):
             values = residual(point)
             size = 1 + max((abs(point[n]) for n in names), default=mpf(0))
-            if max(map(abs, values), default=0) <= ON_SET * size:
+            if max(map(abs, values), default=0) <= near * size:
                 return point
             columns = [self.along(residual, point, {n: mpf(1)}) for n in names]
             rows = [[column[i] for column in columns] for i in range(len(values))]
@@ -332,7 +342,7 @@ class Motion:
             point = {**self.draw(source, (1, 1, 3, mpf(1) / 4, 12)[attempt % 5]), **known}
             rest = [name for name in self.state if name not in known]
             try:
-                moved = self.project(point, trees, rest) if trees and rest else point
+                moved = self.project(point, trees, rest, near=ON_SHOWN) if trees and rest else point
                 point = point if moved is None else moved
                 if self.inside(point) and self.is_near(point, trees):
                     yield point

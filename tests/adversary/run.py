@@ -14,8 +14,10 @@ from pathlib import Path
 
 from coadjoint.errors import SpecError
 from coadjoint.prove import prove
+from coadjoint.prove.zero import UndecidedError
 from coadjoint.spec import read_spec_text
-from tests.adversary.judge import judge
+from tests.adversary.judge import is_empty, judge, statements
+from tests.adversary.motion import motion_of
 from tests.adversary.specs import generate
 
 #: Seconds of processor time for one certificate; the slowest here takes about two.
@@ -51,15 +53,42 @@ def record_of(text, name="sample"):
 
 
 def faults_of(text):
-    """What is wrong with the certificate of a spec, and the counts of its verdicts."""
+    """What is wrong with the certificate of a spec, and the counts of its verdicts.
+
+    A claim that is rightly undecided is left out, and the others are judged.
+    """
     try:
         record = record_of(text)
     except SpecError as error:
         return [f"the spec is refused: {error}"], Counter()
+    except UndecidedError as error:
+        return _faults_beside(text, error)
     except Exception as error:
         return [f"{type(error).__name__}: {error}"], Counter()
     report = judge(text, record)
     return report.faults, report.verdicts + Counter(unjudged=len(report.unjudged))
+
+
+def _faults_beside(text, error):
+    """What is wrong beside a claim that was not decided: right only where it has no value."""
+    rest = without(text, error.found)
+    if rest is None:
+        return [f"what no line claims is undecided: {error}"], Counter()
+    if not is_empty(text, error.found):
+        return [f"undecided, but there are points: {error}"], Counter()
+    faults, counts = faults_of(rest)
+    return faults, counts + Counter(undecided=1)
+
+
+def without(text, statement):
+    """The text without the line of a claim; None if there is none."""
+    head, mark, claims = text.partition("[claims]\n")
+    lines = claims.splitlines() if statement in statements(motion_of(text)) else []
+    for place, line in enumerate(lines):
+        rest = head + mark + "\n".join([*lines[:place], *lines[place + 1 :]]) + "\n"
+        if line.startswith("  ") and statement not in statements(motion_of(rest)):
+            return rest
+    return None
 
 
 def shorten(text, is_faulty):

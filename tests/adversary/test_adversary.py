@@ -6,10 +6,11 @@ campaigns; a case that fails prints its spec, and its seed brings it back.
 
 import pytest
 
+from coadjoint.prove.zero import UndecidedError
 from tests.adversary.judge import statements
 from tests.adversary.motion import motion_of
 from tests.adversary.renamed import permuted, renamed
-from tests.adversary.run import campaign, faults_of, record_of, shorten
+from tests.adversary.run import campaign, faults_of, record_of, shorten, without
 from tests.adversary.specs import FAMILIES, generate
 
 #: Cases of one test, and specs that are enough for them.
@@ -64,6 +65,44 @@ def test_a_spec_that_is_refused_is_a_fault():
     assert not counts
 
 
+PARTICLE = """title = "Particle"
+routes = ["poisson"]
+[poisson]
+canonical = [["q", "p"]]
+[variables]
+q = { role = "coordinate" }
+p = { role = "coordinate" }
+[hamiltonian]
+h = "p^2/2"
+[claims]
+conserved = [
+  { integral = "q", where = ["p^2 + 1"] },
+  "sqrt(-p^2 - 1)",
+  "p",
+]
+"""
+
+
+def test_a_claim_without_points_is_rightly_undecided():
+    """Where p^2 + 1 = 0, and in sqrt(-p^2 - 1), there is nothing real; p is judged all the same."""
+    faults, counts = faults_of(PARTICLE)
+    assert faults == []
+    assert counts == {"undecided": 2, "proved": 1, "count": 1}
+
+
+def test_a_claim_with_points_is_wrongly_undecided(monkeypatch):
+    """A prover that finds no point where there are some is told so; and so is one that invents."""
+    for found, words in (("p is conserved", "there are points"), ("h is it", "no line claims")):
+
+        def give_up(text, found=found):
+            raise UndecidedError("nothing", found=found)
+
+        monkeypatch.setattr("tests.adversary.run.record_of", give_up)
+        (fault,), counts = faults_of(PARTICLE)
+        assert words in fault
+        assert not counts
+
+
 @pytest.mark.parametrize(
     "seed",
     [
@@ -87,6 +126,9 @@ def test_no_verdict_depends_on_names_or_on_order(seed):
 
 def spec_verdicts(text):
     """The verdicts of a spec's own claims by their statements, in the order of the spec."""
-    found = {claim["statement"]: claim["verdict"] for claim in record_of(text)["claims"]}
+    try:
+        found = {claim["statement"]: claim["verdict"] for claim in record_of(text)["claims"]}
+    except UndecidedError as error:
+        found = spec_verdicts(without(text, error.found)) | {error.found: "undecided"}
     known = {"energy is conserved": "the energy is conserved"}
     return {each: found[known.get(each, each)] for each in statements(motion_of(text))}

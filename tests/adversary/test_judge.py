@@ -254,6 +254,26 @@ l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
 [constraints]
 blade = "u == 0"
 """
+
+
+@pytest.mark.parametrize(
+    ("v", "caught"), [("0.777281587757401253796206295193", False), ("0.7773", True)]
+)
+def test_coordinates_of_thirty_digits_lie_on_their_set(v, caught):
+    """At omega = 1/4 the set v^2 + omega^2 = 2/3 holds up to rounding, and u = 0 is not shown.
+
+    There dv/dt = a*omega^2 = 1/32, since I + m*a^2 = 1, and v = sqrt(29/48).
+    """
+    where = "(m*v^2 + (I + m*a^2)*omega^2 - 1)*(energy - 1/3)"
+    text = SLEIGH + f'[claims]\nconserved = [{{ integral = "v", where = ["{where}"] }}]\n'
+    point = {"v": v, "omega": "0.25", "m": "1", "I": "0.75", "a": "0.5"}
+    statement = f"v is conserved where {where} = 0"
+    found = claim(statement, "conserved", "refuted", counterexample=point, defect="0.03125")
+    faults = judge(text, {"claims": [found]}).faults
+    assert any("outside the set" in fault for fault in faults) is caught
+    assert bool(faults) is caught
+
+
 SPACE = "integrals of degree <= {}: a space of dimension {} with constants"
 #: What the certificate of the skate claims beside counts.
 SKATE = (

@@ -69,11 +69,15 @@ def over_coordinates(source):
             some = source.sample(names, min(size, source.randint(1, 3)))
             left = " + ".join(f"({coefficient(source, size)})*v{n}" for n in some)
             constraints.append(f'c{place} = "{left} == 0"')
-    variables = "".join(
+    return f"[variables]\n{variables_of(size)}", energy, constraints
+
+
+def variables_of(size):
+    """Coordinates and their velocities."""
+    return "".join(
         f'q{n} = {{ role = "coordinate" }}\nv{n} = {{ role = "velocity", of = "q{n}" }}\n'
-        for n in names
+        for n in range(1, size + 1)
     )
-    return f"[variables]\n{variables}", energy, constraints
 
 
 def generate(seed):
@@ -104,6 +108,27 @@ def check(text):
         verdict = getattr(found, "verdict", Verdict.PROVED)  # a finding has none
         assert verdict is Verdict.PROVED, f"{statement}\n{text}"
     return True
+
+
+#: Where cos(q1) = sin(q3) = 0 both rows that are left vanish for v2, and v4 is 0: no motion.
+SINGULAR = f"""title = "Rows that vanish together"
+routes = ["nonholonomic", "hamel"]
+[variables]
+{variables_of(5)}{PARAMETERS}[lagrangian]
+l = "m*v1^2/2 + 2*v2^2/2 + 1*v3^2/2 + 2*v4^2/2 + 2*v5^2/2 + cos(q5)*v5*v2/4 - b*cos(q1)"
+[constraints]
+c0 = "(1)*v5 == 0"
+c1 = "(cos(q1))*v2 + (q1)*v5 == 0"
+c2 = "v5 == a*sin(q3)*v2 + cos(q4)*v4"
+"""
+
+
+def test_no_motion_is_looked_at_where_the_constraints_lose_their_rank():
+    """The energy is conserved wherever there is a motion; what is not zero there is refuted."""
+    assert check(SINGULAR)
+    motion = ConstrainedRates(derive(spec(SINGULAR), "nonholonomic"))
+    spoiled = motion.energy_balance() + motion.field["v1"]
+    assert decide_zero([spoiled], motion.field, motion.where).verdict is Verdict.REFUTED
 
 
 def seeds():

@@ -395,3 +395,43 @@ def test_undecided_claims_name_the_system_and_the_claim():
     assert "Expected real points" in text
     assert caught.value.exit_status == 1
     assert caught.value.found == "q1 is conserved where p1^2 + 1 = 0"
+
+
+def test_no_point_shows_anything_where_the_rank_drops_on_a_whole_branch():
+    """Rows (x + y, y) that act on u: either u = 0, or both vanish, and there is no motion there.
+
+    No factor of a relation is the determinant x^2 + y^2, which vanishes on the branch x = y = 0.
+    """
+    field = Field(["x", "y", "u"])
+    x, y, u = (field[name] for name in field.names)
+    rows = [(x + y) * u, y * u]
+    assert decide_zero([u], field, Ideal(field, rows, "rows = 0")).verdict is REFUTED
+    regular = Ideal(field, rows, "rows = 0", nonzero=[x**2 + y**2])
+    proof = decide_zero([u], field, regular)
+    assert proof.verdict is PROVED
+    assert "x^2 + y^2 not 0" in proof.method
+    assert decide_zero([u - x], field, regular).verdict is REFUTED
+
+
+def test_a_determinant_vanishes_at_no_point_that_is_shown(monkeypatch):
+    """The only real zero of a definite quartic is the origin, where x is zero; no ideal tells."""
+    monkeypatch.setattr("coadjoint.prove.points.ON_ZERO_SET", 2)  # each takes many steps
+    field = Field(["x", "y", "u"])
+    x, y, u = (field[name] for name in field.names)
+    quartic = [x**4 + x**2 * y**2 + x * y**3 + y**4]
+    assert decide_zero([u], field, Ideal(field, quartic, "that = 0")).verdict is REFUTED
+    with pytest.raises(UndecidedError, match="that = 0"):
+        decide_zero([u], field, Ideal(field, quartic, "that = 0", nonzero=[x]))
+
+
+def test_a_pole_at_a_point_that_is_found_by_iteration_is_no_value():
+    """Where sin(r) = 0 and cos(q) = -q*sin(r), cos(q) is 0, and 1/cos(q) has a pole.
+
+    In numbers it is 1e50, which would refute.
+    """
+    field = Field(["q", "r"], slots=8)
+    cosine, sine = field.call("cos", field["q"]), field.call("sin", field["r"])
+    ideal = Ideal(field, [cosine + field["q"] * sine, sine], "both = 0")
+    with pytest.raises(UndecidedError, match="has a value"):
+        decide_zero([field["r"] / cosine], field, ideal)
+    assert decide_zero([field["r"] - 1], field, ideal).verdict is REFUTED

@@ -1,12 +1,17 @@
 """Ideals: what vanishes where relations hold is told from what does not."""
 
+import random
 from fractions import Fraction
+from math import prod
 
 import pytest
+from sympy import QQ, symbols
+from sympy.polys.orderings import lex
+from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Field
 from coadjoint.prove import Verdict
-from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.ideals import Ideal, factors_of
 from coadjoint.prove.zero import UndecidedError, decide_zero
 
 NAMES = ("P1", "P2", "P3", "G1", "G2", "G3")
@@ -125,3 +130,45 @@ def test_only_named_variables_are_solved_for(plane):
     """Parameters are not solved for where variables are named."""
     field, _, product = plane
     assert set(Ideal(field, [product], "", ("G2",)).solved) == {"G2"}
+
+
+def test_quadratic_products_are_factored_without_luck(monkeypatch):
+    """Two energies of a top, of eight symbols: SymPy's lifting takes up to minutes, or none."""
+
+    def refuse(self):
+        raise AssertionError("lifted from random points")
+
+    monkeypatch.setattr(PolyElement, "factor_list", refuse)
+    field = Field(["P1", "P2", "P3", "G1", "G3", "s", "c"])
+    p1, p2, p3, g1, g3, s, c = map(field.__getitem__, field.names)
+    energy = (p1**2 + p2**2) / 2 + s * p3**2 + c * g3 + g1 / 2
+    ideal = Ideal(field, [(energy - 3) * (2 * energy - 9) * p1**2], "that = 0")
+    roots = [branch.solved for branch in ideal.branches]
+    assert len(roots) == 3
+    assert {"P1": 0} in [dict(root) for root in roots]
+    values = {str(field.substitute(energy, root)) for root in roots if "P1" not in root}
+    assert values == {"3", "9/2"}
+
+
+def test_factors_are_those_of_sympy():
+    """Random products of small polynomials, with squares and common factors."""
+    ring = PolyRing(symbols("x y z w"), QQ, lex)
+    source = random.Random(5)
+
+    def small():
+        addends = [
+            prod(source.choices(ring.gens, k=source.randint(0, 2)), start=ring.one)
+            * source.choice([-3, -1, 1, 2, QQ(1, 2)])
+            for _ in range(source.randint(1, 4))
+        ]
+        return sum(addends, ring.zero)
+
+    several = 0
+    for _ in range(60):
+        product = prod((small() ** source.randint(1, 2) for _ in range(2)), start=ring.one)
+        if product:
+            known = sorted(str(factor) for factor, _ in product.factor_list()[1])
+            found = {str(factor) for factor in factors_of(product)}
+            assert known == sorted(found), product
+            several += len(known) > 1
+    assert several > 20

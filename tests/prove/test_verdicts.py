@@ -182,3 +182,19 @@ def test_a_decision_without_a_spec_is_the_engines():
     """Only claims that a spec makes carry its word."""
     assert Decision(Verdict.PROVED, "").accepted is None
     assert {c.accepted for c in prove(spec()).claims} == {None, False}
+
+
+@pytest.mark.parametrize(
+    ("integral", "method"),
+    [
+        ("q1*p2 - q2*p1", "normal form in the field of rational functions"),
+        ("p1 + (sin(-q1) + sin(q1))*p2", "normal form modulo the relations of the elementary"),
+        ("p1 + (sqrt(4) - 2)*q1", "normal form modulo the relations of the elementary"),
+    ],
+)
+def test_the_method_names_relations_of_functions_that_are_gone(integral, method):
+    """What is zero shows no function, but -sin(q) = sin(-q) was needed to see that it is."""
+    found = prove(spec(PLANE + f'[claims]\nconserved = ["{integral}"]\n')).claims
+    (one,) = (each for each in found if each.statement == f"{integral} is conserved")
+    assert one.verdict is Verdict.PROVED
+    assert one.method.startswith(method)

@@ -49,6 +49,8 @@ class Field:
 
     Attributes:
         region: What else may be assumed, and where values are looked at.
+        has_called: Whether any function was called, so that zeros may rest on relations of
+            functions that are gone: ``sin(-x) + sin(x)`` has none left.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
@@ -73,6 +75,7 @@ class Field:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self.adjoined: dict[str, Adjoined] = {}
+        self.has_called = False
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
@@ -168,6 +171,7 @@ class Field:
         """
         from coadjoint.exact.values import known_value  # which needs fields
 
+        self.has_called = True
         if function == "tan":
             return self.call("sin", argument) / self.call("cos", argument)
         if function in ("sin", "cos") and argument and argument.parts[0].numer.LC < 0:

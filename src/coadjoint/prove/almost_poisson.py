@@ -42,11 +42,11 @@ from coadjoint.prove.integrability import Basis
 from coadjoint.prove.points import Points
 from coadjoint.prove.zero import (
     DIGITS,
-    NORMAL_FORM,
     Decision,
     Discovery,
     Examined,
     decide_zero,
+    proved_by_normal_form,
 )
 
 Pair = tuple[int, int]
@@ -256,7 +256,7 @@ def _jacobi(bracket: ReducedBracket) -> Decision:
     defects = bracket.jacobi_defects()
     if defects:
         return decide_zero(defects, bracket.field)
-    return Decision(Verdict.PROVED, NORMAL_FORM)
+    return proved_by_normal_form(bracket.field)
 
 
 def _inverse_of_numbers(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:

@@ -50,8 +50,6 @@ from coadjoint.prove.searches import within_budget
 from coadjoint.prove.symmetries import about_symmetries
 from coadjoint.prove.zero import (
     CONSTANTS,
-    NORMAL_FORM,
-    NORMAL_FORM_WITH_FUNCTIONS,
     Decision,
     Discovery,
     Examined,
@@ -59,6 +57,7 @@ from coadjoint.prove.zero import (
     claimed_by,
     decide_zero,
     make_entry,
+    proved_by_normal_form,
 )
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.model import Integral, SpatialMomentum
@@ -209,8 +208,7 @@ def _jacobi(first: Equations) -> Decision:
     defects = list(structure.jacobi_defects().values())
     if defects:
         return decide_zero(defects, structure.field)
-    plain = all(structure.field.function_free(entry) for row in structure.tensor for entry in row)
-    return Decision(Verdict.PROVED, NORMAL_FORM if plain else NORMAL_FORM_WITH_FUNCTIONS)
+    return proved_by_normal_form(structure.field)
 
 
 def _constants(algebra: LieAlgebra) -> Decision:

@@ -23,7 +23,7 @@ from coadjoint.poisson.casimirs import search_summands
 from coadjoint.poisson.ranks import CHANCE
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.completeness import DEGREE, Completeness, described, scope_of
-from coadjoint.prove.zero import CONSTANTS, NORMAL_FORM, Decision, decide_zero, make_entry
+from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero, make_entry, proved_by_normal_form
 
 #: Columns of text that a table of brackets may take.
 TABLE = 94
@@ -324,7 +324,7 @@ def _examined(
 def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
     """Whether a function commutes with all; the point where it does not is looked for if so."""
     if structure.is_casimir(function):
-        return Decision(Verdict.PROVED, NORMAL_FORM)
+        return proved_by_normal_form(structure.field)
     return decide_zero(structure.casimir_defects(function), structure.field)
 
 

@@ -17,9 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice
+from math import isqrt
 from typing import Any
 
 from sympy.polys.groebnertools import groebner
@@ -185,7 +187,37 @@ class Ideal:
             self._declared = first.rest
             start = Branch(first.solved, (), first.nonzero)
             found += self._split([*first.rest, *others], start)
-        return tuple(found)
+        return tuple(regular for branch in found for regular in self._regular(branch))
+
+    def _regular(self, branch: Branch) -> list[Branch]:
+        """A branch with what must not vanish there; none if that vanishes on all of it."""
+        rest, found = Ideal(self.field, branch.rest), list[Element]()
+        for element in self.nonzero:
+            try:
+                value = self.field.normal(self._on(branch, element))
+            except ZeroDivisionError:  # no value, and so no motion
+                return []
+            if rest.contains(value):
+                self._exclude(self._vanishing_factor(element, branch, rest))
+                return []
+            if self.field.as_number(value) is None and value not in found:
+                found.append(value)
+        return [replace(branch, regular=tuple(found))]
+
+    def _vanishing_factor(self, element: Element, branch: Branch, rest: Ideal) -> Element:
+        """The factor that makes an element vanish on a branch; all of it if no factor does."""
+        for factor in self._all_factors(element):
+            with suppress(ZeroDivisionError):
+                if rest.contains(self._on(branch, factor)):
+                    return factor
+        return element
+
+    def _all_factors(self, element: Element) -> Iterator[Element]:
+        """The irreducible factors of a numerator that is not too long."""
+        numerator = _numerator(element)
+        if len(numerator) <= FACTORED:
+            for names, factor in _irreducible(numerator):
+                yield self.field.normal(self.field.polynomial(names, dict(factor.terms())))
 
     @cached_property
     def some_points(self) -> tuple[tuple[Points, Values], ...]:
@@ -199,7 +231,8 @@ class Ideal:
             defined: Functions that must have values there.
         """
         functions = (*self.given, *defined)
-        whole = Points(self.field, (), Branch(rest=self.relations), functions)
+        start = Branch(rest=self.relations, regular=self.nonzero)
+        whole = Points(self.field, (), start, functions)
         yield from ((whole, point) for point in whole.near_defaults())
         for branch in self.branches:
             with suppress(ZeroDivisionError):
@@ -290,8 +323,7 @@ class Ideal:
         numerator, found = _numerator(relation), list[Element]()
         if len(numerator) > FACTORED:
             return [relation]
-        for names, factor in _irreducible(numerator):
-            element = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
+        for element in self._all_factors(relation):
             if self._signs.is_nonzero(element, nonzero):
                 continue
             if self._signs.is_factor(element, self.nonzero):
@@ -370,8 +402,95 @@ def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyEleme
         return
     small = PolyRing(symbols, polynomial.ring.domain, lex)
     terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
-    for factor, _ in small.from_dict(terms).factor_list()[1]:
+    for factor in factors_of(small.from_dict(terms)):
         yield list(map(str, symbols)), factor
+
+
+def factors_of(polynomial: PolyElement) -> list[PolyElement]:
+    """The irreducible factors of a polynomial with whole coefficients, each once.
+
+    >>> from sympy import QQ
+    >>> ring = PolyRing(["x", "y"], QQ, lex)
+    >>> x, y = ring.gens
+    >>> factors_of(x**2 * (x - y) * (x + y) / 2)
+    [x, x - y, x + y]
+    """
+    found = list[PolyElement]()
+    for factor in _factors_of(polynomial):
+        whole = factor.primitive()[1]
+        whole = -whole if whole.LC < 0 else whole
+        found += [whole] if whole not in found else []
+    return sorted(found, key=_place_of)
+
+
+def _place_of(factor: PolyElement) -> tuple[Any, ...]:
+    """What sorts factors: symbols by themselves come first, in their order."""
+    if len(factor) == 1:
+        return 0, tuple(-degree for degree in factor.degrees())
+    return 1, len(factor.to_dense()), factor.to_dense()
+
+
+def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
+    r"""The irreducible factors of a polynomial, in a time that does not rest on luck.
+
+    One that is linear in a symbol has no factors but those of all its coefficients. Of a quadratic
+    one the discriminant is a square if it has others: ``4 A p = (2 A x + B - D) (2 A x + B + D)``.
+    SymPy lifts factors from random points, and takes minutes where these are badly chosen.
+    """
+    degrees = [(degree, n) for n, degree in enumerate(polynomial.degrees()) if degree > 0]
+    if not degrees:
+        return
+    degree, place = min(degrees)
+    if degree > 2:
+        yield from (factor for factor, _ in polynomial.factor_list()[1])
+        return
+    content, own = _parted(polynomial, place)
+    yield from _factors_of(content)
+    if degree == 1:
+        yield own
+        return
+    symbol, parts = polynomial.ring.gens[place], _powers(own, place)
+    a, b, c = (parts.get(power, polynomial.ring.zero) for power in (2, 1, 0))
+    root = _square_root(b**2 - 4 * a * c)
+    if root is None:
+        yield own
+        return
+    yield _parted(2 * a * symbol + b - root, place)[1]
+    yield _parted(2 * a * symbol + b + root, place)[1]
+
+
+def _powers(polynomial: PolyElement, place: int) -> dict[int, PolyElement]:
+    """The coefficients of the powers of a symbol."""
+    found: dict[int, dict[tuple[int, ...], Any]] = {}
+    for exponents, value in polynomial.terms():
+        rest = (*exponents[:place], 0, *exponents[place + 1 :])
+        found.setdefault(exponents[place], {})[rest] = value
+    return {power: polynomial.ring.from_dict(terms) for power, terms in found.items()}
+
+
+def _parted(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
+    """The greatest factor without a symbol, and the rest."""
+    content = polynomial.ring.zero
+    for part in _powers(polynomial, place).values():
+        content = content.gcd(part)
+    return content, polynomial.exquo(content)
+
+
+def _square_root(polynomial: PolyElement) -> PolyElement | None:
+    """The polynomial whose square is a given one; None if there is none."""
+    if not polynomial:
+        return polynomial
+    number, parts = polynomial.sqf_list()
+    whole = Fraction(int(number.numerator), int(number.denominator))
+    if whole < 0 or any(power % 2 for _, power in parts):
+        return None
+    top, bottom = isqrt(whole.numerator), isqrt(whole.denominator)
+    if Fraction(top, bottom) ** 2 != whole:
+        return None
+    root = polynomial.ring.one * polynomial.ring.domain(top, bottom)
+    for part, power in parts:
+        root *= part ** (power // 2)
+    return root
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:

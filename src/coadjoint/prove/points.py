@@ -51,6 +51,8 @@ SCALES = (1, 1, 10, 100, 1000)
 NEAR = (Fraction(0), Fraction(1, 3), Fraction(1, 30), Fraction(1, 300))
 #: Size of the last step of Newton's method, beside which a point counts as one of the zero set.
 ARRIVED = mpmath.mpf(10) ** (15 - DIGITS)
+#: Size below which a value counts as zero at points of a zero set found by iteration.
+ON_BRANCH = mpmath.mpf(10) ** -20
 #: How far a value must be from zero to have a sign, where functions occur.
 SIGNED = mpmath.mpf(10) ** -30
 
@@ -70,11 +72,14 @@ class Branch:
         solved: Symbols in terms of the others.
         rest: What else vanishes there.
         nonzero: What does not: that by which was divided.
+        regular: What does not vanish at points that are shown: determinants that are zero where no
+            motion is defined.
     """
 
     solved: Mapping[str, Element] = field(default_factory=dict)
     rest: tuple[Element, ...] = ()
     nonzero: tuple[Element, ...] = ()
+    regular: tuple[Element, ...] = ()
 
 
 class Points:
@@ -107,7 +112,8 @@ class Points:
 
     @cached_property
     def _roots(self) -> tuple[Element, ...]:
-        return (*self.branch.solved.values(), *self.branch.rest, *self.branch.nonzero)
+        branch = self.branch
+        return (*branch.solved.values(), *branch.rest, *branch.nonzero, *branch.regular)
 
     @cached_property
     def _conditions(self) -> tuple[Condition, ...]:
@@ -245,13 +251,36 @@ class Points:
         return {name: known[name] for name in self.names if name in known}
 
     def _is_inside(self, free: Values) -> bool:
-        """Whether all that is assumed holds, and nothing vanishes by which was divided."""
+        """Whether all that is assumed holds, and no divisor and no determinant vanishes."""
         if self._violated(free):
             return False
         values = self.complete(free)
         for each in self._defined:
             self.value(each, values)
-        return all(abs(self.value(each, values)) > 0 for each in self.branch.nonzero)
+        least = ON_BRANCH if self.branch.rest else 0
+        return all(abs(self.value(each, values)) > least for each in self._not_zero)
+
+    @cached_property
+    def _not_zero(self) -> tuple[Element, ...]:
+        """What vanishes at no point: a pole looks like a large value where points are not exact."""
+        found = [*self.branch.nonzero, *self.branch.regular]
+        if self.branch.rest:
+            found += self._divisors((*self.elements, *self._defined, *self.branch.solved.values()))
+        return tuple(found)
+
+    def _divisors(self, elements: Iterable[Element]) -> list[Element]:
+        """The factors of all denominators, also of those in the arguments of functions."""
+        known, found, left = self.ring.adjoined, list[Element](), list(elements)
+        seen = set[str]()
+        while left:
+            element = left.pop()
+            new = set(self.ring.functions_in(element)) - seen
+            seen |= new
+            divisors = [d for part in self.ring.quotients(element) for d, _ in part.divisors]
+            divisors = [each for each in divisors if each not in found]
+            found += divisors
+            left += [*divisors, *(known[name].argument for name in sorted(new))]
+        return found
 
     def _starts(self) -> Iterator[Values]:
         """Random points; after the plain ones every other one is near the defaults."""

@@ -25,6 +25,7 @@ from coadjoint.prove.certificate import Claim, Finding, Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.points import (
     DIGITS,
+    ON_BRANCH,
     Branch,
     Points,
     Values,
@@ -41,8 +42,6 @@ __all__ = ["DIGITS", "Decision", "Discovery", "decide_zero", "random_points", "r
 POINTS = 20
 #: Relative size below which a 50-digit value counts as zero; cancellation may cost 20 digits.
 NEGLIGIBLE = mpmath.mpf(10) ** -(DIGITS - 20)
-#: Size below which a value counts as zero at points of a zero set found by iteration.
-ON_ZERO_SET = mpmath.mpf(10) ** -20
 #: Digits of the coordinates of a point that lies on a zero set up to rounding.
 SHOWN_DIGITS = 30
 #: Denominators that a method shows, and the length of each.
@@ -164,8 +163,7 @@ def decide_zero(
         plain = all(map(ring.function_free, defined))
         if not plain and next(iter(Points(ring, (), None, defined)), None) is None:
             raise UndecidedError(f"no point is found at which it has a value. {ADVICE}")
-        plain = all(map(ring.function_free, elements))
-        return Decision(Verdict.PROVED, NORMAL_FORM if plain else NORMAL_FORM_WITH_FUNCTIONS)
+        return proved_by_normal_form(ring)
     found = _look(left, ring, Branch(), "", defined)
     if isinstance(found, Decision):
         return found
@@ -174,6 +172,14 @@ def decide_zero(
 
 class UndecidedError(ClaimError):
     """Nothing is known of a claim: no point is found at which it could fail."""
+
+
+def proved_by_normal_form(ring: Field) -> Decision:
+    """That something is zero by its normal form, and in which field.
+
+    What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
+    """
+    return Decision(Verdict.PROVED, NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM)
 
 
 def _decide_where(
@@ -189,7 +195,8 @@ def _decide_where(
     except OverflowError:  # no room for the functions of what is solved for
         ring = where.field
         left = [element for element in elements if not where.contains(element)]
-        whole, named = Branch(rest=where.relations), (*where.given, *defined)
+        whole = Branch(rest=where.relations, regular=where.nonzero)
+        named = (*where.given, *defined)
         found = _look(left, ring, whole, where.scope, named)
         return found if isinstance(found, Decision) else _supported(found, where)
 
@@ -248,7 +255,7 @@ def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool
     """Whether no denominator vanishes at a point of a zero set."""
     with mpmath.workdps(DIGITS):
         left = [points.ring.substitute(each, points.branch.solved) for each in poles]
-        return all(abs(real(points.value(each, point))) > ON_ZERO_SET for each in left)
+        return all(abs(real(points.value(each, point))) > ON_BRANCH for each in left)
 
 
 #: What to do about a claim that has no value at any point.
@@ -330,7 +337,7 @@ def _value(element: Element, ring: Field, point: Values, branch: Branch) -> str 
 def _near_value(element: Element, ring: Field, point: Values) -> str:
     """The value at a point that lies on a zero set up to rounding."""
     value, size = _with_size(element, ring, point)
-    return "" if abs(value) <= ON_ZERO_SET * max(1, size) else mpmath.nstr(value, 15)
+    return "" if abs(value) <= ON_BRANCH * max(1, size) else mpmath.nstr(value, 15)
 
 
 def _certain_value(element: Element, ring: Field, point: Values) -> str | None:
