@@ -12,6 +12,9 @@ import pytest
 
 from coadjoint.resources import derivations_folder
 
+# A run in the background ignores Ctrl-C, and its children would, too: tests send it to them.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 SYSTEMS = tuple(sorted(path.stem for path in Path(derivations_folder()).glob("*.toml")))
 
 
