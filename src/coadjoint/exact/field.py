@@ -182,7 +182,7 @@ class Field:
                 return self[known.generator]
         if (value := known_value(self, function, argument)) is not None:
             return value
-        if len(self._free) < 2:
+        if len(self._free) < 1 + (function in ("sin", "cos")):
             raise OverflowError(f"no room left for {function}")
         if function in ("sin", "cos"):  # always both: each is the derivative of the other
             cosine, sine = self._free[:2]

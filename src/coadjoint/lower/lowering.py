@@ -382,8 +382,11 @@ def _shorter(equations: Equations, element: Element) -> Element:
     ``Pi2*Omega3 - Pi3*Omega2`` becomes ``(1/I3 - 1/I2)*Pi2*Pi3``, whose coefficient depends on
     parameters alone: half the operations, and again what the book writes.
     """
-    field, closed = equations.setting.field, equations.closed(element)
-    members = equations.moving
+    field, members = equations.setting.field, equations.moving
+    try:
+        closed = equations.closed(element)
+    except OverflowError:  # functions of other arguments, for which the field has no room
+        return element
 
     def terms(of: Element) -> int:
         products = {
