@@ -352,7 +352,11 @@ MUTANTS = (
         "[ring.substitute(element, branch.solved) for element in elements]",
         "list(elements)",
     ),
-    Mutant(PROVE + "zero.py", "abs(value) <= ON_ZERO_SET", "abs(value) >= ON_ZERO_SET"),
+    Mutant(
+        PROVE + "zero.py",
+        "abs(value) <= ON_BRANCH * max(1, size)",
+        "abs(value) >= ON_BRANCH * max(1, size)",
+    ),
     Mutant(PROVE + "zero.py", "if not min(counts):", "if min(counts):"),
     # symmetries and Lax pairs
     Mutant(PROVE + "symmetries.py", "if rate == 0]", "if rate != 0]"),
