@@ -316,3 +316,13 @@ def test_a_kernel_that_divides_by_a_prime_is_compared_modulo_another(monkeypatch
     monkeypatch.setattr(Reference, "evaluate", lambda *_: 1 // 0)
     with pytest.raises(CrossCheckError, match="has values at 0 of 30 random points; expected 3"):
         check_inverse(equations, program)
+
+
+@pytest.mark.parametrize("call", ["sin(Omega[1])", "norm(Omega)", "exp(Omega[1])*sin(Omega[2])"])
+def test_functions_of_velocities_are_lowered_without_room_for_others(call):
+    """Momenta in place of velocities would be other arguments: then the formula stays as it is."""
+    observed = f'[observables]\nseen = "{call}"\n\n[claims]'
+    equations = derive(spec(RIGID_BODY, ("[claims]", observed)))
+    program = lower(equations)["observables"]
+    check_inverse(equations, program)
+    assert "seen" in [label for label, _ in equations.exact.observables]

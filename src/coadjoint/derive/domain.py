@@ -49,10 +49,7 @@ def bounds(equations: Equations) -> tuple[Bound, ...]:
     """All bounds of a system; none where nothing is declared and nothing is constrained."""
     setting, found = equations.setting, list[Bound]()
     for condition in equations.spec.domain:
-        left, right = (
-            setting.formula(side, setting.reactions) for side in (condition.left, condition.right)
-        )
-        value = left - right if condition.sign.startswith(">") else right - left
+        value = setting.excess(condition, setting.reactions)
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)
         found.append(Bound(condition.name, "condition", value, strict, inputs))

@@ -156,6 +156,13 @@ class Setting:
             found[each.reaction] = shaped(parts, each.shape)
         return found
 
+    def excess(
+        self, condition: Inequality, others: Mapping[str, Quantity] = MappingProxyType({})
+    ) -> Element:
+        """What a condition of the domain asks to be positive: the larger side minus the other."""
+        left, right = (self.formula(side, others) for side in (condition.left, condition.right))
+        return left - right if condition.sign.startswith(">") else right - left
+
     # -- elements -----------------------------------------------------------------------
 
     def elements(self, names: Sequence[str]) -> tuple[Element, ...]:
@@ -236,6 +243,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     # a route, and what a transformation makes of a formula, may call its functions with other
     # arguments than the spec does
     more = len(spec.routes) * bool(symbols) + len(spec.transformations)
+    # functions of velocities are functions of momenta, too, where these are the state
+    more += bool(spec.having_role("momentum") and spec.having_role("velocity"))
     if spec.constraints and _calls_parameters(spec):  # with numbers in their place, twice
         more += 2
     room = _function_calls(spec) * (1 + more)
@@ -271,9 +280,7 @@ def _conditions(setting: Setting) -> tuple[Condition, ...]:
         named = {node.name for node in nodes if isinstance(node, tree.Name | tree.Index)}
         if not named <= setting.values.keys():
             continue
-        left, right = setting.formula(each.left), setting.formula(each.right)
-        value = left - right if each.sign.startswith(">") else right - left
-        found.append(Condition(value, strict=not each.sign.endswith("=")))
+        found.append(Condition(setting.excess(each), strict=not each.sign.endswith("=")))
     return tuple(found)
 
 
