@@ -168,7 +168,7 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
 
 
 def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
-    """Compile ``kernel.c`` in a folder to ``kernel.so`` beside it, which says its build.
+    """Compile ``kernel.c`` to ``kernel.so`` in the same folder, with the name of the build in it.
 
     Args:
         compiler: What `find_compiler` returned.

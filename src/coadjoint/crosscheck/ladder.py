@@ -124,7 +124,7 @@ def crosscheck(
     _require(chosen and programs, system.name, "there is no function, or no target", 3)
     subject = Subject(programs, reference, system, chosen)
     share = max(1, oracle_points // len(programs))
-    with compilers() as pool:  # compilers work beside us
+    with compilers() as pool:  # compilers work at the same time
         loading = pool.submit(system.load_kernels, chosen)
         lines = {
             name: check_python(program, texts["kernel.py"])
