@@ -467,3 +467,24 @@ def test_ranks_need_a_gap():
     assert rank_of([[1, 2], [2, 5]]) == 2
     with pytest.raises(NoGapError):
         rank_of([[1, 1], [1, 1 + 1e-7]])
+
+
+@pytest.mark.parametrize(("more", "caught"), [("", False), (" + q/1000", True)])
+def test_lost_digits_are_no_difference(more, caught):
+    """``sqrt(exp(2x) + 1 + 2 exp(x)) = exp(x) + 1``, and at x = 200 p no 50 digits show it."""
+    hidden = "sqrt(exp(400*p) + 1 + 2*exp(200*p)) - exp(200*p) - 1"
+    text = f"""title = "Particle"
+routes = ["poisson"]
+[poisson]
+canonical = [["q", "p"]]
+[variables]
+q = {{ role = "coordinate" }}
+p = {{ role = "coordinate" }}
+[hamiltonian]
+h = "p^2/2"
+[claims]
+conserved = ["p + q*({hidden}){more}"]
+"""
+    record = {"claims": [claim(f"p + q*({hidden}){more} is conserved", "conserved")]}
+    faults = judge(text, record).faults
+    assert any("but false" in fault for fault in faults) == caught, faults
