@@ -177,12 +177,20 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     spec, found = equations.spec, equations.setting.integrals
     stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
     energy = [
-        _emitted("energy", _unit(spec, formula), conserved=True)
+        _emitted("energy", _unit(spec, formula), conserved=equations.keeps_energy)
         for formula in (spec.hamiltonian or spec.lagrangian,)
         if equations.exact.energy is not None
     ]
     casimirs = [
-        _emitted(f"casimir{n}", _unit(spec, casimir), casimir.shape, conserved=True)
+        _emitted(
+            f"casimir{n}",
+            _unit(spec, casimir),
+            casimir.shape,
+            conserved=all(
+                equations.setting.field.is_zero(equations.work(part))
+                for part in equations.setting.components(casimir)
+            ),
+        )
         for n, casimir in enumerate(spec.casimirs, 1)
     ]
     declared = [

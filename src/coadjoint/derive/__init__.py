@@ -35,6 +35,7 @@ from coadjoint.derive import (
     setting,
 )
 from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
+from coadjoint.derive.external import forced
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.spec import Spec
@@ -123,7 +124,7 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
     given = setting or make_setting(spec)
     if spec.reduction is not None:
         return reductions.restricted(given, ROUTES[chosen])
-    return ROUTES[chosen](given)
+    return forced(ROUTES[chosen](given))
 
 
 make_callable(__name__, "derive")

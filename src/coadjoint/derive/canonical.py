@@ -27,6 +27,7 @@ from coadjoint.derive.configuration import (
     mechanics,
 )
 from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.external import external_forces
 from coadjoint.derive.legendre import legendre_transform
 from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting, setting_of
@@ -155,6 +156,8 @@ def _in_own_momenta(setting: Setting) -> Equations:
     slopes = dict(zip(variables, field.gradient(h, variables), strict=True))
     pairs = [(a, b, Fraction(1)) for a, b in zip(q, own, strict=True)]
     named = _hamilton(setting, pairs, slopes, {}, {})
+    for name, force in zip(own, external_forces(setting, setting.velocities), strict=True):
+        named[name] += field.substitute(force, solved)
     rates = tuple(named[x] for x in variables)
     state = tuple(solved.get(x, field[x]) for x in setting.state)
     exact = Exact((), rates, h, (), None)

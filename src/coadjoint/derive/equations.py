@@ -135,6 +135,7 @@ class Exact:
         poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
         solves: Linear equations that definitions solve in the kernel, in that order.
         residuals: What vanishes on the constraints, by the names of these.
+        forces: What external forces add to each rate; empty where none act, and with constraints.
     """
 
     definitions: tuple[tuple[str, Element], ...]
@@ -144,6 +145,7 @@ class Exact:
     poisson_tensor: tuple[tuple[Element, ...], ...] | None
     solves: tuple[Solve, ...] = ()
     residuals: tuple[tuple[str, Element], ...] = ()
+    forces: tuple[Element, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -298,6 +300,19 @@ class Equations:
         from coadjoint.derive.followed import rates_followed  # which needs distributions
 
         return rates_followed(self.setting, self.distribution)
+
+    @property
+    def keeps_energy(self) -> bool:
+        """Whether nothing acts that could change the energy: no force, no constraint that moves."""
+        free = self.distribution is None or self.distribution.is_linear
+        return free and not self.spec.is_driven
+
+    def work(self, function: Element) -> Element:
+        """What external forces add to the rate of a function of the state."""
+        field, closed = self.setting.field, self.closed(function)
+        slopes = field.gradient(closed, self.setting.state)
+        pairs = zip(slopes, self.exact.forces, strict=bool(self.exact.forces))
+        return field.sum(slope * self.closed(force) for slope, force in pairs if slope and force)
 
     @cached_property
     def projection(self) -> Equations | None:

@@ -20,8 +20,8 @@ from coadjoint.derive.constrained import ConstrainedMotion, emission
 from coadjoint.derive.distribution import Row, distribution
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.equations import Equations, Step, component, partial, symbol
+from coadjoint.derive.external import external_forces
 from coadjoint.derive.kinematics import Matrix
-from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -54,7 +54,8 @@ def _known(
     field = frame.setting.field
     slopes = field.gradient(lagrangian, frame.velocities)
     p = [field.substitute(slope, found.solved) for slope in slopes]
-    forces = [field.substitute(force, found.solved) for force in external_forces(frame)]
+    acting = external_forces(frame.setting, frame.velocities)
+    forces = [field.substitute(force, found.solved) for force in acting]
     known = []
     for k, momentum in enumerate(momenta):
         D = [row[k] for row in found.B]

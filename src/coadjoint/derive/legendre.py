@@ -103,7 +103,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     field; unused symbols would slow down every operation in it.
     """
     count = sum(len(variable.components) for variable in spec.having_role("velocity"))
-    if spec.lagrangian is None or spec.constraints or count <= LARGEST_BLOCK:
+    if spec.lagrangian is None or spec.in_frame or count <= LARGEST_BLOCK:
         return ()
     setting = sampled_setting(spec, "velocity", random.Random(1))  # noqa: S311 (no secret)
     try:

@@ -43,6 +43,7 @@ from coadjoint.derive.equations import (
     rate,
     symbol,
 )
+from coadjoint.derive.external import external_forces
 from coadjoint.derive.followed import rates_followed
 from coadjoint.derive.frames import Frame
 from coadjoint.derive.kinematics import Matrix
@@ -104,21 +105,6 @@ def mass_matrix(frame: Frame, lagrangian: Element) -> Matrix:
     return mass
 
 
-def external_forces(frame: Frame) -> Row:
-    """The declared forces, and ``-dR/dxi``, along each velocity of a frame."""
-    setting = frame.setting
-    field, spec = setting.field, setting.spec
-    found = dict.fromkeys(frame.velocities, field.zero)
-    for variable in spec.variables:
-        if variable.name in spec.forces:
-            parts = setting.components(spec.forces[variable.name])
-            found |= dict(zip(variable.components, parts, strict=True))
-    if spec.dissipation is not None:
-        slopes = field.gradient(setting.formula(spec.dissipation), frame.velocities)
-        found = {name: found[name] - s for name, s in zip(frame.velocities, slopes, strict=True)}
-    return tuple(found[name] for name in frame.velocities)
-
-
 def _forces(
     motion: ConstrainedMotion, lagrangian: Element, mass: Matrix
 ) -> tuple[Row, list[Definition]]:
@@ -129,7 +115,7 @@ def _forces(
     parts = zip(
         frame.inertial(momenta, xi),
         (lifted(field, slope) for slope in frame.slopes(lagrangian)),
-        external_forces(frame),
+        external_forces(frame.setting, frame.velocities),
         mass,
         momenta,
         strict=True,

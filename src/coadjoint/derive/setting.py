@@ -245,7 +245,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     more = len(spec.routes) * bool(symbols) + len(spec.transformations)
     # functions of velocities are functions of momenta, too, where these are the state
     more += bool(spec.having_role("momentum") and spec.having_role("velocity"))
-    if spec.constraints and _calls_parameters(spec):  # with numbers in their place, twice
+    if spec.in_frame and _calls_parameters(spec):  # with numbers in their place, twice
         more += 2
     room = _function_calls(spec) * (1 + more)
     field = Field([*names, *symbols], room, positive)

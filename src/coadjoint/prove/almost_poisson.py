@@ -29,8 +29,8 @@ from coadjoint.derive import Equations
 from coadjoint.derive.almost_poisson import Tensor, brackets, momenta_along
 from coadjoint.derive.distribution import Row
 from coadjoint.derive.emission import lagrangian_of
+from coadjoint.derive.external import external_forces
 from coadjoint.derive.interpret import inverse
-from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.exact import Element
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.jacobi import Triple, schouten_bracket
@@ -116,7 +116,10 @@ class ReducedBracket:
 
     def motion_defects(self, motion: ConstrainedRates) -> list[Element]:
         """Rates of momenta and positions minus ``J grad H`` and the forces along the fields."""
-        forces = [self.basis.closed(f) for f in external_forces(self.found.frame)]
+        forces = [
+            self.basis.closed(f)
+            for f in external_forces(self.found.setting, self.found.frame.velocities)
+        ]
         driven = {
             name: self.field.sum(a * f for a, f in zip(along, forces, strict=True) if a and f)
             for name, along in self.basis.fields.items()
@@ -210,7 +213,7 @@ def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
         return
     bracket = ReducedBracket(first)
     momenta = ", ".join(map(bracket.label, range(len(bracket.names))))
-    forced = " and the forces" if first.spec.forces or first.spec.dissipation else ""
+    forced = " and the forces" if first.spec.is_driven else ""
     yield (
         "dH/dM = eta and dH/dz = -dl_c/dz, with M = dl_c/deta along the distribution",
         "bracket",

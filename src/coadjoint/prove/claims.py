@@ -27,8 +27,9 @@ from coadjoint.prove.candidates import about_candidates, known_integrals
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
-from coadjoint.prove.constrained import ConstrainedRates, about_constraints, keeps_energy
+from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.duality import about_duality
+from coadjoint.prove.energy import Balance
 from coadjoint.prove.equivalence import LegendreMap, in_velocities
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.ideals import Ideal
@@ -36,6 +37,7 @@ from coadjoint.prove.identities import (
     antisymmetry_defects,
     casimir_defects,
     drift,
+    gradient,
     hamiltonian_defects,
 )
 from coadjoint.prove.integrability import about_integrability
@@ -132,7 +134,7 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from about_projection(first)
         yield from about_rolling(motion)
         for place, claim in enumerate(first.spec.conserved):
-            if _statement(claim) != "energy is conserved" or not keeps_energy(first):
+            if _statement(claim) != "energy is conserved" or not first.keeps_energy:
                 examine = partial(_constrained_integral, motion, claim)
                 claimed = [(_statement(claim), "conserved", examine)]
                 yield from claimed_by(
@@ -298,12 +300,12 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
-            f"the motion by {first.route} is {{x, h}}",
+            f"the motion by {first.route} is {{x, h}}{' and the forces' * spec.is_driven}",
             "equivalence",
             partial(hamiltonian_defects, first, energy, tensor),
         )
     if energy is not None:
-        yield "the energy is conserved", "conserved", partial(drift, first, energy)
+        yield Balance(first).statement, "conserved", partial(_energy_defects, first, energy)
     proved = list[Element]()
     for place, casimir in enumerate(spec.casimirs):
         decide = cache(partial(_casimir, first, casimir))
@@ -311,6 +313,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         yield from claimed_by(spec, ("claims", "casimirs", place), examined, field)
         if decide().verdict is Verdict.PROVED:
             proved += first.setting.components(casimir)
+            yield from _about_survival(first, casimir)
     if tensor is not None:
         searched = _about_completeness(first, proved)
         yield from within_budget(field, "casimir", "Casimirs", searched)
@@ -322,6 +325,24 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     for seen in spec.spatial:
         if seen.conserved:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, first, seen)
+
+
+def _energy_defects(first: Equations, energy: Element) -> list[Element]:
+    """The rate of the energy minus what its balance says."""
+    balance = Balance(first)
+    slopes = dict(zip(first.setting.state, gradient(first, energy), strict=True))
+    power = balance.power + balance.work_along_state(slopes)
+    return [rate - gain for rate in drift(first, energy) for gain in in_velocities(first, [power])]
+
+
+def _about_survival(first: Equations, casimir: Formula) -> Iterator[Examined]:
+    """What becomes of a Casimir where forces act: no bracket keeps it then."""
+    if not first.exact.forces:
+        return
+    parts = first.setting.components(casimir)
+    if all(first.setting.field.is_zero(first.work(part)) for part in parts):
+        statement = f"{casimir.in_one_line} is conserved: the forces do not change it"
+        yield statement, "conserved", lambda: _drifts(first, parts)
 
 
 def _seen_from_space(first: Equations, seen: SpatialMomentum) -> Decision:

@@ -22,12 +22,12 @@ from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.kinematics import kept_rows, rate_name
 from coadjoint.derive.legendre import LARGEST_BLOCK
-from coadjoint.derive.nonholonomic import external_forces
 from coadjoint.derive.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
@@ -158,14 +158,9 @@ class ConstrainedRates:
 
     def energy_balance(self) -> Element:
         """``dE/dt`` minus the power of declared forces and of constraints that move."""
-        setting, found = self.equations.setting, self.distribution
-        field, energy = self.field, self.equations.exact.energy
+        energy = self.equations.exact.energy
         assert energy is not None, "a Lagrangian has an energy"
-        xi = setting.elements(found.frame.velocities)
-        power = [f * x for f, x in zip(external_forces(found.frame), xi, strict=True)]
-        rest = dict.fromkeys(found.frame.velocities, field.zero)
-        work = [-field.substitute(e.residual, rest) * field[e.reaction] for e in found.equations]
-        return self.value(self._carried(self.closed(energy)) - field.sum([*power, *work]))
+        return self.value(self._carried(self.closed(energy)) - Balance(self.equations).power)
 
 
 def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
@@ -175,10 +170,11 @@ def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
 def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> Iterator[Examined]:
     """The constraints, the solve in the kernel, the equality with other routes and the energy."""
     first, found = motion.equations, motion.distribution
-    count = len(found.equations)
-    text = f"the {count} constraints are" if count > 1 else "the constraint is"
-    rank, decision = _rank(found)
-    yield f"{text} independent: {rank}", "constraint", lambda: decision
+    if found.equations:
+        count = len(found.equations)
+        text = f"the {count} constraints are" if count > 1 else "the constraint is"
+        rank, decision = _rank(found)
+        yield f"{text} independent: {rank}", "constraint", lambda: decision
     yield (
         "the kernel solves for the accelerations: L D L^T = B^T M B",
         "constraint",
@@ -191,7 +187,7 @@ def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> 
             partial(_same_solves, first, other),
         )
     yield (
-        _balance_text(first),
+        Balance(first).statement,
         "conserved",
         lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
     )
@@ -289,26 +285,3 @@ def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
             entries = zip((*solve.names, ""), (*row, known), strict=True)
             found |= {(name, by): equations.closed(entry) for by, entry in entries}
     return found
-
-
-def _balance_text(first: Equations) -> str:
-    """The law of the energy."""
-    if keeps_energy(first):
-        return "the energy is conserved"
-    gains = ["the power of the forces"] * _driven(first)
-    gains += ["the work of the moving constraints"] * (not _linear(first))
-    return f"the energy changes by {' and '.join(gains)}"
-
-
-def keeps_energy(first: Equations) -> bool:
-    """Whether the law of the energy says that it is conserved."""
-    return not _driven(first) and _linear(first)
-
-
-def _driven(first: Equations) -> bool:
-    return bool(first.spec.forces or first.spec.dissipation)
-
-
-def _linear(first: Equations) -> bool:
-    assert first.distribution is not None, first.route
-    return first.distribution.is_linear

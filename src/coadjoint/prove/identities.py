@@ -46,9 +46,11 @@ def drift(equations: Equations, function: Element) -> list[Element]:
 
 
 def hamiltonian_defects(equations: Equations, energy: Element, tensor: Tensor) -> list[Element]:
-    """``dx/dt - {x, h}`` for every state component."""
+    """``dx/dt - {x, h}``, and minus the external forces, for every state component."""
     field, slopes = equations.setting.field, gradient(equations, energy)
-    rates = in_velocities(equations, equations.exact.rates)
+    forces = equations.exact.forces or (field.zero,) * len(equations.exact.rates)
+    free = [x - f for x, f in zip(equations.exact.rates, forces, strict=True)]
+    rates = in_velocities(equations, free)
     return [
         rate - _dot(field, in_velocities(equations, row), slopes)
         for rate, row in zip(rates, tensor, strict=True)

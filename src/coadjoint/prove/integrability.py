@@ -99,6 +99,8 @@ def about_integrability(first: Equations) -> Iterator[Examined]:
     """Whether the constraints are integrable, and if not, what their brackets reach."""
     found = first.distribution
     assert found is not None, first.route
+    if not found.equations:
+        return
     basis, field = Basis(found), found.setting.field
     values = brackets_of(basis)
     name, decision = first_nonzero(values, field)

@@ -22,7 +22,7 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.constrained import section_momenta, section_vector
 from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.nonholonomic import external_forces
+from coadjoint.derive.external import external_forces
 from coadjoint.exact import Element, element_text
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import SHOWN
@@ -48,13 +48,14 @@ def momentum_law(equations: Equations, section: Section) -> Element:
     lagrangian, along = lagrangian_of(setting), section_vector(found, section)
     turned = frame.bracket(setting.elements(frame.velocities), along)
     momenta = field.gradient(lagrangian, frame.velocities)
+    forces = external_forces(setting, frame.velocities)
     reactions = setting.elements([each.reaction for each in found.equations])
     worked = [field.sum(a * x for a, x in zip(row, along, strict=True)) for row in found.A]
     return field.sum(
         [
             frame.along(along, lagrangian),
             *(p * x for p, x in zip(momenta, turned, strict=True)),
-            *(f * x for f, x in zip(external_forces(frame), along, strict=True)),
+            *(f * x for f, x in zip(forces, along, strict=True)),
             *(r * w for r, w in zip(reactions, worked, strict=True) if w != 0),
         ]
     )

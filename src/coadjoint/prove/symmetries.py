@@ -95,13 +95,16 @@ def _noether(
     first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element
 ) -> Iterator[Examined]:
     """What is conserved since h is invariant: nothing is claimed of the other components."""
-    rates = J.rates(h)
-    invariant = [n for n, rate in enumerate(rates) if rate == 0]
+    rates, field = J.rates(h), first.setting.field
+    invariant = [
+        n for n, rate in enumerate(rates) if rate == 0 and field.is_zero(first.work(J.values[n]))
+    ]
     if invariant:
         names = [symmetry.components[n] for n in invariant]
         subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
+        idle = " and the forces do no work along it" * first.spec.is_driven
         yield (
-            f"{subject} is conserved by Noether's theorem, since its flow keeps h",
+            f"{subject} is conserved by Noether's theorem, since its flow keeps h{idle}",
             "symmetry",
             lambda: [defect for n in invariant for defect in drift(first, J.values[n])],
         )
@@ -113,9 +116,10 @@ def _noether(
 def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Examined]:
     """Of each claimed integral, that its Hamiltonian vector field commutes with the motion.
 
-    On phase spaces; over an algebra the reduced space has no positions to be moved.
+    On phase spaces, where no force acts; over an algebra the reduced space has no positions to be
+    moved.
     """
-    if first.spec.algebra is not None:
+    if first.spec.algebra is not None or first.spec.is_driven:
         return
     for place, claim in enumerate(first.spec.conserved):
         if claim.where or claim.formula.in_one_line == "energy":

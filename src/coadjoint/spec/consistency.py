@@ -28,7 +28,7 @@ from coadjoint.spec.model import (
 )
 from coadjoint.spec.names import derived_names, refusal
 from coadjoint.spec.positions import KeyPath
-from coadjoint.spec.routes import STARTS, energies_of, kinds_of
+from coadjoint.spec.routes import STARTS, energies_of, is_in_frame, kinds_of
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.source import Source
 
@@ -36,15 +36,15 @@ from coadjoint.spec.source import Source
 _HOW = {
     "hamiltonian": 'Write [hamiltonian] and below it h = "dot(Pi, inverse(diag(I))*Pi)/2".',
     "lagrangian": 'Write [lagrangian] and below it l = "dot(Omega, diag(I)*Omega)/2".',
-    "constraints": 'Write [constraints] and below it rolling = "Y == cross(Omega, s)".',
 }
 _ENERGIES = ("hamiltonian", "lagrangian")
 #: Tables that are there for routes alone.
 _ROUTED = (
     *_ENERGIES,
     *("lax", "newton", "clebsch"),
-    *("constraints", "forces", "dissipation"),
 )
+#: Tables that act on the motion, so that every route must know them.
+_ACTING = ("constraints", "forces", "dissipation")
 #: What a kind of spec has, in words.
 _KINDS = {
     "algebra": "[algebra]",
@@ -265,28 +265,42 @@ def check_routes(source: Source, file: SpecFile) -> None:
             if len(names) > 1:
                 lacks = "neither " + " nor ".join(f"a {name}" for name in names)
             raise _missing(source, f"the route {route} has {lacks}", energies[0])
-        if file.constraints is not None and start.table != "constraints":
-            others = [name for name, other in STARTS.items() if other.table == "constraints"]
-            raise source.fault(
-                ("routes", place),
-                f"the route {route} knows no constraints",
-                found=route,
-                expected=f"one of {listed(others)} beside [constraints]",
-                hint=f'Write "{others[0]}" in its place, or remove [constraints].',
-            )
+        for table in _ACTING:
+            if getattr(file, table) and table not in start.options:
+                raise _unknown_to(source, place, route, table, kinds)
     _check_first(source, file)
     _check_use(source, file)
+
+
+def _unknown_to(
+    source: Source, place: int, route: str, table: str, kinds: tuple[str, ...]
+) -> CoadjointError:
+    """A route that would leave out what acts on the motion, and so derive another one."""
+    others = [
+        name
+        for name, other in STARTS.items()
+        if table in other.options and set(other.kinds) & set(kinds)
+    ]
+    return source.fault(
+        ("routes", place),
+        f"the route {route} knows no {table}",
+        found=route,
+        expected=f"one of {listed(others)} beside [{table}]",
+        hint=f'Write "{others[0]}" in its place, or remove [{table}].',
+    )
 
 
 def _check_first(source: Source, file: SpecFile) -> None:
     """The first route gives the rates of the declared state, and all that is emitted."""
     first = file.routes[0]
     if not STARTS[first].emitted:
-        kinds, beside = set(kinds_of(file)), STARTS[first].table
+        kinds, own = set(kinds_of(file)), STARTS[first]
         others = [
             name
             for name, start in STARTS.items()
-            if start.emitted and set(start.kinds) & kinds and start.table == beside
+            if start.emitted
+            and set(start.kinds) & kinds
+            and (start.table, start.in_frame) == (own.table, own.in_frame)
         ]
         raise source.fault(
             ("routes", 0),
@@ -343,7 +357,7 @@ def check_covered(
         SpecError: Some direction or coordinate has none.
     """
     if algebra is not None:
-        if file.constraints is None:
+        if not is_in_frame(file):
             _check_covered(source, "momentum", "Pi", variables, algebra)
         elif any(variable.role == "coordinate" for variable in variables):
             _check_partners(source, file, variables)

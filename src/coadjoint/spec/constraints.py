@@ -20,6 +20,7 @@ from coadjoint.spec.model import Formula, Variable
 from coadjoint.spec.names import refusal
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.relations import EQUATION, INEQUALITIES, read_relation
+from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.shapes import words
 from coadjoint.spec.source import Source
@@ -39,14 +40,15 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
         file: The validated tables; formulas that cannot be read yet are passed over.
 
     Returns:
-        Constraint and side (1 for left, -1 for right) by velocity; None without constraints.
+        Constraint and side (1 for left, -1 for right) by velocity; None where the state has none
+        along a frame.
     """
-    if file.constraints is None:
+    if not is_in_frame(file):
         return None
     velocities = {name for name, part in file.variables.items() if part.role == "velocity"}
     found: dict[str, tuple[str, int]] = {}
     reached: dict[str, set[str]] = {}
-    for constraint, text in file.constraints.items():
+    for constraint, text in (file.constraints or {}).items():
         sides = [_parsed(side, file) for side in text.split("==")]
         if len(sides) != _SIDES:
             continue
@@ -124,7 +126,7 @@ class ConstraintReader:
             SpecError: One is no equation between velocities, or beside them stands what a
                 constrained motion does not have.
         """
-        if self.file.constraints is not None:
+        if is_in_frame(self.file):
             _check_unasked(self.source, self.file)
         solved = {
             name: (velocity, sign)
@@ -139,23 +141,67 @@ class ConstraintReader:
         return tuple(found)
 
     def forces(self) -> dict[str, Formula]:
-        """The declared forces by the velocity that they work on.
+        """The declared forces by what they act along.
 
         Raises:
-            SpecError: There is no such velocity, or the force has another shape.
+            SpecError: There is no such variable, a momentum is named whose velocity has a
+                Lagrangian, the force has another shape, or the motion is restricted.
         """
+        self._check_whole("forces")
         scope = make_scope("a force", self.motion, self.quantities)
         return {
-            name: self._along(("forces", name), text, scope, self.velocities)
+            name: self._along(("forces", name), text, scope, self._forced)
             for name, text in self.file.forces.items()
         }
 
+    @property
+    def _forced(self) -> Mapping[str, Variable]:
+        """What forces may act along: velocities, and what only a Hamiltonian moves.
+
+        With a Lagrangian a force along a velocity says what it does; with a Hamiltonian momenta
+        and the coordinates of a declared bracket may have no velocities.
+        """
+        roles = {"velocity"}
+        if self.file.lagrangian is None:
+            roles |= {"momentum"}
+            roles |= {"coordinate"} if self.file.poisson is not None else set()
+        return {each.name: each for each in self.variables if each.role in roles}
+
     def dissipation(self) -> Formula | None:
-        """Rayleigh's function."""
+        """Rayleigh's function.
+
+        Raises:
+            SpecError: It is no formula of velocities, or the motion is restricted.
+        """
         if self.file.dissipation is None:
             return None
+        self._check_whole("dissipation")
+        key: KeyPath = ("dissipation", "R")
         scope = make_scope("a dissipation", self.motion, self.quantities)
-        return read_formula(self.source, ("dissipation", "R"), self.file.dissipation.R, scope)
+        formula = read_formula(self.source, key, self.file.dissipation.R, scope)
+        owners = {part: each.name for each in self.velocities.values() for part in each.components}
+        named = {getattr(node, "name", "") for node in walk(formula.tree)}
+        if not named & {*owners, *owners.values()}:
+            raise self.source.fault(
+                key,
+                "Rayleigh's function names no velocity",
+                found=self.file.dissipation.R,
+                expected="a function of velocities, whose force is -dR/dxi",
+                hint="Declare velocities, or write what acts along a momentum in [forces].",
+            )
+        return formula
+
+    def _check_whole(self, table: str) -> None:
+        """Nothing acts on a motion that is restricted to a submanifold."""
+        if getattr(self.file, table) and self.file.reduction is not None:
+            raise self.source.fault(
+                (table,),
+                f"there is [{table}] beside [reduction]",
+                found=table,
+                expected="one of them",
+                hint=f"Write the equations on the submanifold without [reduction], or remove "
+                f"[{table}].",
+            )
 
     def domain(self, constraints: Sequence[Constraint]) -> tuple[Condition, ...]:
         """The declared inequalities, which may name reactions: a body leaves the plane.
@@ -238,11 +284,13 @@ class ConstraintReader:
     def _no_velocity(
         self, key: KeyPath, name: str, velocities: Mapping[str, Variable]
     ) -> CoadjointError:
+        roles = {each.role for each in velocities.values()} or {"velocity"}
+        what = "velocity" if roles == {"velocity"} else "variable"
         return self.source.fault(
             key,
-            f"there is no such velocity as {name!a}",
+            f"there is no such {what} as {name!a}",
             found=name,
-            expected=f"one of {listed(velocities)}",
+            expected=f"one of {listed(velocities)}" if velocities else "a declared velocity",
             hint=did_you_mean(name, velocities),
             at=self.source.positions.key(key),
         )

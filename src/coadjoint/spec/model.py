@@ -238,7 +238,8 @@ class SpatialMomentum:
 
     Attributes:
         momentum: What it is in the body.
-        conserved: Whether the energy knows nothing that is advected, so that it stays what it is.
+        conserved: Whether the energy knows nothing that is advected and no force acts, so that it
+            stays what it is.
     """
 
     momentum: Variable
@@ -328,7 +329,8 @@ class Spec:
         galilean: Whether Newton's law is claimed to be that of every Galilean observer.
         reduction: The submanifold to which a motion is restricted, whose state this is, or None.
         constraints: Equations between velocities; empty for motions that are free.
-        forces: What acts beside the Lagrangian, by the name of the velocity that it works on.
+        forces: What acts beside the energy, by the name of the velocity that it works on, or of the
+            momentum or coordinate to whose rate it is added.
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
         domain: Where the system is defined, as far as declared.
         rolling: How the body rolls on a plane, if it does.
@@ -416,13 +418,24 @@ class Spec:
         energies = [f.tree for f in (self.lagrangian, self.hamiltonian) if f is not None]
         used = {getattr(node, "name", "") for tree in energies for node in walk(tree)}
         momenta = self.having_role("momentum")
-        return tuple(SpatialMomentum(each, not names & used) for each in momenta)
+        free = not names & used and not self.is_driven
+        return tuple(SpatialMomentum(each, free) for each in momenta)
 
     @property
     def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:
-        """The momenta of the independent velocities; empty for motions that are free."""
+        """The momenta of the independent velocities; empty where momenta are the state."""
         moving = [each for each in self.state if each.role == "velocity"]
-        return tuple(map(ReducedMomentum, moving)) if self.constraints else ()
+        return tuple(map(ReducedMomentum, moving)) if self.in_frame else ()
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether forces or dissipation act beside the energy."""
+        return bool(self.forces) or self.dissipation is not None
+
+    @property
+    def in_frame(self) -> bool:
+        """Whether the state has velocities along a frame, which constraints may bind."""
+        return any(variable.independent is not None for variable in self.variables)
 
     @property
     def kind(self) -> str:

@@ -60,6 +60,7 @@ from coadjoint.spec.poisson import read_poisson
 from coadjoint.spec.positions import KeyPath, scan
 from coadjoint.spec.reductions import restricted
 from coadjoint.spec.representations import read_representations, representation_of
+from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import (
     ClaimPart,
     FlagPart,
@@ -258,7 +259,7 @@ class _Formulas:
         self.state = tuple(dict.fromkeys(variable.role for variable in state_of(variables)))
         self.motion = tuple(dict.fromkeys(("velocity", *self.state)))
         self.fixed: tuple[str, ...] = ("advected",) if file.algebra is not None else ("coordinate",)
-        if file.constraints is not None:  # an algebra and coordinates may stand side by side
+        if is_in_frame(file):  # an algebra and coordinates may stand side by side
             present = [variable.role for variable in variables if variable.role != "velocity"]
             self.fixed = tuple(dict.fromkeys(present)) or self.fixed
 

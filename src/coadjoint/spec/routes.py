@@ -23,6 +23,8 @@ class Start:
         energies: The tables of which it takes one; empty if it takes none.
         table: A table of its own, without which it cannot start; "" if none.
         options: Tables of its own that may be left out.
+        in_frame: Whether the state has velocities along a frame, which constraints may bind; on the
+            other routes it has momenta, or velocities of coordinates.
         emitted: Whether it may be the first of a spec. What moves in variables of its own, or
             leaves multipliers out, is there to be proved equal.
     """
@@ -31,21 +33,24 @@ class Start:
     energies: tuple[str, ...] = ()
     table: str = ""
     options: tuple[str, ...] = ()
+    in_frame: bool = False
     emitted: bool = True
 
 
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
-_ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN)
-_CHART = replace(_ON_ALGEBRA, emitted=False)
-_CONSTRAINED = Start(
-    ("algebra", "configuration"), _LAGRANGIAN, "constraints", ("forces", "dissipation")
+#: What acts beside the energy, on routes where a rate of momenta is known.
+_DRIVES = ("forces", "dissipation")
+_ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN, options=_DRIVES)
+_CHART = Start(("algebra",), _LAGRANGIAN, emitted=False)
+_IN_FRAME = Start(
+    ("algebra", "configuration"), _LAGRANGIAN, options=("constraints", *_DRIVES), in_frame=True
 )
 
 STARTS: Mapping[str, Start] = MappingProxyType(
     {
         "euler-poincare": _ON_ALGEBRA,
-        "lie-poisson": Start(("algebra",), _EITHER),
+        "lie-poisson": Start(("algebra",), _EITHER, options=_DRIVES),
         "hamilton-pontryagin": _ON_ALGEBRA,
         "clebsch": replace(_CHART, options=("clebsch",)),
         "poincare": _ON_ALGEBRA,
@@ -56,14 +61,14 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "complexification": Start(("algebra",), _HAMILTONIAN),
         "manakov": Start(("algebra",), _EITHER),
         "lax": Start(("algebra", "poisson"), _EITHER, "lax"),
-        "nambu": Start(("algebra", "nambu"), _EITHER),
-        "poisson": Start(("poisson",), _HAMILTONIAN),
-        "canonical": Start(("canonical", "configuration"), _EITHER),
-        "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN),
+        "nambu": Start(("algebra", "nambu"), _EITHER, options=_DRIVES),
+        "poisson": Start(("poisson",), _HAMILTONIAN, options=_DRIVES),
+        "canonical": Start(("canonical", "configuration"), _EITHER, options=_DRIVES),
+        "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN, options=_DRIVES),
         "newton": Start(("configuration", "poisson"), (), "newton"),
         "alignment": Start(("configuration", "poisson"), (), "newton", emitted=False),
-        "nonholonomic": _CONSTRAINED,
-        "hamel": replace(_CONSTRAINED, emitted=False),
+        "nonholonomic": _IN_FRAME,
+        "hamel": replace(_IN_FRAME, emitted=False),
     }
 )
 
@@ -74,6 +79,15 @@ def energies_of(route: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
     if "poisson" in kinds and "canonical" not in kinds:
         return tuple(each for each in energies if each != "lagrangian")
     return energies
+
+
+def is_in_frame(file: SpecFile) -> bool:
+    """Whether the state has velocities along a frame: what constraints bind, or their routes move.
+
+    >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
+    True
+    """
+    return file.constraints is not None or any(STARTS[route].in_frame for route in file.routes)
 
 
 def kinds_of(file: SpecFile) -> tuple[str, ...]:

@@ -136,9 +136,9 @@ def _is_state(
 def _constrained_momentum(source: Source, key: KeyPath) -> CoadjointError:
     return source.fault(
         (*key, "role"),
-        f"{key[-1]!r} is a momentum beside [constraints]",
+        f"{key[-1]!r} is a momentum, and the state has velocities on these routes",
         found="momentum",
-        expected="velocities, which are the state of a constrained motion",
+        expected="velocities, which are the state on the routes nonholonomic and hamel",
         hint="Remove it; the velocities that no constraint gives are the state.",
     )
 

@@ -1,0 +1,91 @@
+r"""External forces: what acts beside the Lagrangian or the Hamiltonian.
+
+Principle of Lagrange and d'Alembert (Holm 2011, section 12.2): a force f does work along every
+virtual displacement, so it is added to the rate of the momentum along its velocity; with Rayleigh's
+function R,
+
+.. math::
+    \frac{d}{dt} \frac{\partial l}{\partial \xi} = \dots + f - \frac{\partial R}{\partial \xi}.
+
+Where velocities of coordinates are the state it gives the acceleration :math:`M^{-1} f`. A force
+along a momentum, or along a coordinate of a declared bracket, is added to its rate as it stands.
+Comes in: Equations of a motion by its energy alone. Goes out: Equations with the forces.
+Read next: `coadjoint.derive.frames`, for motions on which constraints act as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from coadjoint.derive.configuration import applied, mechanics
+from coadjoint.derive.equations import Equations, Step, rate, symbol
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+
+LAW = "f - dR/dxi"
+LATEX = r"f - \partial R / \partial \xi"
+
+
+def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Element, ...]:
+    """The declared force ``f - dR/dxi`` along each velocity."""
+    field, spec = setting.field, setting.spec
+    found = dict.fromkeys(velocities, field.zero) | _declared(setting, "velocity")
+    if spec.dissipation is not None:
+        slopes = field.gradient(setting.formula(spec.dissipation), velocities)
+        found = {name: found[name] - s for name, s in zip(velocities, slopes, strict=True)}
+    return tuple(found[name] for name in velocities)
+
+
+def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
+    """The declared forces along variables of some roles, by component."""
+    return {
+        name: part
+        for variable in setting.spec.variables
+        if variable.name in setting.spec.forces and variable.role in roles
+        for name, part in zip(
+            variable.components,
+            setting.components(setting.spec.forces[variable.name]),
+            strict=True,
+        )
+    }
+
+
+def forced(free: Equations) -> Equations:
+    """The motion with the forces that the spec declares; the same where it declares none.
+
+    Routes with constraints, and those with momenta of their own, put the forces in themselves.
+    """
+    setting = free.setting
+    if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
+        return free
+    added = tuple(added_rates(setting))
+    rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
+    lines = zip(setting.state, added, rates, strict=True)
+    moved = [(name, force, whole) for name, force, whole in lines if force != 0]
+    step = Step(
+        "Forces, added to the rates",
+        "dx/dt = ... + f - dR/dxi",
+        r"\dot x = \dots + f - \partial R / \partial \xi",
+        (
+            *((symbol(f"f_{name}"), force) for name, force, _ in moved),
+            *((rate(name), whole) for name, _, whole in moved),
+        ),
+    )
+    exact = replace(free.exact, rates=rates, forces=added)
+    return replace(free, exact=exact, steps=(*free.steps, step))
+
+
+def added_rates(setting: Setting) -> list[Element]:
+    """What the forces add to the rate of each component of the state."""
+    field, velocities = setting.field, setting.velocities
+    found = _declared(setting, "momentum", "coordinate")
+    along = external_forces(setting, velocities) if velocities else ()
+    if setting.momenta:
+        pairs = zip(setting.momenta, along, setting.weights, strict=not along)
+        for name, force, weight in pairs:
+            found[name] = found.get(name, field.zero) + force * weight
+    elif any(along):
+        moved = applied(field, mechanics(setting).inverse_mass, along)
+        found |= zip(velocities, moved, strict=True)
+    return [found.get(name, field.zero) for name in setting.state]

@@ -1,0 +1,119 @@
+r"""The balance of energy: what the energy gains and loses along the motion.
+
+.. math::
+    \frac{dE}{dt} = \langle f, \xi \rangle
+        - \Big\langle \frac{\partial R}{\partial \xi}, \xi \Big\rangle - \lambda \cdot r
+
+with the declared forces f, Rayleigh's function R, and the work of constraints that move, whose
+residual at rest is r and whose multipliers are lambda. Where R is quadratic in the velocities its
+term is -2 R. A force along a momentum or a coordinate x works by :math:`f\,\partial E/\partial x`.
+Comes in: Equations with an energy. Goes out: the law in words, and its terms as elements.
+Read next: `coadjoint.prove.claims`.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from coadjoint.derive import Equations
+from coadjoint.derive.distribution import Distribution
+from coadjoint.exact import Element, Field
+
+
+class Balance:
+    """The law of the energy of one motion.
+
+    Args:
+        equations: With an energy.
+    """
+
+    def __init__(self, equations: Equations) -> None:
+        self.equations = equations
+        self.spec, self.setting = equations.spec, equations.setting
+        self.field: Field = equations.setting.field
+
+    @property
+    def statement(self) -> str:
+        """The law in words."""
+        terms = ["the power of the forces"] if self.spec.forces else []
+        if self.spec.dissipation is not None:
+            terms.append("-2 R" if self._is_quadratic else "-<dR/dxi, xi>")
+        if self._moving:
+            terms.append("the work of the moving constraints")
+        if not terms:
+            return "the energy is conserved"
+        *others, last = terms
+        return f"the energy changes by {', '.join(others)}{' and ' * bool(others)}{last}"
+
+    @property
+    def power(self) -> Element:
+        """What is gained: a function of velocities and state, and of reactions."""
+        return self.field.sum([*self._work_along_velocities(), *self._work_of_constraints()])
+
+    def work_along_state(self, slopes: dict[str, Element]) -> Element:
+        """The power of forces along momenta and coordinates.
+
+        Args:
+            slopes: Derivatives of the energy by the state.
+        """
+        return self.field.sum(
+            slopes[name] * part
+            for variable in self.spec.state
+            if variable.name in self.spec.forces and variable.role != "velocity"
+            for name, part in zip(
+                variable.components,
+                self.setting.components(self.spec.forces[variable.name]),
+                strict=True,
+            )
+        )
+
+    @cached_property
+    def _velocities(self) -> tuple[str, ...]:
+        found = self._distribution
+        return self.setting.velocities if found is None else found.frame.velocities
+
+    @property
+    def _distribution(self) -> Distribution | None:
+        return self.equations.distribution
+
+    @property
+    def _moving(self) -> bool:
+        return self._distribution is not None and not self._distribution.is_linear
+
+    @cached_property
+    def _lost(self) -> Element:
+        """``<dR/dxi, xi>``."""
+        if self.spec.dissipation is None:
+            return self.field.zero
+        R = self.setting.formula(self.spec.dissipation)
+        slopes = self.field.gradient(R, self._velocities)
+        pairs = zip(slopes, self.setting.elements(self._velocities), strict=True)
+        return self.field.sum(slope * xi for slope, xi in pairs)
+
+    @property
+    def _is_quadratic(self) -> bool:
+        """Whether ``<dR/dxi, xi> = 2 R``, as of every R quadratic in the velocities."""
+        assert self.spec.dissipation is not None, "asked for only beside R"
+        R = self.setting.formula(self.spec.dissipation)
+        return self.field.is_zero(self._lost - 2 * R)
+
+    def _work_along_velocities(self) -> list[Element]:
+        """``<f, xi> - <dR/dxi, xi>``, each force with the velocity that it is declared for."""
+        found = [-self._lost]
+        for variable in self.spec.having_role("velocity"):
+            if variable.name in self.spec.forces:
+                parts = self.setting.components(self.spec.forces[variable.name])
+                moved = self.setting.elements(variable.components)
+                found += [f * xi for f, xi in zip(parts, moved, strict=True)]
+        return found
+
+    def _work_of_constraints(self) -> list[Element]:
+        """``-lambda r`` with the residual r of each constraint at rest."""
+        found = self._distribution
+        if found is None:
+            return []
+        rest = dict.fromkeys(found.frame.velocities, self.field.zero)
+        return [
+            -self.field.substitute(each.residual, rest) * self.field[each.reaction]
+            for each in found.equations
+        ]
