@@ -497,6 +497,22 @@ CASES = (
         free("v1 - sqrt(3)*v2 == 0", "v1^2/2 + v2^2/2", conserved("v2")),
         {"v2 is conserved": PROVED},
     ),
+    # relations whose factors show in one form of sin^2 + cos^2 = 1 alone
+    Fixed(
+        "a level set of two parts within each other",
+        so3(
+            "mu1^2 + mu2^2 + sin(a)*mu3^2",
+            """[[claims.conserved]]
+claim = "mu2*(mu1^2 + mu2^2 + sin(a)*mu3^2 - 5)"
+where = ["(mu1^2 + mu2^2 + sin(a)*mu3^2 - 3)*(mu1^2 + mu2^2 + sin(a)*mu3^2 - 5)"]
+""",
+            "[parameters]\na = { positive = true, default = 1 }",
+        ),
+        {
+            "mu2*(mu1^2 + mu2^2 + sin(a)*mu3^2 - 5) is conserved where "
+            "(mu1^2 + mu2^2 + sin(a)*mu3^2 - 3)*(mu1^2 + mu2^2 + sin(a)*mu3^2 - 5) = 0": REFUTED
+        },
+    ),
     # constrained motions without accelerations
     Fixed(
         "a constraint on a free particle",

@@ -19,7 +19,7 @@ from fractions import Fraction
 from itertools import islice
 
 from tests.adversary.counts import judge_count
-from tests.adversary.motion import PAIR, STEP, Constrained, Motion, Restricted, Values, motion_of
+from tests.adversary.motion import PAIR, Constrained, Motion, Restricted, Values, motion_of
 from tests.adversary.reader import CONTEXT, UndefinedError, entries, mpf, number, read, value
 
 #: Points at which a claim that was not refuted is tried.
@@ -28,10 +28,10 @@ POINTS = 3
 TRIES = 40
 #: A difference above this, relative to the size of what is subtracted, refutes a claim.
 NOTHING = mpf(10) ** -18
-#: The same, and the step, where a derivative is taken of derivatives.
-NOTHING_NESTED, OUTER_STEP = mpf(10) ** -13, mpf(10) ** -10
-#: Digits with which a difference that would refute is computed again.
-DIGITS = 400
+#: The same where a derivative is taken of derivatives.
+NOTHING_NESTED = mpf(10) ** -13
+#: Digits with which a difference that would refute is computed again, and part of the step.
+DIGITS, FINER = 400, mpf(10) ** -4
 #: Relative error of a stated difference: points are shown with 15 digits.
 STATED = mpf(10) ** -7
 VERDICTS = ("proved", "refuted", "numerically supported")
@@ -278,7 +278,7 @@ def jacobi(motion):
         names, tensor = motion.state, motion.tensor(point)
         size, flat = len(names), lambda p: [x for row in motion.tensor(p) for x in row]
         rows = [
-            motion.along(flat, point, dict(zip(names, tensor[i], strict=True)), OUTER_STEP)
+            motion.along(flat, point, dict(zip(names, tensor[i], strict=True)), motion.outer_step)
             for i in range(size)
         ]
         inner = lambda i, j, k: rows[i][j * size + k]  # {x_i, {x_j, x_k}}  # noqa: E731
@@ -301,12 +301,12 @@ def flow(motion, text):
         rates, names = motion.rates(point), motion.state
         count = len(motion.at(text, point))
         moved = field(point)  # component after component of each row
-        carried = motion.along(field, point, rates, OUTER_STEP)
+        carried = motion.along(field, point, rates, motion.outer_step)
         found = []
         for part in range(count):
             along = dict(zip(names, moved[part::count], strict=True))
             motion_rates = lambda p: [motion.rates(p)[n] for n in names]  # noqa: E731
-            turned = motion.along(motion_rates, point, along, OUTER_STEP)
+            turned = motion.along(motion_rates, point, along, motion.outer_step)
             found += [a - b for a, b in zip(carried[part::count], turned, strict=True)]
         return found
 
@@ -346,7 +346,7 @@ def measure(motion, statement):
         )
         spread = sum(
             (
-                motion.along(lambda p, n=n: rate(p, n), point, {n: mpf(1)}, OUTER_STEP)[0]
+                motion.along(lambda p, n=n: rate(p, n), point, {n: mpf(1)}, motion.outer_step)[0]
                 for n in names
             ),
             mpf(0),
@@ -500,10 +500,10 @@ class _Case:
         place = max(range(len(found)), key=lambda n: abs(found[n]), default=None)
         if place is None or abs(found[place]) <= stated.nothing * size**4:
             return mpf(0)
-        motion.with_step(STEP * 7)
+        motion.with_steps(FINER)
         with CONTEXT.workdps(DIGITS):
             again = stated.differences(point)[place]
-        motion.with_step(STEP)
+        motion.with_steps()
         return found[place] if abs(again - found[place]) <= abs(again) / 1000 else mpf(0)
 
     def refuted(self, stated, claim):

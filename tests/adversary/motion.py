@@ -31,6 +31,8 @@ from tests.adversary.reader import (
 )
 
 STEP = mpf(10) ** -16
+#: The same where a derivative is taken of derivatives.
+OUTER_STEP = mpf(10) ** -10
 #: How far a point found by iteration may be from its set, relative to the point.
 ON_SET = mpf(10) ** -40
 #: The same beside coordinates that are known to some 30 digits, as certificates show them.
@@ -72,7 +74,8 @@ class Motion:
     has_bracket = False
 
     def __init__(self, table):
-        self.table, self.step, self._last = table, STEP, (None, None)
+        self.table = table
+        self.with_steps()
         self.variables = table["variables"]
         self.parameters = {
             name: component_names(name, part.get("shape", []))
@@ -219,9 +222,9 @@ class Motion:
         ]
         return [(a - b) / (2 * step) for a, b in zip(*ends, strict=True)]
 
-    def with_step(self, step):
-        """Take differences over another step from now on, which forgets what was computed."""
-        self.step, self._last = step, (None, None)
+    def with_steps(self, part=1):
+        """Take differences over a part of the steps from now on; what was computed is forgotten."""
+        self.step, self.outer_step, self._last = STEP * part, OUTER_STEP * part, (None, None)
 
     def gradient(self, function, point, names):
         """Derivatives of one number by names."""

@@ -100,6 +100,9 @@ def last_conserved(text, *changes):
         ("q1", ["exp(p2)*p1"], PROVED),
         ("q1", ["sin(p2)*p1"], REFUTED),
         ("q2", ["p1 - sqrt(q1 - 100)"], REFUTED),  # random points have q1 < 100
+        ("q1", ["(p1 - p2*cos(q2))*(p1 + p2*cos(q2))"], REFUTED),
+        ("q1", ["p1^2*q2^2 - p1^2*q2^2*cos(p2)^2"], REFUTED),  # sin(p2) = 0
+        ("q1", ["p1^2*exp(p2) - p1^2*exp(p2)*cos(a)^2"], PROVED),  # for almost all a, p1 = 0
         ("q1", ["sin(p2)*p1 - (1 - cos(p2))*p2"], REFUTED),  # reducible, and no factor shows it
     ],
 )

@@ -19,8 +19,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
-from itertools import islice
+from functools import cached_property, reduce
+from itertools import combinations, islice, permutations
 from math import isqrt
 from typing import Any
 
@@ -37,6 +37,8 @@ BRANCHES = 32
 #: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
 SLOPE = 4
 
+#: Sines whose squares are written as those of cosines at a time, to find factors.
+PAIRS = 2
 #: Addends of a relation that is factored; larger ones may take minutes.
 FACTORED = 400
 
@@ -213,11 +215,36 @@ class Ideal:
         return element
 
     def _all_factors(self, element: Element) -> Iterator[Element]:
-        """The irreducible factors of a numerator that is not too long."""
+        """The irreducible factors of a numerator that is not too long.
+
+        Modulo ``s^2 + c^2 = 1`` one form of it may have factors where another has none:
+        ``x^2 - y^2 c^2`` has two, ``x^2 - y^2 + y^2 s^2`` has one.
+        """
         numerator = _numerator(element)
-        if len(numerator) <= FACTORED:
-            for names, factor in _irreducible(numerator):
-                yield self.field.normal(self.field.polynomial(names, dict(factor.terms())))
+        if len(numerator) > FACTORED:
+            return
+        forms = filter(lambda form: len(form) <= FACTORED, self._other_forms(numerator))
+        split = (list(_irreducible(form)) for form in (numerator, *forms))
+        whole = next(split)
+        found = whole if len(whole) > 1 else next((f for f in split if len(f) > 1), whole)
+        for names, factor in found:
+            part = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
+            yield from self._all_factors(part) if len(found) > 1 else (part,)
+
+    def _other_forms(self, numerator: PolyElement) -> Iterator[PolyElement]:
+        """A numerator with squares of sines as those of cosines, and the other way round."""
+        names = list(map(str, numerator.ring.symbols))
+        degrees = dict(zip(names, numerator.degrees(), strict=True))
+        pairs = [
+            (names.index(one), names.index(other))
+            for known in self.field.adjoined.values()
+            if known.function == "sin" and {known.generator, known.partner} <= set(names)
+            for one, other in permutations((known.generator, known.partner))
+            if degrees[one] > 1
+        ]
+        for count in range(1, min(len(pairs), PAIRS) + 1):
+            for chosen in combinations(pairs, count):
+                yield reduce(_with_other_square, chosen, numerator)
 
     @cached_property
     def some_points(self) -> tuple[tuple[Points, Values], ...]:
@@ -404,6 +431,16 @@ def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyEleme
     terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
     for factor in factors_of(small.from_dict(terms)):
         yield list(map(str, symbols)), factor
+
+
+def _with_other_square(polynomial: PolyElement, places: tuple[int, int]) -> PolyElement:
+    """``s^2`` replaced by ``1 - c^2``, with the places of s and c."""
+    own, other = places
+    square = 1 - polynomial.ring.gens[other] ** 2
+    found = polynomial.ring.zero
+    for power, part in _powers(polynomial, own).items():
+        found += part * polynomial.ring.gens[own] ** (power % 2) * square ** (power // 2)
+    return found
 
 
 def factors_of(polynomial: PolyElement) -> list[PolyElement]:

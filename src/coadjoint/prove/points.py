@@ -47,6 +47,8 @@ MOVES = 12
 TARGETS = (Fraction(1), Fraction(1, 4), Fraction(4), Fraction(1, 32), Fraction(1, 1000))
 #: Sizes of the points that are moved.
 SCALES = (1, 1, 10, 100, 1000)
+#: Part of a random point from which zero sets are reached from near the origin.
+SMALL = Fraction(1, 16)
 #: Parts of a default by which points near it differ from it.
 NEAR = (Fraction(0), Fraction(1, 3), Fraction(1, 30), Fraction(1, 300))
 #: Size of the last step of Newton's method, beside which a point counts as one of the zero set.
@@ -287,7 +289,9 @@ class Points:
         defaults, source = self._defaults, random.Random(2)  # noqa: S311 (no secrets)
         moved = bool(self.branch.rest)  # then the first is that of the defaults
         for number, point in enumerate(random_points(self.names, self.ring.positive)):
-            if moved <= number < PLAIN // (1 + moved):
+            if moved and number % 4 == 1:  # from inside: a set may have parts within each other
+                yield {name: x * SMALL for name, x in point.items()}
+            elif moved <= number < PLAIN // (1 + moved):
                 yield point
             elif number % 2:
                 scale = SCALES[number // 2 % len(SCALES)]
