@@ -29,6 +29,7 @@ from tests.specs import shipped, spec
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
 JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
+CUBIC = ("[claims]", '[dissipation]\nR = "k*(u^2 + v^2)^2"\n[claims]')
 DRIVEN = ("[claims]", '[forces]\nw = "3"\n[dissipation]\nR = "k*u^2/2"\n[claims]')
 
 
@@ -49,10 +50,12 @@ def verdicts(routes):
     [
         ((), "the energy is conserved"),
         ((AFFINE,), "the energy changes by the work of the moving constraints"),
-        ((DRIVEN,), "the energy changes by the power of the forces"),
+        ((DRIVEN,), "the energy changes by the power of the forces and -2 R"),
+        ((CUBIC,), "the energy changes by -<dR/dxi, xi>"),
         (
             (AFFINE, DRIVEN),
-            "the energy changes by the power of the forces and the work of the moving constraints",
+            "the energy changes by the power of the forces, -2 R and the work of the moving "
+            "constraints",
         ),
     ],
 )

@@ -12,7 +12,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical
+from tests.sources import classical, driven
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -230,6 +230,7 @@ RATES = {
     **dict.fromkeys(QUADRATIC_BODIES, quadratic_rates),
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
     **classical.RATES,
+    **driven.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
 }
@@ -268,6 +269,7 @@ OBSERVABLES = {
     **dict.fromkeys(QUADRATIC_BODIES, quadratic_observables),
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
     **classical.OBSERVABLES,
+    **driven.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
 }
@@ -304,6 +306,7 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "bloch_iserles_2": lambda x, p: minus_bracket(bloch_iserles_ad_star(2, p), x),
     "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
     **classical.TENSORS,
+    **driven.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
     **{name: partial(body_tensor, name) for name in ROLLING},
 }
@@ -343,6 +346,7 @@ STATES = {
     **{name: (*upper("M", n), *kept("S", n)) for name, n in QUADRATIC_BODIES.items()},
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
     **classical.STATES,
+    **driven.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
@@ -381,6 +385,7 @@ PARAMETERS = {
     **{name: numbered("a", n) for name, n in (BODIES | LAX_BODIES | QUADRATIC_BODIES).items()},
     **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
     **classical.PARAMETERS,
+    **driven.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),

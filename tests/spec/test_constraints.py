@@ -86,7 +86,6 @@ CLAIMS = "[claims]"
 FAULTS = [
     ((BLADE, ""), "constraints", "an empty table", "expected at least 1 item."),
     ((BLADE, "blade = 3"), "constraints.blade", "3", "expected text in quotes"),
-    (("[constraints]\n" + BLADE, ""), "routes", "constraints", "no table [constraints]"),
     (
         (ROUTES, 'routes = ["euler-lagrange"]'),
         "routes[1]",
@@ -105,7 +104,7 @@ FAULTS = [
         ("[parameters]", 'p = { role = "momentum", of = "x" }\n[parameters]'),
         "variables.p.role",
         "momentum",
-        "'p' is a momentum beside [constraints]",
+        "'p' is a momentum, and the state has velocities on these routes",
     ),
     ((CLAIMS, '[forces]\nq = "3"\n[claims]'), "forces.q", "q", "expected one of u, v, w"),
     ((CLAIMS, '[forces]\nx = "3"\n[claims]'), "forces.x", "x", "no such velocity as 'x'"),
@@ -173,16 +172,6 @@ def test_faults_are_shown_at_their_place(change, key, found, said):
     assert said in message
     assert f": {key}: " in message
     assert found is None or found == str(caught.value.parts["found"])
-
-
-@pytest.mark.parametrize("table", ["forces", "dissipation"])
-def test_what_acts_beside_a_lagrangian_goes_with_constraints(table):
-    """Routes of free motions would pass a force over, so it is refused beside them."""
-    text = {"forces": 'Omega = "-Omega"', "dissipation": 'R = "dot(Omega, Omega)"'}[table]
-    with pytest.raises(SpecError, match=f"no route uses the table .{table}.") as caught:
-        spec(RIGID_BODY, ("[claims]", f"[{table}]\n{text}\n[claims]"))
-    assert caught.value.parts["found"] == table
-    assert "nonholonomic" in str(caught.value)
 
 
 @pytest.mark.parametrize("route", ["clebsch", "cayley-klein", "kaluza-klein"])

@@ -80,10 +80,9 @@ def added_rates(setting: Setting) -> list[Element]:
     """What the forces add to the rate of each component of the state."""
     field, velocities = setting.field, setting.velocities
     found = _declared(setting, "momentum", "coordinate")
-    along = external_forces(setting, velocities) if velocities else ()
-    if setting.momenta:
-        pairs = zip(setting.momenta, along, setting.weights, strict=not along)
-        for name, force, weight in pairs:
+    along = external_forces(setting, velocities)
+    if setting.momenta and velocities:
+        for name, force, weight in zip(setting.momenta, along, setting.weights, strict=True):
             found[name] = found.get(name, field.zero) + force * weight
     elif any(along):
         moved = applied(field, mechanics(setting).inverse_mass, along)
