@@ -229,6 +229,55 @@ def test_a_claim_with_a_pole_on_all_of_its_set_is_not_decided():
 
 
 @pytest.mark.parametrize(
+    ("integral", "where", "text"),
+    [
+        ("q1/p1", "p1", "no value anywhere"),  # its rate is 1 as a rational function
+        ("p2/p1", "p1", "no point is found at which it has a value"),  # and of this one 0
+        ("q1/(p1*p2)", "p1*p2", "no value anywhere"),
+    ],
+)
+def test_a_claim_is_not_decided_where_its_rate_has_a_value_and_it_has_none(integral, where, text):
+    """The pole of a claim is cancelled in its rate, and has no value there all the same."""
+    with pytest.raises(UndecidedError, match=text):
+        claimed(FREE, integral, where)
+
+
+@pytest.mark.parametrize(("first", "verdict"), [("R - 2", PROVED), ("R + 2", REFUTED)])
+def test_each_value_that_a_relation_gives_a_parameter_counts(first, verdict):
+    """q1' = R p1/2 and q2' = p2: q1 p2 - q2 p1 is conserved at R = 2, and not at R = -2."""
+    text = FREE.replace("p1^2/2 + p2^2/2", "R*p1^2/4 + p2^2/2")
+    assert claimed(text, "q1*p2 - q2*p1", first).verdict is verdict
+    for both in ("R^2 - 4", "(2 + R)*(R - 2)", "(a - 1)*(R - 2)*(R + 2)", "a*R^2 - 4*a"):
+        found = claimed(text, "q1*p2 - q2*p1", both)
+        assert found.verdict is REFUTED
+        assert "not 0" not in found.method
+
+
+def test_a_set_with_an_interior_has_points():
+    """|p2| = p2 on half of the plane, where Newton's method has no slope to follow."""
+    assert claimed(FREE, "q1*(sqrt(p2^2) - p2)", "sqrt(p2^2) - p2").verdict is PROVED
+    assert claimed(FREE, "q1", "p1*(sqrt(p2^2) - p2)").verdict is REFUTED
+
+
+@pytest.mark.parametrize("domain", [["q1 > 1", "q1 < 0"], ["p1^2 + p2^2 < -1"], ["a + b < 0"]])
+def test_an_empty_domain_proves_nothing(domain):
+    """Anything is true where no state is; not even p1 is called conserved there."""
+    lines = "\n".join(f'c{n} = "{each}"' for n, each in enumerate(domain))
+    text = FREE.replace("[claims]", f"[domain]\n{lines}\n[claims]")
+    text = text.replace('{ claim = "INTEGRAL", where = [WHERE] }', '"p1"')
+    with pytest.raises(UndecidedError, match=r"no point is found in \[domain\]"):
+        prove(spec(text))
+
+
+def test_an_energy_without_values_proves_nothing():
+    """The root of -1 - q1^2 is not real at any state."""
+    text = FREE.replace("p1^2/2 + p2^2/2", "p1^2/2 + sqrt(-1 - q1^2)")
+    text = text.replace('{ claim = "INTEGRAL", where = [WHERE] }', '"p2"')
+    with pytest.raises(UndecidedError, match="at which the motion has a value"):
+        prove(spec(text))
+
+
+@pytest.mark.parametrize(
     ("where", "domain", "verdict"),
     [
         ("p1*q2", "q2 > 0", PROVED),

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache, partial
+from itertools import chain
 from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
@@ -42,6 +43,7 @@ from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
+from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
 from coadjoint.prove.reversibility import about_reversal
@@ -84,6 +86,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
     field = routes[0].setting.field
     field.region = _region(routes[0])
+    _check_domain(spec.name, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
         found = _examined(spec, statement, examine, field)
@@ -120,6 +123,22 @@ def _region(first: Equations) -> Region:
     """Where claims are looked at: the domain of the spec."""
     momenta = LegendreMap(first).momenta if LegendreMap.applies(first) else {}
     return region(first, momenta)
+
+
+def _check_domain(name: str, field: Field) -> None:
+    """Look for a point of the domain: on an empty one anything is true.
+
+    Raises:
+        UndecidedError: None is found at which the motion has a value.
+    """
+    points = Points(field, ())
+    if next(chain(points.near_defaults(), points), None) is None:
+        raise UndecidedError(
+            f"{name}: no point is found in [domain] at which the motion has a value. Expected real "
+            "points with the declared signs. Correct [domain], the energy or the forces, or give "
+            "defaults near which there are some.",
+            system=name,
+        )
 
 
 def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:

@@ -183,7 +183,7 @@ class Ideal:
         self._count, own = 0, self._between_parameters
         others = [each for each in self.relations if each not in own]
         found = list[Branch]()
-        for first in self._split(own, Branch()):
+        for first in tuple(self._split(own, Branch())):  # all before what follows is generic
             self._declared = first.rest
             start = Branch(first.solved, (), first.nonzero)
             found += self._split([*first.rest, *others], start)
