@@ -484,3 +484,31 @@ def test_a_pole_at_a_point_that_is_found_by_iteration_is_no_value():
     with pytest.raises(UndecidedError, match="has a value"):
         decide_zero([field["r"] / cosine], field, ideal)
     assert decide_zero([field["r"] - 1], field, ideal).verdict is REFUTED
+
+
+KNIFE = """
+title = "A knife edge"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+z = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+v = { role = "velocity", of = "y" }
+w = { role = "velocity", of = "z" }
+[lagrangian]
+l = "u^2/2 + v^2/2 + w^2/2"
+[constraints]
+edge = "u*sin(z) == v*cos(z)"
+[claims]
+conserved = ["w", "u"]
+"""
+
+
+def test_nothing_is_excluded_that_never_vanishes():
+    """The squares of a sine and a cosine add up to 1; where both are 0 there is no point at all."""
+    claims = prove(spec(KNIFE)).claims
+    assert not any("not 0" in claim.method for claim in claims if "edge = 0" in claim.method)
+    (refuted,) = [claim for claim in claims if claim.verdict is REFUTED]
+    assert "." in refuted.counterexample["u"]  # u = v cos(z)/sin(z) has no exact value there
+    assert refuted.method == "50-digit counter-example, where edge = 0"

@@ -169,8 +169,9 @@ class Ideal:
 
     def may_vanish(self, element: Element) -> bool:
         """Whether a polynomial in what moves may vanish, as far as we know, beside what does."""
-        moves = not self.field.reach(element) <= self.field.region.parameters
-        return moves and not self._signs.is_nonzero(element, self.excluded)
+        value = self.field.normal(element)  # cos^2 + sin^2 is 1
+        moves = not self.field.reach(value) <= self.field.region.parameters
+        return moves and not self._signs.is_nonzero(value, self.excluded)
 
     # -- branches of the zero set ---------------------------------------------------------
 
@@ -192,6 +193,8 @@ class Ideal:
     def _regular(self, branch: Branch) -> list[Branch]:
         """A branch with what must not vanish there; none if that vanishes on all of it."""
         rest, found = Ideal(self.field, branch.rest), list[Element]()
+        if rest.contains(self.field.one):  # an empty branch
+            return []
         for element in self.nonzero:
             try:
                 value = self.field.normal(self._on(branch, element))

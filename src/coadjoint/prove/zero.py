@@ -313,7 +313,8 @@ def _look(
             with mpmath.workdps(DIGITS):
                 value = _value(element, ring, point, branch)
             if value:
-                exact = ring.function_free(element) and not branch.rest
+                written = (element, *branch.solved.values())
+                exact = not branch.rest and all(map(ring.function_free, written))
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
                 shown = _shown(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)
