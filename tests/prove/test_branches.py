@@ -513,3 +513,11 @@ def test_nothing_is_excluded_that_never_vanishes():
     (refuted,) = [claim for claim in claims if claim.verdict is REFUTED]
     assert "." in refuted.counterexample["u"]  # u = v cos(z)/sin(z) has no exact value there
     assert refuted.method == "50-digit counter-example, where edge = 0"
+
+
+def test_a_power_of_what_is_excluded_is_not_named_again():
+    """Two constraints that agree where y (z - 1) = 0: y not 0 and z - 1 not 0 say it all."""
+    edges = 'first = "w == y*u"\nsecond = "z*w == y*u"'
+    text = KNIFE.replace('edge = "u*sin(z) == v*cos(z)"', edges)
+    (energy,) = [c for c in prove(spec(text)).claims if c.statement == "the energy is conserved"]
+    assert energy.method.endswith("of second = 0, y not 0, z - 1 not 0")

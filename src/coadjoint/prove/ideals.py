@@ -171,7 +171,8 @@ class Ideal:
         """Whether a polynomial in what moves may vanish, as far as we know, beside what does."""
         value = self.field.normal(element)  # cos^2 + sin^2 is 1
         moves = not self.field.reach(value) <= self.field.region.parameters
-        return moves and not self._signs.is_nonzero(value, self.excluded)
+        factors = list(self._all_factors(value)) or [value]
+        return moves and not all(self._signs.is_nonzero(each, self.excluded) for each in factors)
 
     # -- branches of the zero set ---------------------------------------------------------
 
