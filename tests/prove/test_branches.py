@@ -10,6 +10,7 @@ from coadjoint.algebra.linear import nullspace
 from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.prove import Verdict, prove
+from coadjoint.prove.certificate import failure_text
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
 from tests.specs import spec
@@ -521,3 +522,17 @@ def test_a_power_of_what_is_excluded_is_not_named_again():
     text = KNIFE.replace('edge = "u*sin(z) == v*cos(z)"', edges)
     (energy,) = [c for c in prove(spec(text)).claims if c.statement == "the energy is conserved"]
     assert energy.method.endswith("of second = 0, y not 0, z - 1 not 0")
+
+
+@pytest.mark.parametrize(
+    ("integral", "where", "leaves"),
+    [("p1", "q1 - p2", True), ("q1", "p1*p2", False), ("q1", "q2", True), ("p2", "p1*q1", True)],
+)
+def test_a_set_that_the_motion_leaves_is_named(integral, where, leaves):
+    """The momenta are conserved everywhere; where q1 = p2 is not, and the rate shown is its."""
+    found = claimed(FREE, integral, where)
+    assert found.verdict is REFUTED
+    assert found.method.endswith(": the motion leaves this set") is leaves
+    assert (
+        "the motion leaves this set: the rate of a relation is" in failure_text(found)
+    ) is leaves

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache, partial
 from itertools import chain
 from time import perf_counter
@@ -25,7 +26,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
 from coadjoint.prove.candidates import about_candidates, known_integrals
-from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
+from coadjoint.prove.certificate import LEAVES, Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints, keeps_energy
@@ -381,7 +382,19 @@ def _integral(first: Equations, claim: Integral) -> Decision:
     level = in_velocities(first, functions)
     kept = [rate for formula in claim.where for rate in _rates(first, formula)]
     where = Ideal(field, level, _vanishing(claim))
-    return decide_zero([*kept, *rates], field, where, parts)
+    return _conserved_on(where, kept, rates, parts)
+
+
+def _conserved_on(
+    where: Ideal, kept: Sequence[Element], rates: Sequence[Element], parts: Sequence[Element]
+) -> Decision:
+    """Whether rates vanish where relations hold, and so do those of the relations themselves."""
+    found = decide_zero([*kept, *rates], where.field, where, parts)
+    if kept and found.verdict is Verdict.REFUTED:
+        left = decide_zero(kept, where.field, where, parts)
+        if left.verdict is Verdict.REFUTED:
+            return replace(left, method=f"{left.method}: {LEAVES}")
+    return found
 
 
 def _statement(claim: Integral) -> str:
@@ -395,10 +408,10 @@ def _constrained_integral(motion: ConstrainedRates, claim: Integral) -> Decision
     names = _emitted(first)
     parts = first.setting.components(claim.formula, names)
     level = [g for f in claim.where for g in first.setting.components(f, names)]
-    rates = [motion.rate(part) for part in (*level, *parts)]
+    kept, rates = ([motion.rate(each) for each in functions] for functions in (level, parts))
     text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
     where = motion.where.also(list(map(motion.in_state, level)), text)
-    return decide_zero(rates, motion.field, where, list(map(motion.in_state, parts)))
+    return _conserved_on(where, kept, rates, list(map(motion.in_state, parts)))
 
 
 def _vanishing(claim: Integral) -> str:
