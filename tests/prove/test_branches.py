@@ -536,3 +536,16 @@ def test_a_set_that_the_motion_leaves_is_named(integral, where, leaves):
     assert (
         "the motion leaves this set: the rate of a relation is" in failure_text(found)
     ) is leaves
+
+
+#: (p1^2 - p2)^2 + p2^2 + 1, in a form that shows no sum of squares.
+EMPTY = "p1^4 - 2*p1^2*p2 + 2*p2^2 + 1"
+
+
+@pytest.mark.parametrize(("empty", "other"), [(EMPTY, "p2"), (EMPTY.replace("p1", "q2"), "p2")])
+def test_a_branch_without_points_hides_no_refutation(empty, other):
+    """q1 changes where p2 = 0; whether the other factor comes first decides nothing."""
+    for text in (f"({empty})*{other}", f"{other}*({empty})"):
+        assert claimed(FREE, "q1", text).verdict is REFUTED
+        with pytest.raises(UndecidedError, match="no point is found"):
+            claimed(FREE, "q2*p1", text)

@@ -391,9 +391,10 @@ def _conserved_on(
     """Whether rates vanish where relations hold, and so do those of the relations themselves."""
     found = decide_zero([*kept, *rates], where.field, where, parts)
     if kept and found.verdict is Verdict.REFUTED:
-        left = decide_zero(kept, where.field, where, parts)
-        if left.verdict is Verdict.REFUTED:
-            return replace(left, method=f"{left.method}: {LEAVES}")
+        with suppress(UndecidedError):  # of a branch without points
+            left = decide_zero(kept, where.field, where, parts)
+            if left.verdict is Verdict.REFUTED:
+                return replace(left, method=f"{left.method}: {LEAVES}")
     return found
 
 

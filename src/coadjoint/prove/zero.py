@@ -211,6 +211,7 @@ def _decide_on_branches(
 ) -> Decision:
     """Whether every element is zero on each branch."""
     ring, counts, split = where.field, list[int](), 0
+    empty: UndecidedError | None = None  # unless another branch refutes
     for branch in where.branches:
         with suppress(ZeroDivisionError):  # a pole on all of the branch
             named = (*where.given, *defined)
@@ -218,10 +219,18 @@ def _decide_on_branches(
             split += 1
             rest = Ideal(ring, branch.rest)
             left = [value for value in values[: len(elements)] if not rest.contains(value)]
-            found = _look(left, ring, branch, where.scope, named) if left else None
+            if not left:
+                continue
+            try:
+                found = _look(left, ring, branch, where.scope, named)
+            except UndecidedError as error:
+                empty = error
+                continue
             if isinstance(found, Decision):
                 return found
-            counts += [] if found is None else [found]
+            counts.append(found)
+    if empty is not None:
+        raise empty
     if not where.branches:
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
     if not split:
