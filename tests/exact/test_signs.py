@@ -99,3 +99,28 @@ def test_points_of_a_domain_keep_declared_signs():
     assert point["m"] > 0
     assert point["q"] > point["m"] + 50
     assert mpmath.sqrt(mpmath.mpf(float(point["q"] - point["m"] - 50))) > 0
+
+
+@pytest.mark.parametrize(
+    ("condition", "strict", "text", "expected"),
+    [
+        ("q - 3", True, "q - 2", (1, 1)),
+        ("q - 3", True, "q - 4", (0, 0)),
+        ("q - 3", True, "4 - 2*q", (-1, -1)),
+        ("q - 3", True, "q**2 - 4", (1, 1)),
+        ("q - 3", False, "q - 3", (0, 1)),
+        ("q - 3", False, "q - 2", (1, 1)),
+        ("-1 - q", True, "q - 2", (-1, -1)),
+        ("1 - q**2 - v**2", True, "2 - q**2 - v**2", (1, 1)),
+        ("1 - q**2 - v**2", True, "2 - q**2", (1, 1)),
+        ("1 - q**2 - v**2", True, "(1 - 2*q**2)", (0, 0)),
+        ("q - m", True, "q + m*v**2", (1, 1)),  # (q - m) + m + m*v^2
+        ("q - m", True, "q - 2*m", (0, 0)),
+    ],
+)
+def test_what_exceeds_a_condition_has_its_sign(condition, strict, text, expected):
+    """A multiple of what is declared positive, and more of the same sign."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    field.assume([Condition(written(field, condition), strict)])
+    element = written(field, text)
+    assert (sign(field, element), sign(field, element, strict=False)) == expected

@@ -28,7 +28,7 @@ far = "r > 1"
 conserved = ["energy"]
 """
 
-EVERYWHERE = "wherever the Lagrangian is defined and the declared signs hold"
+EVERYWHERE = "in all of [domain], wherever the Lagrangian is defined and the declared signs hold"
 
 
 def invertible(lagrangian, *changes):
@@ -95,6 +95,12 @@ def test_the_sign_needs_the_declared_domain():
     """Without r > 1 the mass r - 1 has no sign."""
     found = invertible("m*(v^2 + (r - 1)*w^2)/2", ('[domain]\nfar = "r > 1"\n', ""))
     assert found.statement.endswith("almost everywhere")
+
+
+def test_a_sign_without_a_domain_names_none():
+    """Masses m and 2 m are positive everywhere; no [domain] is declared that could be meant."""
+    found = invertible("m*(v^2 + 2*w^2)/2", ('[domain]\nfar = "r > 1"\n', ""))
+    assert found.statement.endswith("is invertible " + EVERYWHERE.partition(", ")[2])
 
 
 @pytest.mark.parametrize(

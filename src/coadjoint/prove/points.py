@@ -349,6 +349,8 @@ class Points:
             return [target - self.value(each, whole) for each, target in wanted]
 
         here = values(free)
+        if not any(here):  # as on all of a half space where sqrt(x^2) = x
+            return dict(free), mpmath.mpf(0)
         width = mpmath.mpf(10) ** -20 * min(max(before, ARRIVED**2), 1)
         slopes = mpmath.matrix(len(here), len(self.names))
         for column, name in enumerate(self.names):
