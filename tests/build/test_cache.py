@@ -231,9 +231,12 @@ print(*(each.message for each in said))
 
 
 def test_where_no_file_can_be_written_numpy_stands_in(folder):
-    """A first call under a file size limit of zero: the right numbers, and why they come slowly."""
+    """A first call under a file size limit of zero: the right numbers, and why they come slowly.
+
+    Python writes no bytecode, which it would leave torn for whoever comes next.
+    """
     found = subprocess.run(
-        [sys.executable, "-c", NOWHERE], capture_output=True, text=True, check=True
+        [sys.executable, "-B", "-c", NOWHERE], capture_output=True, text=True, check=True
     ).stdout.splitlines()
     assert found[0] == "[-1.5, 2.25, -1.0]"  # (1/I3 - 1/I2) Pi2 Pi3 and cyclic
     assert "cannot be compiled here" in found[1]
