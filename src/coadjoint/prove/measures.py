@@ -300,7 +300,8 @@ def _refusal(
         return None
     found, rank = contradiction
     text = f"what it asks for along {', '.join(each.name for each in found)} contradicts itself"
-    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {samples.prime}"
+    count = f"{rank + 1} conditions" if rank else "1 condition"
+    method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
     if _is_certain(motion, measure, samples, found, rank):
         proof = Decision(Verdict.PROVED, method)
         return f"{none}: {text}", "measure", lambda: proof
