@@ -85,6 +85,17 @@ def test_a_certain_sign_holds_at_points(text):
     assert seen > 10
 
 
+def test_the_root_of_a_square_keeps_its_sign():
+    """sqrt((m + q (1 + cos v))^2) is not m + q (1 + cos v), which is -1 at m = 1, q = -1, v = 0."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    inner = written(field, "m + q*(1 + cos(v))")
+    root = field.call("sqrt", inner**2)
+    assert not field.is_zero(root - inner)
+    assert not field.is_zero(root + inner)
+    known = written(field, "2*m + m*cos(v)")
+    assert field.is_zero(field.call("sqrt", known**2) - known)
+
+
 def test_conditions_are_used_as_they_stand():
     """The condition m > k makes m - k and its multiples positive, m >= k but for zeros."""
     for strict in (True, False):
