@@ -227,6 +227,21 @@ def test_a_refusal_of_the_system_is_no_fault_of_ours(helper):
     assert caught.value.exit_status == 2
 
 
+def test_a_limit_of_file_sizes_tears_no_bytecode(helper, tmp_path):
+    """Python caches a module that it loads in a file, whole or not; a child then caches none."""
+    script = (
+        "import resource, signal, coadjoint\n"
+        "from coadjoint import sandbox\n"
+        f"sandbox._BOOT = {sandbox._BOOT!r}\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
+        f"print(sandbox.run_bounded({helper + 'sleep'!r}, 0, seconds=60, memory=2**31))\n"
+    )
+    done = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert not list(tmp_path.rglob("*.pyc"))
+
+
 def test_no_place_for_temporary_files_is_said(helper, monkeypatch):
     """Where not even the parent can write, the message says which variable helps."""
 

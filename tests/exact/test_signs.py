@@ -48,6 +48,11 @@ CASES = [
     ("q**2 + 2*q*v + v**2", 0, 1),
     ("k + m*(q**2 + v**2 - 2*q*v*cos(m))", 1, 1),
     ("2*q*v - q**2 - v**2 - exp(q)", -1, -1),
+    ("m + q*(1 + cos(v))", 0, 0),
+    ("m + k*(1 + cos(v))", 1, 1),
+    ("m + q**3*v*(1 - sin(v))", 0, 0),
+    ("m + q**2 + v**2 + 3*q*v*(1 + cos(m))", 0, 0),
+    ("m + q**2 + v**2 + q*v*(1 + cos(m))", 1, 1),
     ("m**2 - m*k + k**2 - 2*m*k", 0, 0),
     ("m**4 + q**4 - 2*m**2*q**2 + k", 1, 1),
 ]
@@ -78,6 +83,17 @@ def test_a_certain_sign_holds_at_points(text):
         seen += 1
         assert found == sign(field, element)
     assert seen > 10
+
+
+def test_the_root_of_a_square_keeps_its_sign():
+    """sqrt((m + q (1 + cos v))^2) is not m + q (1 + cos v), which is -1 at m = 1, q = -1, v = 0."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    inner = written(field, "m + q*(1 + cos(v))")
+    root = field.call("sqrt", inner**2)
+    assert not field.is_zero(root - inner)
+    assert not field.is_zero(root + inner)
+    known = written(field, "2*m + m*cos(v)")
+    assert field.is_zero(field.call("sqrt", known**2) - known)
 
 
 def test_conditions_are_used_as_they_stand():

@@ -439,6 +439,21 @@ def test_positive_factors_are_dropped_from_regions_alone():
     assert decide_zero([x], field, Ideal(field, [x * y], "x*y = 0")).verdict is REFUTED
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_bound_gives_no_sign_where_a_symbol_is_not_measured_from_it(side):
+    """The zero of q + exp(q) near -0.567 is inside q > -5, that of q - exp(-q) inside q < 5."""
+    field = Field(["q", "x"], slots=2)
+    q, x = field["q"], field["x"]
+    factor = q + side * field.call("exp", side * q)
+    field.region = Region(conditions=(Condition(side * q + 5, strict=True),))
+    decision = decide_zero([x], field, Ideal(field, [x * factor], "x*(q + ...) = 0"))
+    assert decision.verdict is REFUTED
+    assert float(Fraction(decision.point["q"])) == pytest.approx(-0.5671432904 * side)
+    field.region = Region(conditions=(Condition(q - 1, strict=True),))
+    positive = x * (q + field.call("exp", side * q))
+    assert decide_zero([x], field, Ideal(field, [positive], "x*(q + ...) = 0")).verdict is PROVED
+
+
 def test_undecided_claims_name_the_system_and_the_claim():
     """The message says which claim, what is wrong with it and what to do; its status is 1."""
     with pytest.raises(ClaimError) as caught:

@@ -55,6 +55,12 @@ def test_a_hidden_zero_is_no_determinant(lagrangian):
         derive(spec(MOTION, ("LAGRANGIAN", lagrangian)))
 
 
+def test_a_coefficient_without_a_sign_may_make_it_singular():
+    """The mass 2 + q (1 + cos q) is 2 at q = 0 and 2 - 4 pi at q = -2 pi: it vanishes between."""
+    found = invertible("((2 + q*(1 + cos(q)))*v^2 + w^2)/2")
+    assert found.statement.endswith("is invertible almost everywhere")
+
+
 def test_what_may_be_zero_is_refused():
     """sqrt(q + 1 + 2 sqrt(q)) is 1 + sqrt(q), which no relation says: no point, no proof."""
     hidden = "(v^2 + (sqrt(q + 1 + 2*sqrt(q)) - 1 - sqrt(q))*w^2)/2"

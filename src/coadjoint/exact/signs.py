@@ -184,14 +184,22 @@ class Signs:
     def _bound(self, p: PolyElement, side: int) -> PolyElement:
         """A polynomial with sines and cosines at their worst: ``2 + cos`` is at least ``2 - 1``.
 
-        It bounds the given one from one side where all other factors of its terms are positive.
+        It bounds the given one from one side where what they multiply is not negative. Else that
+        has no sign, and what a pair makes up for is its size: ``a*b*(1 + cos)`` may be ``2*a*b``.
         """
         circular = [n for n, name in enumerate(self.field.generators) if self._is_circular(name)]
-        terms: dict[tuple[int, ...], Any] = {}
+        fixed, swing = dict[tuple[int, ...], Any](), dict[tuple[int, ...], Any]()
         for exponents, number in p.terms():
             rest = tuple(0 if n in circular else e for n, e in enumerate(exponents))
-            worst = number if rest == exponents else side * abs(number)
-            terms[rest] = terms.get(rest, 0) + worst
+            if rest == exponents:
+                fixed[rest] = number
+            else:
+                swing[rest] = swing.get(rest, 0) + abs(number)
+        terms = dict(fixed)
+        for rest, most in swing.items():
+            signed = all(self.known(n) for n, power in enumerate(rest) if power % 2)
+            own = fixed.get(rest, 0)
+            terms[rest] = own + side * most if signed else side * (abs(own) + most)
         return p.ring.from_dict({rest: number for rest, number in terms.items() if number})
 
     def _is_circular(self, name: str) -> bool:

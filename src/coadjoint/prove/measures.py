@@ -304,7 +304,8 @@ def _refusal(
     names = [each.name for each in found if each.name != REST]
     places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(found))
     text = f"what it asks for {' and '.join(places)} contradicts itself"
-    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {samples.prime}"
+    count = f"{rank + 1} conditions" if rank else "1 condition"
+    method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
     if _is_certain(motion, measure, samples, found, rank):
         proof = Decision(Verdict.PROVED, method)
         return f"{none}: {text}", "measure", lambda: proof
