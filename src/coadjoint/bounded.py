@@ -9,7 +9,9 @@ Read next: `coadjoint.sandbox`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from os import PathLike, fspath
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coadjoint.budget import allowed_seconds
@@ -69,7 +71,7 @@ def derive_bounded(
         ResourceError: The child ran out of time or memory.
     """
     argument = {"path": fspath(path), "route": route}
-    return _run("coadjoint.cli.show:document_record", argument, seconds, memory)
+    return _run("coadjoint.bounded:document_record", argument, seconds, memory)
 
 
 def prove_bounded(
@@ -90,7 +92,7 @@ def prove_bounded(
         CoadjointError: What `coadjoint.prove` raises.
         ResourceError: The child ran out of time or memory.
     """
-    return _run("coadjoint.cli.prove:certificate_record", {"path": fspath(path)}, seconds, memory)
+    return _run("coadjoint.bounded:certificate_record", {"path": fspath(path)}, seconds, memory)
 
 
 def _run(
@@ -171,4 +173,35 @@ def _declared(spec: Spec) -> dict[str, Any]:
         "state": [name for each in spec.state for name in each.components],
         "parameters": [name for each in spec.parameters for name in each.components],
         "sha256": spec.sha256,
+    }
+
+
+def document_record(argument: Mapping[str, str | None]) -> dict[str, Any]:
+    """A derivation as plain JSON values; runs in a bounded child."""
+    from coadjoint.derive import derive
+    from coadjoint.derive.document import document
+    from coadjoint.spec import read_spec
+
+    report_progress("derive", 0, 1)
+    equations = derive(read_spec(Path(str(argument["path"]))), argument["route"])
+    return asdict(document(equations))
+
+
+def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
+    """The certificate of a spec as JSON values, times included; runs in a bounded child."""
+    from coadjoint.prove import prove
+    from coadjoint.prove.certificate import failure_text
+    from coadjoint.spec import read_spec
+
+    report_progress("prove", 0, 1)
+    certificate = prove(read_spec(Path(argument["path"])))
+    entries = {
+        name: [entry.as_record() | {"seconds": entry.seconds} for entry in found]
+        for name, found in (("claims", certificate.claims), ("findings", certificate.findings))
+    }
+    return {
+        "system": certificate.system,
+        "holds": certificate.holds,
+        "failures": [failure_text(claim) for claim in certificate.failures],
+        **entries,
     }

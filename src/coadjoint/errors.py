@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import os
+import resource
 from collections.abc import Mapping
 from typing import Any, ClassVar, Final
 
@@ -155,18 +156,37 @@ _REFUSALS: Final = {
 }
 
 
-def system_error(error: OSError) -> OutputError | None:
+#: Bytes that Python writes into each folder when it looks for one for temporary files.
+_TRIAL: Final = 4
+
+
+def system_error(error: OSError | ImportError) -> OutputError | None:
     """A refusal of the operating system as an error that says what it is; None for other faults."""
-    help_with = _REFUSALS.get(error.errno or 0, "")
-    reason = error.strerror or str(error)
-    if error.errno == errno.ENOENT and "temporary directory" in str(error):
+    number, help_with = _number(error), remedy_for(error)
+    reason = getattr(error, "strerror", None) or str(error)
+    if number == errno.ENOENT and "temporary directory" in str(error):
         reason, help_with = str(error), "Set TMPDIR to a folder that can be written."
-    if error.errno == errno.ENOENT and not _has_working_folder():
+        if 0 <= resource.getrlimit(resource.RLIMIT_FSIZE)[0] < _TRIAL:
+            reason, help_with = os.strerror(errno.EFBIG), _REFUSALS[errno.EFBIG]
+    if number == errno.ENOENT and not _has_working_folder():
         reason, help_with = "the working folder is gone", "Go to one that is there."
     if not help_with:
         return None
-    place = f"{os.fsdecode(error.filename)}: " if isinstance(error.filename, str | bytes) else ""
+    name = getattr(error, "filename", None)
+    place = f"{os.fsdecode(name)}: " if isinstance(name, str | bytes) else ""
     return OutputError(f"{place}{reason}. {help_with}", path=place.removesuffix(": "), found=reason)
+
+
+def remedy_for(error: OSError | ImportError) -> str:
+    """What helps against a refusal of the operating system; "" for other faults."""
+    return _REFUSALS.get(_number(error), "")
+
+
+def _number(error: OSError | ImportError) -> int:
+    """Which refusal it is; of a library that did not load, the loader tells it in words alone."""
+    if isinstance(error, OSError):
+        return error.errno or 0
+    return next((number for number in _REFUSALS if os.strerror(number) in str(error)), 0)
 
 
 def _has_working_folder() -> bool:

@@ -166,7 +166,7 @@ def _start() -> tuple[IO[bytes], subprocess.Popen[str]]:
     errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed by the caller)
     try:
         process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _BOOT, _ROOT, str(os.getpid())],
+            [sys.executable, "-I", *_bytecode(), "-c", _BOOT, _ROOT, str(os.getpid())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=errors,
@@ -179,6 +179,11 @@ def _start() -> tuple[IO[bytes], subprocess.Popen[str]]:
         errors.close()
         raise
     return errors, process
+
+
+def _bytecode() -> list[str]:
+    """Options of Python: under a limit of file sizes it would leave its bytecode torn for ever."""
+    return [] if resource.getrlimit(resource.RLIMIT_FSIZE)[0] == resource.RLIM_INFINITY else ["-B"]
 
 
 def _converse(
@@ -358,7 +363,7 @@ def _described(error: Exception, request: dict[str, Any]) -> CoadjointError:
         memory: int = request["memory"]
         message = f"more than {memory // 2**20} MiB of memory were needed. Simplify the spec."
         return ResourceError(f"{request['subject']}: {message}", limit=memory)
-    refused = system_error(error) if isinstance(error, OSError) else None
+    refused = system_error(error) if isinstance(error, OSError | ImportError) else None
     if refused is not None:
         return refused
     message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."

@@ -32,7 +32,7 @@ _SPACE = re.compile(
 _EXACT = re.compile(r"a space of dimension (\d+) with constants, all polynomials in .+")
 _FOUND = re.compile(
     r"a space of dimension (\d+) with constants( at the most)?, (\d+) of it "
-    r"(?:polynomials in .+|constants); (?:all|\d+) are functions of .+"
+    r"(?:polynomials in .+|constants); all are functions of .+"
 )
 #: What says that nothing was counted, and what a claim about one function says.
 _SILENT = re.compile(

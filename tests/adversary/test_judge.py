@@ -281,7 +281,7 @@ SKATE = (
     claim("the energy is conserved", "conserved"),
 )
 IN_V = "2 in v1, v2"
-SOME = "polynomials in v2; 2 are functions of v2"
+SOME = "polynomials in v2; all are functions of v2 and of 1 more of them"
 WITH_Q = "2 in v1, v2 and <= 0 in q1"
 
 
@@ -303,7 +303,7 @@ def counted(statement, kind="integrals"):
         (f"integrals of degree <= {IN_V}: none but constants", True),
         ("integrals of degree <= 0 in v1: none but constants", False),
         (f"{SPACE.format(IN_V, 3)}, 3 of it polynomials in v2; all are functions of v2", False),
-        (f"{SPACE.format(IN_V, 4)}, 3 of it polynomials in v2; 3 are functions of v2", True),
+        (f"{SPACE.format(IN_V, 4)}, 3 of it polynomials in v2; all are functions of v2", True),
         (f"{SPACE.format(IN_V, 4)} at the most, 3 of it {SOME}", False),
         (f"{SPACE.format(IN_V, 2)} at the most, 2 of it {SOME}", True),
         (f"{SPACE.format(IN_V, 5)} at the most, 4 of it {SOME}", True),

@@ -19,6 +19,11 @@ def folder(monkeypatch, tmp_path):
     return path
 
 
+def named(word):
+    """A key as runs make them, of one word."""
+    return hashlib.sha256(word.encode()).hexdigest()
+
+
 def age(path, seconds):
     """Make a file, or a folder with its files, older."""
     for each in (*path.rglob("*"), path):
@@ -28,8 +33,9 @@ def age(path, seconds):
 
 def filled(folder):
     """Three objects, the first of them the oldest."""
-    for n, key in enumerate(("first", "second", "third")):
-        path = store(key, key.encode() * 4000)  # four pages or more
+    for n, word in enumerate(("first", "second", "third")):
+        key = named(word)
+        path = store(key, word.encode() * 4000)  # four pages or more
         for each in (path, path.parent / key):
             age(each, 3000 - 1000 * n)
     return folder
@@ -39,12 +45,12 @@ def test_what_was_not_used_for_longest_goes_first(folder):
     """Within the bound nothing goes; beyond it the oldest, until the rest fits."""
     filled(folder)
     evict(folder)
-    assert all(fetch(key) for key in ("first", "second", "third"))
+    assert all(fetch(named(word)) for word in ("first", "second", "third"))
     filled(folder)
     evict(folder, 14 * PAGE)
-    assert fetch("first") is None
-    assert fetch("second")
-    assert fetch("third")
+    assert fetch(named("first")) is None
+    assert fetch(named("second"))
+    assert fetch(named("third"))
     evict(folder, 0)
     assert not [path for path in (folder / "kernels").iterdir() if path.is_file()]
 
@@ -52,35 +58,52 @@ def test_what_was_not_used_for_longest_goes_first(folder):
 def test_what_is_used_stays(folder):
     """Fetching an object makes it young."""
     filled(folder)
-    fetch("first")
+    fetch(named("first"))
     evict(folder, 10 * PAGE)
-    assert fetch("first")
-    assert fetch("second") is None
+    assert fetch(named("first"))
+    assert fetch(named("second")) is None
 
 
 def test_a_store_keeps_the_bound(folder, monkeypatch):
     """Each new object may drive out old ones."""
     monkeypatch.setattr("coadjoint.build.cache.evict", lambda cache: evict(cache, 12 * PAGE))
     for n in range(8):
-        path = store(f"key{n}", bytes([n]) * (4 * PAGE))
-        for each in (path, path.parent / f"key{n}"):
+        path = store(named(f"key{n}"), bytes([n]) * (4 * PAGE))
+        for each in (path, path.parent / named(f"key{n}")):
             age(each, 100 - n)
     total = sum(path.stat().st_size for path in folder.rglob("*.so"))
     assert 4 * PAGE <= total <= 12 * PAGE
-    assert fetch("key7")
-    assert fetch("key0") is None
+    assert fetch(named("key7"))
+    assert fetch(named("key0")) is None
 
 
 def test_systems_go_whole_and_not_while_they_may_be_read(folder):
     """A system of one's own stays for a day, then goes with all its files."""
-    for name, seconds in (("young", 0), ("old", 2 * IN_USE)):
-        system = folder / "systems" / name / "body"
+    young, old = (folder / "systems" / named(word)[:16] for word in ("young", "old"))
+    for place, seconds in ((young, 0), (old, 2 * IN_USE)):
+        system = place / "body"
         system.mkdir(parents=True)
         (system / "kernel.c").write_text("x" * 20_000)
-        age(folder / "systems" / name, seconds)
+        age(place, seconds)
     evict(folder, PAGE)
-    assert not (folder / "systems" / "old").exists()
-    assert (folder / "systems" / "young" / "body" / "kernel.c").is_file()
+    assert not old.exists()
+    assert (young / "body" / "kernel.c").is_file()
+
+
+def test_what_no_run_made_stays(folder):
+    """Where a cache is put into a folder with files of somebody, these neither count nor go."""
+    filled(folder)
+    own = [folder / each for each in ("kernels/notes.txt", "systems/mine/data", "verified/a.json")]
+    for path in own:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(bytes(20 * PAGE))
+        age(path, 2 * IN_USE)
+    evict(folder, 14 * PAGE)
+    assert fetch(named("third"))
+    evict(folder, 0)
+    assert fetch(named("third")) is None
+    assert all(path.is_file() for path in own)
+    assert find_problems(folder) == []
 
 
 def test_a_whole_cache_has_no_problem(folder):
@@ -97,26 +120,28 @@ def test_every_state_is_told(folder, monkeypatch):
     kernels = folder / "kernels"
     damaged = kernels / f"{hashlib.sha256(b'one').hexdigest()}.so"
     damaged.write_bytes(b"another")
-    (kernels / "0123").mkdir()
+    (kernels / named("key")).mkdir()
     litter = folder / "work" / "coadjoint-work-0123"
     litter.mkdir()
     monkeypatch.setattr("coadjoint.build.upkeep.CACHE_BYTES", PAGE)
     found = "\n".join(cache_problems())
     assert f"{damaged} is damaged" in found
-    assert f"{kernels / '0123'} is not a file" in found
+    assert f"{kernels / named('key')} is not a file" in found
     assert f"{litter} was left by a run that was killed" in found
     assert "more than its bound" in found
     assert len(found.splitlines()) == 4
     assert litter.is_dir()  # nothing was changed
 
 
-def test_a_cache_that_is_refused_is_told(folder, monkeypatch):
-    """Others may write, or there is no home at all."""
-    folder.mkdir()
+def test_a_cache_that_is_refused_does_not_heal(folder, monkeypatch):
+    """Others may write, or there is no home at all: nothing that would be mended by itself."""
+    filled(folder)
+    (folder / "kernels" / named("key")).mkdir()
+    assert len(cache_problems()) == 1
     folder.chmod(0o777)
-    assert "others may write" in cache_problems()[0]
+    assert cache_problems() == []
     monkeypatch.setattr("coadjoint.build.cache.chosen_folder", lambda: None)
-    assert "no home folder" in cache_problems()[0]
+    assert cache_problems() == []
 
 
 def test_the_bound_is_that_of_the_limits(folder):

@@ -19,7 +19,8 @@ from coadjoint.limits import MESSAGE_ROWS
 from coadjoint.resources import systems_folder
 from tests.specs import RIGID_BODY
 
-COMMAND = (sys.executable, "-P", "-m", "coadjoint.cli")
+#: Without bytecode, which Python leaves torn where a limit of file sizes cuts it.
+COMMAND = (sys.executable, "-B", "-P", "-m", "coadjoint.cli")
 #: What a terminal would take for a command: a window title, a colour, a cursor, a turned text.
 HOSTILE = "\x1b]0;owned\x07 \x1b[31m \x9b2J \u202e \r"
 ESCAPED = r"\u001b]0;owned\u0007 \u001b[31m \u009b2J \u202e \r"
@@ -76,8 +77,32 @@ def test_a_limit_of_file_sizes_is_said(folder):
     )
     assert done.returncode == 2
     assert "File too large" in done.stderr
+    assert "ulimit -f" in done.stderr
     assert "fault of coadjoint" not in done.stderr
     assert not list(folder.glob("generated/**/kernel.*"))
+
+
+@pytest.mark.parametrize("words", [("regenerate",), ("prove", "derivations/body.toml"), ("list",)])
+@pytest.mark.parametrize(
+    ("kind", "most", "remedy"),
+    [
+        (resource.RLIMIT_FSIZE, 0, "ulimit -f"),
+        (resource.RLIMIT_NOFILE, 8, "ulimit -n"),
+        (resource.RLIMIT_NOFILE, 12, "ulimit -n"),
+    ],
+)
+def test_a_limit_of_the_session_is_named_with_its_remedy(folder, words, kind, most, remedy):
+    """Wherever it is met, in a library that loads and in a compiler that starts, too."""
+    (folder / "derivations").mkdir()
+    (folder / "derivations" / "body.toml").write_text(RIGID_BODY)
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(kind, (most, most))
+
+    done = subprocess.run([*COMMAND, *words], capture_output=True, text=True, preexec_fn=limit)
+    assert done.returncode == 0 or (done.returncode == 2 and remedy in done.stderr), done.stderr
+    assert kind == resource.RLIMIT_NOFILE or done.returncode == 2
 
 
 def test_a_folder_that_is_gone_is_said(tmp_path):
@@ -97,6 +122,11 @@ def test_faults_of_ours_stay_faults_of_ours():
     refused = system_error(OSError(errno.ENOSPC, "No space left on device", "/a/file"))
     assert str(refused) == "/a/file: No space left on device. Free some space."
     assert refused.exit_status == 2
+    assert system_error(ImportError("No module named 'numpi'")) is None
+    unloaded = system_error(
+        ImportError("x.so: cannot open shared object file: Too many open files")
+    )
+    assert str(unloaded).endswith("Too many open files. Raise the limit of open files (ulimit -n).")
 
 
 # -- text of specs --------------------------------------------------------------------------------

@@ -48,6 +48,11 @@ CASES = [
     ("q**2 + 2*q*v + v**2", 0, 1),
     ("k + m*(q**2 + v**2 - 2*q*v*cos(m))", 1, 1),
     ("2*q*v - q**2 - v**2 - exp(q)", -1, -1),
+    ("m + q*(1 + cos(v))", 0, 0),
+    ("m + k*(1 + cos(v))", 1, 1),
+    ("m + q**3*v*(1 - sin(v))", 0, 0),
+    ("m + q**2 + v**2 + 3*q*v*(1 + cos(m))", 0, 0),
+    ("m + q**2 + v**2 + q*v*(1 + cos(m))", 1, 1),
     ("m**2 - m*k + k**2 - 2*m*k", 0, 0),
     ("m**4 + q**4 - 2*m**2*q**2 + k", 1, 1),
 ]
@@ -80,6 +85,17 @@ def test_a_certain_sign_holds_at_points(text):
     assert seen > 10
 
 
+def test_the_root_of_a_square_keeps_its_sign():
+    """sqrt((m + q (1 + cos v))^2) is not m + q (1 + cos v), which is -1 at m = 1, q = -1, v = 0."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    inner = written(field, "m + q*(1 + cos(v))")
+    root = field.call("sqrt", inner**2)
+    assert not field.is_zero(root - inner)
+    assert not field.is_zero(root + inner)
+    known = written(field, "2*m + m*cos(v)")
+    assert field.is_zero(field.call("sqrt", known**2) - known)
+
+
 def test_conditions_are_used_as_they_stand():
     """The condition m > k makes m - k and its multiples positive, m >= k but for zeros."""
     for strict in (True, False):
@@ -99,3 +115,28 @@ def test_points_of_a_domain_keep_declared_signs():
     assert point["m"] > 0
     assert point["q"] > point["m"] + 50
     assert mpmath.sqrt(mpmath.mpf(float(point["q"] - point["m"] - 50))) > 0
+
+
+@pytest.mark.parametrize(
+    ("condition", "strict", "text", "expected"),
+    [
+        ("q - 3", True, "q - 2", (1, 1)),
+        ("q - 3", True, "q - 4", (0, 0)),
+        ("q - 3", True, "4 - 2*q", (-1, -1)),
+        ("q - 3", True, "q**2 - 4", (1, 1)),
+        ("q - 3", False, "q - 3", (0, 1)),
+        ("q - 3", False, "q - 2", (1, 1)),
+        ("-1 - q", True, "q - 2", (-1, -1)),
+        ("1 - q**2 - v**2", True, "2 - q**2 - v**2", (1, 1)),
+        ("1 - q**2 - v**2", True, "2 - q**2", (1, 1)),
+        ("1 - q**2 - v**2", True, "(1 - 2*q**2)", (0, 0)),
+        ("q - m", True, "q + m*v**2", (1, 1)),  # (q - m) + m + m*v^2
+        ("q - m", True, "q - 2*m", (0, 0)),
+    ],
+)
+def test_what_exceeds_a_condition_has_its_sign(condition, strict, text, expected):
+    """A multiple of what is declared positive, and more of the same sign."""
+    field = Field(NAMES, slots=4, positive=["m", "k"])
+    field.assume([Condition(written(field, condition), strict)])
+    element = written(field, text)
+    assert (sign(field, element), sign(field, element, strict=False)) == expected

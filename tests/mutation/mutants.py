@@ -93,8 +93,8 @@ CHECKS = (
     ),
     Mutant(
         LOWER + "check.py",
-        "zip(program.outputs, found, expected, strict=True):\n        if not",
-        "list(zip(program.outputs, found, expected, strict=True))[:1]:\n        if not",
+        "enumerate(zip(program.outputs, found, expected, strict=True)):\n        if not",
+        "list(enumerate(zip(program.outputs, found, expected, strict=True)))[:1]:\n        if not",
         tests=("tests/lower/test_lowering.py", "-k", "one_changed_node"),
     ),
     Mutant(
@@ -349,8 +349,8 @@ MUTANTS = (
     Mutant(PROVE + "zero.py", "if not rest.contains(value)]", "if rest.contains(value)]"),
     Mutant(
         PROVE + "zero.py",
-        "[ring.substitute(element, branch.solved) for element in elements]",
-        "list(elements)",
+        "[ring.substitute(each, branch.solved) for each in (*elements, *named)]",
+        "[*elements, *named]",
     ),
     Mutant(
         PROVE + "zero.py",

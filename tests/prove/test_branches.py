@@ -10,6 +10,7 @@ from coadjoint.algebra.linear import nullspace
 from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.prove import Verdict, prove
+from coadjoint.prove.certificate import failure_text
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
 from tests.specs import spec
@@ -232,6 +233,55 @@ def test_a_claim_with_a_pole_on_all_of_its_set_is_not_decided():
 
 
 @pytest.mark.parametrize(
+    ("integral", "where", "text"),
+    [
+        ("q1/p1", "p1", "no value anywhere"),  # its rate is 1 as a rational function
+        ("p2/p1", "p1", "no point is found at which it has a value"),  # and of this one 0
+        ("q1/(p1*p2)", "p1*p2", "no value anywhere"),
+    ],
+)
+def test_a_claim_is_not_decided_where_its_rate_has_a_value_and_it_has_none(integral, where, text):
+    """The pole of a claim is cancelled in its rate, and has no value there all the same."""
+    with pytest.raises(UndecidedError, match=text):
+        claimed(FREE, integral, where)
+
+
+@pytest.mark.parametrize(("first", "verdict"), [("R - 2", PROVED), ("R + 2", REFUTED)])
+def test_each_value_that_a_relation_gives_a_parameter_counts(first, verdict):
+    """q1' = R p1/2 and q2' = p2: q1 p2 - q2 p1 is conserved at R = 2, and not at R = -2."""
+    text = FREE.replace("p1^2/2 + p2^2/2", "R*p1^2/4 + p2^2/2")
+    assert claimed(text, "q1*p2 - q2*p1", first).verdict is verdict
+    for both in ("R^2 - 4", "(2 + R)*(R - 2)", "(a - 1)*(R - 2)*(R + 2)", "a*R^2 - 4*a"):
+        found = claimed(text, "q1*p2 - q2*p1", both)
+        assert found.verdict is REFUTED
+        assert "not 0" not in found.method
+
+
+def test_a_set_with_an_interior_has_points():
+    """|p2| = p2 on half of the plane, where Newton's method has no slope to follow."""
+    assert claimed(FREE, "q1*(sqrt(p2^2) - p2)", "sqrt(p2^2) - p2").verdict is PROVED
+    assert claimed(FREE, "q1", "p1*(sqrt(p2^2) - p2)").verdict is REFUTED
+
+
+@pytest.mark.parametrize("domain", [["q1 > 1", "q1 < 0"], ["p1^2 + p2^2 < -1"], ["a + b < 0"]])
+def test_an_empty_domain_proves_nothing(domain):
+    """Anything is true where no state is; not even p1 is called conserved there."""
+    lines = "\n".join(f'c{n} = "{each}"' for n, each in enumerate(domain))
+    text = FREE.replace("[claims]", f"[domain]\n{lines}\n[claims]")
+    text = text.replace('{ claim = "INTEGRAL", where = [WHERE] }', '"p1"')
+    with pytest.raises(UndecidedError, match=r"no point is found in \[domain\]"):
+        prove(spec(text))
+
+
+def test_an_energy_without_values_proves_nothing():
+    """The root of -1 - q1^2 is not real at any state."""
+    text = FREE.replace("p1^2/2 + p2^2/2", "p1^2/2 + sqrt(-1 - q1^2)")
+    text = text.replace('{ claim = "INTEGRAL", where = [WHERE] }', '"p2"')
+    with pytest.raises(UndecidedError, match="at which the motion has a value"):
+        prove(spec(text))
+
+
+@pytest.mark.parametrize(
     ("where", "domain", "verdict"),
     [
         ("p1*q2", "q2 > 0", PROVED),
@@ -389,6 +439,21 @@ def test_positive_factors_are_dropped_from_regions_alone():
     assert decide_zero([x], field, Ideal(field, [x * y], "x*y = 0")).verdict is REFUTED
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_bound_gives_no_sign_where_a_symbol_is_not_measured_from_it(side):
+    """The zero of q + exp(q) near -0.567 is inside q > -5, that of q - exp(-q) inside q < 5."""
+    field = Field(["q", "x"], slots=2)
+    q, x = field["q"], field["x"]
+    factor = q + side * field.call("exp", side * q)
+    field.region = Region(conditions=(Condition(side * q + 5, strict=True),))
+    decision = decide_zero([x], field, Ideal(field, [x * factor], "x*(q + ...) = 0"))
+    assert decision.verdict is REFUTED
+    assert float(Fraction(decision.point["q"])) == pytest.approx(-0.5671432904 * side)
+    field.region = Region(conditions=(Condition(q - 1, strict=True),))
+    positive = x * (q + field.call("exp", side * q))
+    assert decide_zero([x], field, Ideal(field, [positive], "x*(q + ...) = 0")).verdict is PROVED
+
+
 def test_undecided_claims_name_the_system_and_the_claim():
     """The message says which claim, what is wrong with it and what to do; its status is 1."""
     with pytest.raises(ClaimError) as caught:
@@ -438,3 +503,67 @@ def test_a_pole_at_a_point_that_is_found_by_iteration_is_no_value():
     with pytest.raises(UndecidedError, match="has a value"):
         decide_zero([field["r"] / cosine], field, ideal)
     assert decide_zero([field["r"] - 1], field, ideal).verdict is REFUTED
+
+
+KNIFE = """
+title = "A knife edge"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+z = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+v = { role = "velocity", of = "y" }
+w = { role = "velocity", of = "z" }
+[lagrangian]
+l = "u^2/2 + v^2/2 + w^2/2"
+[constraints]
+edge = "u*sin(z) == v*cos(z)"
+[claims]
+conserved = ["w", "u"]
+"""
+
+
+def test_nothing_is_excluded_that_never_vanishes():
+    """The squares of a sine and a cosine add up to 1; where both are 0 there is no point at all."""
+    claims = prove(spec(KNIFE)).claims
+    excluded = {claim.method.partition("edge = 0")[2] for claim in claims}
+    assert excluded == {"", ", wherever sin(z) is not 0"}  # by which the edge is solved
+    (refuted,) = [claim for claim in claims if claim.verdict is REFUTED]
+    assert "." in refuted.counterexample["u"]  # u = v cos(z)/sin(z) has no exact value there
+    assert refuted.method == "50-digit counter-example, where edge = 0"
+
+
+def test_a_power_of_what_is_excluded_is_not_named_again():
+    """Two constraints that agree where y (z - 1) = 0: y not 0 and z - 1 not 0 say it all."""
+    edges = 'first = "w == y*u"\nsecond = "z*w == y*u"'
+    text = KNIFE.replace('edge = "u*sin(z) == v*cos(z)"', edges)
+    (energy,) = [c for c in prove(spec(text)).claims if c.statement == "the energy is conserved"]
+    assert energy.method.endswith("of second = 0, y not 0, z - 1 not 0")
+
+
+@pytest.mark.parametrize(
+    ("integral", "where", "leaves"),
+    [("p1", "q1 - p2", True), ("q1", "p1*p2", False), ("q1", "q2", True), ("p2", "p1*q1", True)],
+)
+def test_a_set_that_the_motion_leaves_is_named(integral, where, leaves):
+    """The momenta are conserved everywhere; where q1 = p2 is not, and the rate shown is its."""
+    found = claimed(FREE, integral, where)
+    assert found.verdict is REFUTED
+    assert found.method.endswith(": the motion leaves this set") is leaves
+    assert (
+        "the motion leaves this set: the rate of a relation is" in failure_text(found)
+    ) is leaves
+
+
+#: (p1^2 - p2)^2 + p2^2 + 1, in a form that shows no sum of squares.
+EMPTY = "p1^4 - 2*p1^2*p2 + 2*p2^2 + 1"
+
+
+@pytest.mark.parametrize(("empty", "other"), [(EMPTY, "p2"), (EMPTY.replace("p1", "q2"), "p2")])
+def test_a_branch_without_points_hides_no_refutation(empty, other):
+    """q1 changes where p2 = 0; whether the other factor comes first decides nothing."""
+    for text in (f"({empty})*{other}", f"{other}*({empty})"):
+        assert claimed(FREE, "q1", text).verdict is REFUTED
+        with pytest.raises(UndecidedError, match="no point is found"):
+            claimed(FREE, "q2*p1", text)

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.algebra.linear import PRIME
-from coadjoint.prove import Verdict
+from coadjoint.prove import Verdict, prove
 from coadjoint.prove.candidates import (
     CandidateSearch,
     Known,
@@ -16,6 +16,7 @@ from coadjoint.prove.candidates import (
 from coadjoint.prove.samples import AtNumbers, Samples
 from coadjoint.prove.zero import Discovery, decide_zero
 from tests.prove.rolling import motion
+from tests.specs import spec
 
 #: Specs that claim the energy alone.
 SILENT = {
@@ -218,3 +219,47 @@ def test_functions_that_may_be_related_are_not_searched():
     ((statement, found),) = about("rolling_disk_vertical", change)
     assert found == Discovery("no search")
     assert "were not looked for: exp is taken of functions" in statement
+
+
+#: Two wheels and a belt that slides where a is 0: u = v, and with d = x - y and E = 3 u^2/2 + k x
+#: the integrals of degree (2, 2) are 1, d, d^2, E and E d.
+BELT = """
+title = "Two wheels and a belt"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+y = { role = "coordinate" }
+v = { role = "velocity", of = "y" }
+[parameters]
+R = { positive = true, default = 2 }
+a = { default = 0 }
+k = { positive = true, default = 1 }
+[lagrangian]
+l = "u^2/2 + v^2 - k*x"
+[constraints]
+belt = "a*u == a*v"
+"""
+
+
+def test_a_count_says_how_many_integrals_the_others_are_functions_of():
+    """No constraint is left at a = 0, the default, so that d is not found; d is not made of E."""
+    certificate = prove(spec(BELT))
+    (found,) = [each for each in certificate.findings if each.kind == "integrals"]
+    assert "a space of dimension 5 with constants at the most, 2 of it polynomials in energy" in (
+        found.statement
+    )
+    assert found.statement.endswith("; all are functions of energy and of 1 more of them")
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_solved_constraint_may_have_a_pole_at_the_defaults(turned):
+    """R u = a v gives v = R u/a, or u = a v/R: either velocity may be declared first."""
+    head, x, rest = BELT.partition('x = { role = "coordinate" }')
+    u, y, rest = rest.partition('y = { role = "coordinate" }')
+    v, parameters, rest = rest.partition("[parameters]")
+    blocks = (y + v, x + u) if turned else (x + u, y + v)
+    text = head + "".join(blocks) + parameters + rest
+    certificate = prove(spec(text.replace("a*u == a*v", "R*u == a*v")))
+    assert certificate.holds
+    assert any(each.kind == "integrals" for each in (*certificate.claims, *certificate.findings))

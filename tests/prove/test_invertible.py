@@ -28,7 +28,7 @@ far = "r > 1"
 conserved = ["energy"]
 """
 
-EVERYWHERE = "wherever the Lagrangian is defined and the declared signs hold"
+EVERYWHERE = "in all of [domain], wherever the Lagrangian is defined and the declared signs hold"
 
 
 def invertible(lagrangian, *changes):
@@ -53,6 +53,12 @@ def test_a_hidden_zero_is_no_determinant(lagrangian):
     """The determinant is zero by a relation between functions: there is no transform."""
     with pytest.raises(DerivationError, match="has no invertible Legendre transform"):
         derive(spec(MOTION, ("LAGRANGIAN", lagrangian)))
+
+
+def test_a_coefficient_without_a_sign_may_make_it_singular():
+    """The mass 2 + q (1 + cos q) is 2 at q = 0 and 2 - 4 pi at q = -2 pi: it vanishes between."""
+    found = invertible("((2 + q*(1 + cos(q)))*v^2 + w^2)/2")
+    assert found.statement.endswith("is invertible almost everywhere")
 
 
 def test_what_may_be_zero_is_refused():
@@ -95,6 +101,12 @@ def test_the_sign_needs_the_declared_domain():
     """Without r > 1 the mass r - 1 has no sign."""
     found = invertible("m*(v^2 + (r - 1)*w^2)/2", ('[domain]\nfar = "r > 1"\n', ""))
     assert found.statement.endswith("almost everywhere")
+
+
+def test_a_sign_without_a_domain_names_none():
+    """Masses m and 2 m are positive everywhere; no [domain] is declared that could be meant."""
+    found = invertible("m*(v^2 + 2*w^2)/2", ('[domain]\nfar = "r > 1"\n', ""))
+    assert found.statement.endswith("is invertible " + EVERYWHERE.partition(", ")[2])
 
 
 @pytest.mark.parametrize(

@@ -136,7 +136,7 @@ def test_the_exceptions_have_one(name, changes, volume):
 @pytest.mark.parametrize(
     ("force", "reason", "power"),
     [
-        ("-r*vtheta", "what it asks for along rest contradicts itself", "-1"),
+        ("-r*vtheta", "what it asks for at rest contradicts itself", "-1"),
         ("-r*vtheta^3", "div X is not affine in the velocities", "-3"),
     ],
 )

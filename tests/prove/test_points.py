@@ -218,6 +218,26 @@ def test_points_that_would_lie_off_the_set_are_not_points():
     assert not list(Points(field, [x], nowhere))
 
 
+@pytest.mark.parametrize("order", [5, 6, 7, 9])
+@pytest.mark.parametrize("function", ["exp", "log"])
+def test_a_zero_of_high_order_is_not_missed_by_a_little(order, function):
+    """Newton's steps become small beside such a zero, too; what vanishes at it is not refuted."""
+    field = Field(["x", "y"], slots=2)
+    x, y = field["x"], field["y"]
+    if function == "exp":  # exp(x) less its Taylor polynomial, of the sign of x^order
+        least = field.call("exp", x)
+        terms = [-(x**k) * Fraction(1, math.factorial(k)) for k in range(order)]
+    else:  # log(1 + x^2) - x^2 + ..., the same in x^2
+        least = field.call("log", 1 + x**2)
+        terms = [x ** (2 * k) * Fraction((-1) ** k, k) for k in range(1, order - 2)]
+    relation = field.sum([least, *terms])
+    try:
+        decision = decide_zero([x * y], field, Ideal(field, [relation], "this = 0"))
+    except UndecidedError:
+        return
+    assert decision.verdict is Verdict.SUPPORTED
+
+
 def test_redundant_relations_are_no_obstacle():
     """An orthogonal matrix satisfies nine equations of which six are independent."""
     names = [f"A{n}" for n in range(9)]

@@ -99,6 +99,14 @@ def test_faults_of_symmetries(change, culprit, expected):
     assert expected in str(error), error
 
 
+@pytest.mark.parametrize(
+    "text", ["A*vector(q[1], 0, 0)", "A*q + vector(0, 0, 0)", "0*(A*q)", "vector(0, A[1, 2], 0)"]
+)
+def test_zeros_are_linear_in_anything(text):
+    """A zero has every degree, as an addend, a factor and a component."""
+    assert spec(TEXT, ('q = "A*q"', f'q = "{text}"')).symmetries[0].name == "J"
+
+
 def test_an_unknown_algebra_is_refused_at_its_line():
     """The message names the algebra and the line."""
     error = refused(('"so(3)"\n', '"so(x)"\n'), text=TEXT, kind=AlgebraError)

@@ -10,6 +10,7 @@ Another process of the same user is trusted, as everywhere; other users are not.
 from __future__ import annotations
 
 import atexit
+import errno
 import hashlib
 import os
 import shutil
@@ -21,7 +22,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-from coadjoint.build.upkeep import KERNELS, WORK, evict, find_problems
+from coadjoint.build.upkeep import FOLDERS, KERNELS, WORK, evict, find_problems
 from coadjoint.build.workplace import keep_folder, remove, sweep, work_file, work_folder
 from coadjoint.errors import OutputError
 
@@ -130,50 +131,53 @@ def check_private(folder: Path) -> None:
     """
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        found = folder.lstat()
+        problem = _refusal(folder)
     except OSError as error:
         raise OutputError(
             f"the cache folder {folder} cannot be used: {error.strerror}. "
             "Set COADJOINT_CACHE to a folder of your own.",
             path=str(folder),
         ) from error
-    problem = _refusal(found)
     if problem:
         raise OutputError(
-            f"the cache folder {folder} is refused: {problem}. "
-            f"Run `chmod 700 {folder}`, or set COADJOINT_CACHE to a folder of your own.",
+            f"the cache folder {folder} is refused: {problem}. Set COADJOINT_CACHE to a folder of "
+            "your own.",
             path=str(folder),
             found=problem,
         )
 
 
-def _refusal(found: os.stat_result) -> str:
-    """Why a folder is not private, or ""."""
+def _refusal(folder: Path) -> str:
+    """Why a folder cannot be the cache, or "".
+
+    Raises:
+        OSError: It cannot be looked at.
+    """
+    found = folder.lstat()
     if not stat.S_ISDIR(found.st_mode):
         return "it is not a real folder"
     if found.st_uid != os.getuid():
         return f"it belongs to user {found.st_uid}"
     if found.st_mode & 0o022:
-        return f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})"
+        mode = f"{stat.S_IMODE(found.st_mode):o}"
+        return f"others may write to it (mode {mode}), which `chmod 700 {folder}` ends"
+    for name in FOLDERS:
+        if os.path.lexists(folder / name) and not stat.S_ISDIR((folder / name).lstat().st_mode):
+            return f"no run of coadjoint made {name!r}, which stands in it"
     return ""
 
 
 def cache_problems() -> list[str]:
-    """What is wrong with the cache, a sentence each; nothing is made, changed or removed.
+    """What the next run mends in the cache, a sentence each; nothing is made or changed here.
 
-    What stands inside the folder heals by itself: damaged objects are compiled anew, and what
-    killed runs left is removed when the cache is used next.
+    Damaged objects are compiled anew, and what killed runs left is removed. A cache that cannot be
+    used at all is a matter of `cache_folder`.
     """
     folder = chosen_folder()
-    if folder is None:
-        return ["there is no home folder for the cache; set HOME or COADJOINT_CACHE"]
-    try:
-        refusal = _refusal(folder.lstat())
-    except FileNotFoundError:
-        return []  # it is made when it is needed
-    except OSError as error:
-        return [f"{folder} cannot be used: {error.strerror}"]
-    return [f"{folder} is refused: {refusal}"] if refusal else find_problems(folder)
+    with suppress(OSError):
+        if folder is not None and not _refusal(folder):
+            return find_problems(folder)
+    return []
 
 
 def fetch(key: str) -> Path | None:
@@ -237,7 +241,7 @@ def replace_file(path: Path, content: bytes) -> None:
     """Write a file of the cache so that it is old or new and never torn; its folder is made.
 
     Args:
-        path: A file in a folder of the cache, where nothing but files of ours belongs.
+        path: A file in a folder of the cache, by a name that only files of ours have.
         content: Its bytes.
 
     Raises:
@@ -257,7 +261,11 @@ def replace_file(path: Path, content: bytes) -> None:
 
 
 def _make_folder(folder: Path) -> None:
-    """A folder of the cache; whatever else stands in its place is removed."""
-    if folder.is_symlink() or not folder.is_dir():
-        remove(folder)
-        folder.mkdir(mode=0o700, exist_ok=True)
+    """A folder of the cache; what else stands in its place is somebody's, and stays.
+
+    Raises:
+        OSError: It is no folder, or a link to one.
+    """
+    folder.mkdir(mode=0o700, exist_ok=True)
+    if folder.is_symlink():
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))

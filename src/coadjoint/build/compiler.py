@@ -24,7 +24,7 @@ from pathlib import Path
 from threading import Lock
 
 from coadjoint.build import warden
-from coadjoint.errors import CompilerError
+from coadjoint.errors import CompilerError, remedy_for
 from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
 
 CANDIDATES = ("cc", "gcc", "clang")
@@ -304,7 +304,8 @@ def _run(
             raise _interrupted(command)
     except OSError as error:
         raise CompilerError(
-            f"{command[0]} could not be started: {error.strerror}. Set CC to another compiler.",
+            f"{command[0]} could not be started: {error.strerror}. "
+            f"{remedy_for(error) or 'Set CC to another compiler.'}",
             found=command[0],
         ) from error
     finally:

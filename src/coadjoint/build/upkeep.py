@@ -7,6 +7,7 @@ people. Read next: `coadjoint.build.cache`, which calls `evict` after each new o
 from __future__ import annotations
 
 import hashlib
+import re
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -17,7 +18,13 @@ from coadjoint.build.workplace import abandoned, remove
 from coadjoint.limits import CACHE_BYTES
 
 #: Folders of the cache: objects by key, what was verified, systems of one's own, work in progress.
-KERNELS, VERIFIED, SYSTEMS, WORK = "kernels", "verified", "systems", "work"
+FOLDERS = KERNELS, VERIFIED, SYSTEMS, WORK = "kernels", "verified", "systems", "work"
+#: Names of what runs keep in each; anything else is somebody's, and is never removed.
+_OURS = {
+    KERNELS: re.compile(r"[0-9a-f]{64}(\.so)?"),
+    VERIFIED: re.compile(r"[0-9a-f]{64}\.json"),
+    SYSTEMS: re.compile(r"[0-9a-f]{16}"),
+}
 #: Seconds for which a system of one's own stays, whatever the bound: a program may be reading it.
 IN_USE = 24 * 3600
 #: What a file takes on a disk, at the least.
@@ -61,11 +68,17 @@ def evict(folder: Path, most: int = CACHE_BYTES) -> None:
 
 def _entries(folder: Path) -> Iterator[_Entry]:
     """Everything that may be evicted."""
-    for name in (KERNELS, VERIFIED, SYSTEMS):
-        with suppress(OSError):
-            for path in (folder / name).iterdir():
-                with suppress(OSError):
-                    yield _entry(path)
+    for name in _OURS:
+        for path in kept(folder / name):
+            with suppress(OSError):
+                yield _entry(path)
+
+
+def kept(folder: Path) -> list[Path]:
+    """What runs keep in a folder of the cache, by its name."""
+    with suppress(OSError):
+        return sorted(each for each in folder.iterdir() if _OURS[folder.name].fullmatch(each.name))
+    return []
 
 
 def _entry(path: Path) -> _Entry:
@@ -88,9 +101,8 @@ def find_problems(folder: Path) -> list[str]:
     """
     problems = [f"{path} was left by a run that was killed" for path in abandoned(folder / WORK)]
     for name in (KERNELS, VERIFIED):
-        with suppress(OSError):
-            for path in sorted((folder / name).iterdir()):
-                problems += _problem(path)
+        for path in kept(folder / name):
+            problems += _problem(path)
     total = sum(entry.size for entry in _entries(folder))
     if total > CACHE_BYTES:
         problems.append(

@@ -231,11 +231,12 @@ def _cache() -> str:
 def _cache_state() -> Iterator[Finding]:
     """What is damaged or left over in the cache, and in the systems of one's own there."""
     from coadjoint.build.cache import cache_problems, chosen_folder
+    from coadjoint.build.upkeep import SYSTEMS, kept
 
     for problem in cache_problems():
         yield Finding("cache", "heals", problem, "mended when it is used next")
     folder = chosen_folder()
-    for path in sorted(folder.glob("systems/*")) if folder is not None else ():
+    for path in kept(folder / SYSTEMS) if folder is not None else ():
         for found in _tree("own system", path, is_shipped=False):
             heals = found.remedy.startswith("coadjoint regenerate")
             yield Finding(found.what, "heals", found.found, _RELOAD) if heals else found

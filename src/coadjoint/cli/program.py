@@ -98,7 +98,7 @@ class Commands(click.Group):
             status = error.exit_status
             self._report(ctx, f"error: {error}")
         except Exception as error:
-            refused = _refused(error) if isinstance(error, OSError) else None
+            refused = _refused(error) if isinstance(error, OSError | ImportError) else None
             if refused is not None:
                 status = refused.exit_status
                 self._report(ctx, f"error: {refused}")
@@ -137,9 +137,11 @@ def _flush() -> None:
         raise unwritten(error) from error
 
 
-def _refused(error: OSError) -> OutputError | None:
+def _refused(error: OSError | ImportError) -> OutputError | None:
     """What the operating system has refused, as an error that is none of ours; else None."""
     refused = system_error(error)
+    if isinstance(error, ImportError):
+        return refused
     # Files that are written have names; what has none is the output, e.g. of --help, by click.
     nameless = error.filename is None and error.errno != errno.ENOENT
     return unwritten(error) if refused is not None and nameless else refused

@@ -7,7 +7,6 @@ counter-example for what is false. Read next: `coadjoint.prove.claims`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import click
@@ -36,27 +35,6 @@ def command(system: str, seconds: int | None, as_json: bool) -> int:
     for failure in record["failures"]:
         say(f"error: {failure}", err=True)
     return 0 if record["holds"] else 1
-
-
-def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
-    """The certificate of a spec as JSON values, times included; runs in a bounded child."""
-    from coadjoint.prove import prove
-    from coadjoint.prove.certificate import failure_text
-    from coadjoint.sandbox import report_progress
-    from coadjoint.spec import read_spec
-
-    report_progress("prove", 0, 1)
-    certificate = prove(read_spec(Path(argument["path"])))
-    entries = {
-        name: [entry.as_record() | {"seconds": entry.seconds} for entry in found]
-        for name, found in (("claims", certificate.claims), ("findings", certificate.findings))
-    }
-    return {
-        "system": certificate.system,
-        "holds": certificate.holds,
-        "failures": [failure_text(claim) for claim in certificate.failures],
-        **entries,
-    }
 
 
 def _print(record: Mapping[str, Any]) -> None:

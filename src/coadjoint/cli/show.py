@@ -6,10 +6,7 @@ Comes in: a spec. Goes out: a document. Read next: `coadjoint.derive.document` a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -42,15 +39,3 @@ def command(
         say(text, end="")
     else:
         write_text(output, text)
-
-
-def document_record(argument: Mapping[str, str | None]) -> dict[str, Any]:
-    """A derivation as plain JSON values; runs in a bounded child."""
-    from coadjoint.derive import derive
-    from coadjoint.derive.document import document
-    from coadjoint.sandbox import report_progress
-    from coadjoint.spec import read_spec
-
-    report_progress("derive", 0, 1)
-    equations = derive(read_spec(Path(str(argument["path"]))), argument["route"])
-    return asdict(document(equations))

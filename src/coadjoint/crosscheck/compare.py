@@ -18,6 +18,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from coadjoint.crosscheck.inside import points_inside
 from coadjoint.crosscheck.oracle import (
     Bounded,
     OutsideDomain,
@@ -28,6 +29,7 @@ from coadjoint.crosscheck.oracle import (
     oracle,
 )
 from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points, cancelling, safe_exponent
+from coadjoint.derive.reference import Reference as Derived
 from coadjoint.errors import CoadjointError, CrossCheckError
 from coadjoint.lower.program import Program, run
 from coadjoint.render.kernels import elementary_functions
@@ -134,6 +136,14 @@ class Subject:
         states = len(self._widest.state)
         return Points(states, positive, safe_exponent(self.programs, self.elementary))
 
+    @cached_property
+    def inside(self) -> Array:
+        """Points of the domain, state and parameters one below the other; perhaps none."""
+        names = (*self._widest.state, *self._widest.parameters)
+        if not isinstance(self.reference, Derived):
+            return np.empty((len(names), 0))
+        return points_inside(self.reference.equations, names)
+
     @property
     def _widest(self) -> Program:
         """A function with the most inputs; those of the others are the first of them."""
@@ -165,13 +175,22 @@ class Subject:
         return values.reshape(len(program.outputs), members)
 
     def is_defined(self, function: str, batch: Batch) -> NDArray[np.bool_]:
-        """For each member, whether the equations, not a kernel, give numbers in doubles."""
+        """For each member, whether the equations, not a kernel, give numbers in doubles.
+
+        So must the functions in them: the slope of ``log(x)`` has a value where x is negative.
+        """
         names = (*self._widest.state, *self._widest.parameters)
         known = dict(zip(names, (*batch.state, *batch.parameters), strict=True))
+        called = list[Array]()
+
+        def call(function: str, argument: Array) -> Array:
+            called.append(np.asarray(getattr(np, function)(argument)))
+            return called[-1]
+
         with np.errstate(all="ignore"):
-            values = self.reference.evaluate(function, known, np.float64, _in_doubles)
+            values = self.reference.evaluate(function, known, np.float64, call)
         found = np.ones(batch.state.shape[1], dtype=bool)
-        for value in values:
+        for value in (*values, *called):
             found &= np.isfinite(value)
         return found
 
@@ -201,10 +220,6 @@ class Subject:
             point=point,
             **parts,
         )
-
-
-def _in_doubles(function: str, argument: Array) -> Array:
-    return np.asarray(getattr(np, function)(argument))
 
 
 @dataclass(frozen=True)
@@ -294,7 +309,7 @@ def _check_reached(subject: Subject, points: ExactPoints, reached: int) -> None:
         raise CrossCheckError(
             f"rung 4: {subject.system.name}.{points.function} has a value at only {reached} of "
             f"{points.count} points; expected half of them at least. Declare which parameters are "
-            "positive, or choose units in which sizes from 0.001 to 1000 lie in the domain.",
+            "positive, say in [domain] where the formulas have values, or give defaults there.",
             rung=4,
             system=subject.system.name,
             function=points.function,
@@ -328,8 +343,15 @@ def _drawn(subject: Subject, function: str, family: str, seed: int, size: int) -
 
 
 def _others(subject: Subject, family: str, count: int) -> Batch:
-    """More points of a family, apart from those that are taken first."""
-    return subject.points.families(seed=3, count=count)[family]
+    """More points of a family, apart from those that are taken first, and points of the domain."""
+    more = subject.points.families(seed=3, count=count)[family]
+    if not subject.inside.size:
+        return more
+    near = subject.points.around(subject.inside, seed=3, count=count)
+    return Batch(
+        np.concatenate([more.state, near.state], axis=1),
+        np.concatenate([more.parameters, near.parameters], axis=1),
+    )
 
 
 def _alike(batch: Batch, start: Batch) -> Batch:
@@ -426,15 +448,24 @@ def equal_bits(subject: Subject, count: int) -> dict[str, int]:
     equal = dict.fromkeys(subject.programs, 0)
     functions = [function for function in equal if subject.has_equal_bits(function)]
     for batch in _bit_batches(subject.points, count) if functions else ():
-        for function in functions:
-            one, other = (subject.evaluate(function, batch, each) for each in ("numpy", "c"))
-            different = differing(one, other)
-            if different.any():
-                row, member = np.argwhere(different)[0].tolist()
-                values = {"numpy": float(one[row, member]), "c": float(other[row, member])}
-                raise subject.failure(function, row, batch, member, rung=5, **values)
-            equal[function] += int((~np.isnan(one)).any(axis=0).sum())
+        _compare_bits(subject, functions, batch, equal)
+    if not all(equal[function] for function in functions) and subject.inside.size:
+        _compare_bits(subject, functions, subject.points.around(subject.inside, 5, BLOCK), equal)
     return equal
+
+
+def _compare_bits(
+    subject: Subject, functions: Sequence[str], batch: Batch, equal: dict[str, int]
+) -> None:
+    """Compare one batch bit for bit, and count what was equal."""
+    for function in functions:
+        one, other = (subject.evaluate(function, batch, each) for each in ("numpy", "c"))
+        different = differing(one, other)
+        if different.any():
+            row, member = np.argwhere(different)[0].tolist()
+            values = {"numpy": float(one[row, member]), "c": float(other[row, member])}
+            raise subject.failure(function, row, batch, member, rung=5, **values)
+        equal[function] += int((~np.isnan(one)).any(axis=0).sum())
 
 
 def _bit_batches(points: Points, count: int) -> Iterator[Batch]:

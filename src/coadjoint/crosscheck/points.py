@@ -81,6 +81,20 @@ class Points:
             for number, (name, maker) in enumerate(makers.items())
         }
 
+    def around(self, centres: Array, seed: int, count: int) -> Batch:
+        """Points near some others, at distances of six decades.
+
+        Args:
+            centres: Shape ``(states + parameters, N)``; NaN for components that may be any.
+            seed: Chooses the points.
+            count: How many.
+        """
+        generator = np.random.default_rng([SEED, seed, 98])
+        start = centres[:, np.arange(count) % centres.shape[1]]
+        sizes = 2.0 ** generator.uniform(-20, 0, count)
+        moved = start * (1 + sizes * generator.normal(size=start.shape))
+        return self._batch(np.where(np.isnan(start), generator.normal(size=start.shape), moved))
+
     def special(self, seed: int, count: int) -> Batch:
         """Overflow, infinities, NaN, subnormals and signed zeros among ordinary numbers."""
         generator = np.random.default_rng([SEED, seed, 99])

@@ -123,7 +123,9 @@ class Decided:
         """Values at the points; none where no points were found."""
         while self._points is not None:
             try:
-                return [self.field.evaluate(element, at, residue, _call) for at in self._points]
+                return [
+                    self.field.evaluate(element, at, residue, call_modulo) for at in self._points
+                ]
             except ZeroDivisionError:
                 self._redraw()
         return []
@@ -140,7 +142,7 @@ class Decided:
             try:
                 for at in points:
                     for name, value in self._definitions.items():
-                        at[name] = self.field.evaluate(value, at, residue, _call)
+                        at[name] = self.field.evaluate(value, at, residue, call_modulo)
             except ZeroDivisionError:
                 continue
             self._points = points
@@ -152,7 +154,7 @@ def _random(seed: str) -> Residue:
     return Residue(random.Random(seed).randrange(1, PRIME))  # noqa: S311 (not for secrets)
 
 
-def _call(function: str, argument: Residue) -> Residue:
+def call_modulo(function: str, argument: Residue) -> Residue:
     """A value of an elementary function that satisfies the relations of the field.
 
     Raises:

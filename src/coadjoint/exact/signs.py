@@ -104,7 +104,7 @@ class Signs:
     def __init__(self, field: Field, *, strict: bool) -> None:
         self.field, self.strict = field, strict
         self._of_names: dict[str, int] = {}
-        self._given = list(self._conditions())
+        self._given = list(self._conditions())  # each with whether it may nowhere be 0
 
     def of(self, element: Element) -> int:
         """The sign of a nonzero element that is one quotient."""
@@ -130,17 +130,15 @@ class Signs:
             return 1 + (sign(self.field, known.argument) == 1)
         return 2 * (known.function == "exp")
 
-    def _conditions(self) -> Iterator[PolyElement]:
-        """Monic factors that the conditions of the field say are positive, and minus the others."""
+    def _conditions(self) -> Iterator[tuple[PolyElement, bool]]:
+        """What the conditions of the field say is positive: monic, or minus a monic one."""
         for condition in self.field.region.conditions:
-            if self.strict and not condition.strict:
-                continue
             element = self.field.normal(condition.element).combined()
             if element == 0:
                 continue
             top, bottom = self.field.fraction(element)
             if not bottom and not top.is_ground:
-                yield top.monic() if top.LC > 0 else -top.monic()
+                yield (top.monic() if top.LC > 0 else -top.monic()), condition.strict
 
     def _of_polynomial(self, p: PolyElement) -> int:
         """The sign of a nonzero polynomial: of the whole, else the product of its factors'."""
@@ -157,11 +155,9 @@ class Signs:
 
     def _plain(self, p: PolyElement) -> int:
         """The sign of a polynomial that conditions or its terms give."""
-        monic, lead = p.monic(), 1 if p.LC > 0 else -1
-        if monic in self._given:
-            return lead
-        if -monic in self._given:
-            return -lead
+        for given, strict in self._given:
+            if found := self._exceeds(p, given, strict=strict):
+                return found
         for each in self._forms(p):
             if found := sign_of_sum(each, self.known, strict=self.strict):
                 return found
@@ -171,17 +167,39 @@ class Signs:
                 return wanted
         return 0
 
+    def _exceeds(self, p: PolyElement, given: PolyElement, *, strict: bool) -> int:
+        """The sign of a multiple of what is given, and more: ``q - 2`` is ``(q - 3) + 1``."""
+        needed = self.strict and not strict  # then what is more keeps the whole from 0
+        for exponents, number in given.terms():
+            ratio = p.get(exponents, 0) / number
+            if not ratio:
+                continue
+            rest, side = p - ratio * given, 1 if ratio > 0 else -1
+            if rest and sign_of_sum(rest, self.known, strict=needed) == side:
+                return side
+            if not rest:
+                return 0 if needed else side
+        return 0
+
     def _bound(self, p: PolyElement, side: int) -> PolyElement:
         """A polynomial with sines and cosines at their worst: ``2 + cos`` is at least ``2 - 1``.
 
-        It bounds the given one from one side where all other factors of its terms are positive.
+        It bounds the given one from one side where what they multiply is not negative. Else that
+        has no sign, and what a pair makes up for is its size: ``a*b*(1 + cos)`` may be ``2*a*b``.
         """
         circular = [n for n, name in enumerate(self.field.generators) if self._is_circular(name)]
-        terms: dict[tuple[int, ...], Any] = {}
+        fixed, swing = dict[tuple[int, ...], Any](), dict[tuple[int, ...], Any]()
         for exponents, number in p.terms():
             rest = tuple(0 if n in circular else e for n, e in enumerate(exponents))
-            worst = number if rest == exponents else side * abs(number)
-            terms[rest] = terms.get(rest, 0) + worst
+            if rest == exponents:
+                fixed[rest] = number
+            else:
+                swing[rest] = swing.get(rest, 0) + abs(number)
+        terms = dict(fixed)
+        for rest, most in swing.items():
+            signed = all(self.known(n) for n, power in enumerate(rest) if power % 2)
+            own = fixed.get(rest, 0)
+            terms[rest] = own + side * most if signed else side * (abs(own) + most)
         return p.ring.from_dict({rest: number for rest, number in terms.items() if number})
 
     def _is_circular(self, name: str) -> bool:

@@ -20,14 +20,15 @@ from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
 from coadjoint.limits import C_STATEMENTS, OPERATIONS
 from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
+from coadjoint.lower.vanishing import vanishing
 from coadjoint.poisson.ranks import Residue, residue
 
 #: Points modulo a prime at which Programs without a closed form are compared.
 POINTS = 3
 #: Points that are tried, each modulo another prime.
 TRIES = 30
-#: An output with what the Program computes and what the equations say.
-_Pair = tuple[Output, Any, Any]
+#: An output by its place, with what the Program computes and what the equations say.
+_Pair = tuple[int, Output, Any, Any]
 
 
 def expected_outputs(equations: Equations, name: str) -> list[Element]:
@@ -92,7 +93,11 @@ def check_inverse(equations: Equations, program: Program) -> None:
         CrossCheckError: An output differs.
     """
     different = _differing_residues if equations.kept else _differing_elements
-    for output, a, b in different(equations, program):
+    for place, output, a, b in different(equations, program):
+        # the relations between functions, which residues do not have, may make an output zero
+        hidden = program.name in ("jacobian", "projection") and output.value == ZERO
+        if hidden and list(vanishing(program.name, [place], equations)):
+            continue
         raise CrossCheckError(
             f"{equations.spec.name}: lowering changed {program.name}, output {output.label}: "
             f"the Program computes {a!r}, the equations say {b!r}. This is a fault of "
@@ -110,9 +115,9 @@ def _differing_elements(equations: Equations, program: Program) -> Iterator[_Pai
     found = run(program, inputs, field.number, field.call)
     expected = expected_outputs(equations, program.name)
     assert len(found) == len(expected) > 0, (program.name, len(found), len(expected))
-    for output, a, b in zip(program.outputs, found, expected, strict=True):
+    for n, (output, a, b) in enumerate(zip(program.outputs, found, expected, strict=True)):
         if not field.is_zero(a - b):
-            yield output, a, b
+            yield n, output, a, b
 
 
 def _differing_residues(equations: Equations, program: Program) -> Iterator[_Pair]:
@@ -129,9 +134,9 @@ def _differing_residues(equations: Equations, program: Program) -> Iterator[_Pai
             continue
         reached += 1
         assert len(found) == len(expected) > 0, (program.name, len(found), len(expected))
-        for output, a, b in zip(program.outputs, found, expected, strict=True):
+        for n, (output, a, b) in enumerate(zip(program.outputs, found, expected, strict=True)):
             if a != b:
-                yield output, a, b
+                yield n, output, a, b
         if reached == POINTS:
             return
     raise CrossCheckError(

@@ -18,6 +18,7 @@ from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
+from coadjoint.lower.vanishing import hidden_zeros
 
 #: Derivatives of one value by components of the state, zeros left out.
 Slopes = dict[str, int]
@@ -102,9 +103,16 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
         outputs += [
             (f"d({output.label})/d{name}", _total(graph, slope, solved, name)) for name in rhs.state
         ]
-    return Naming(graph, list(definitions.items()), outputs, rhs.parameters).program(
-        "jacobian", rhs.state, rhs.parameters, (n, n)
-    )
+
+    def program() -> Program:
+        named = Naming(graph, list(definitions.items()), outputs, rhs.parameters)
+        return named.program("jacobian", rhs.state, rhs.parameters, (n, n))
+
+    computed = program()
+    zeros = hidden_zeros(computed, equations)
+    for place in zeros:
+        outputs[place] = outputs[place][0], graph.number(0)
+    return program() if zeros else computed
 
 
 def _through(

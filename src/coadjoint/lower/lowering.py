@@ -27,6 +27,7 @@ from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slope
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
+from coadjoint.lower.vanishing import hidden_zeros
 
 
 @dataclass(frozen=True)
@@ -293,8 +294,11 @@ def lower(equations: Equations) -> dict[str, Program]:
             equations, "constraint_residual", exact.residuals
         )
     if equations.projection is not None:
-        nearest = zip(setting.state, equations.projection.exact.rates, strict=True)
-        programs["projection"] = _program(equations.projection, "projection", tuple(nearest))
+        nearest = list(zip(setting.state, equations.projection.exact.rates, strict=True))
+        program = _program(equations.projection, "projection", nearest)
+        for place in hidden_zeros(program, equations):
+            nearest[place] = nearest[place][0], setting.field.zero
+        programs["projection"] = _program(equations.projection, "projection", nearest)
     if equations.followed:
         followed = [(f"d{name}/dt", rate) for name, rate in equations.followed]
         names = (*setting.state, *(name for name, _ in equations.followed))

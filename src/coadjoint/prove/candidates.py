@@ -28,6 +28,7 @@ findings. Read next: `coadjoint.prove.measures`, which asks for a volume instead
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
@@ -242,8 +243,10 @@ class CandidateSearch:
         return [self.field.normal(self.field[name] - root) for name, root in allowed]
 
     def _holds(self, relation: Element) -> bool:
-        """Whether a relation holds at points; what does not is certainly none."""
-        return not any(point.value(relation) for point in self.points(SPARE))
+        """Whether a relation holds at points; what does not, or has a pole, is certainly none."""
+        with suppress(ZeroDivisionError):
+            return not any(point.value(relation) for point in self.points(SPARE))
+        return False
 
     def _terms(self, element: Element) -> Terms | None:
         """The numerator as a polynomial in the generators; None where it is none."""
@@ -423,12 +426,12 @@ def _counted(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
         text = f"{size}, all {listed}" if names else "none but constants"
         return f"{scope}: {text}", "integrals", lambda: decision
     others = len(search.independent(found))
-    share = f"{len(found) - others} are" if others else "all are"
-    every = ", ".join(dict.fromkeys(each.text for each in search.known)) or "constants"
+    names_of = ", ".join(dict.fromkeys(each.text for each in search.known)) or "constants"
+    every = f"{names_of} and of {others} more of them" if others else names_of
     most, sure = "", "that there are so many polynomials is exact"
     if bounded:
         most, sure = " at the most", "the bound, and that there are so many polynomials, are exact"
-    text = f"{size}{most}, {certain} of it {listed}; {share} functions of {every}"
+    text = f"{size}{most}, {certain} of it {listed}; all are functions of {every}"
     discovery = Discovery(points, where.strip(", "), f"{sure}; for the rest {LUCK}")
     return f"{scope}: {text}", "integrals", lambda: discovery
 

@@ -202,6 +202,10 @@ _FIXES = MappingProxyType(
 )
 
 
+#: What a method says where not the claimed function but the relations of its set have a rate.
+LEAVES = "the motion leaves this set"
+
+
 def failure_text(claim: Claim) -> str:
     """Why a claim does not hold, and what to do, for people."""
     if claim.verdict is Verdict.SUPPORTED:
@@ -211,6 +215,8 @@ def failure_text(claim: Claim) -> str:
         )
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
     found = f"At {point} the difference" if point else f"By {claim.method} what is left"
+    if claim.method.endswith(LEAVES):
+        found = f"At {point} {LEAVES}: the rate of a relation"
     return (
         f"refuted: {claim.statement}. {found} is {claim.defect}; expected 0. "
         f"{_FIXES.get(claim.kind, _FIX)}"

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache, partial
+from itertools import chain
 from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
@@ -24,7 +26,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
 from coadjoint.prove.candidates import about_candidates, known_integrals
-from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
+from coadjoint.prove.certificate import LEAVES, Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
@@ -44,6 +46,7 @@ from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
+from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
 from coadjoint.prove.reversibility import about_reversal
@@ -86,6 +89,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
     field = routes[0].setting.field
     field.region = _region(routes[0])
+    _check_domain(spec.name, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
         found = _examined(spec, statement, examine, field)
@@ -122,6 +126,22 @@ def _region(first: Equations) -> Region:
     """Where claims are looked at: the domain of the spec."""
     momenta = LegendreMap(first).momenta if LegendreMap.applies(first) else {}
     return region(first, momenta)
+
+
+def _check_domain(name: str, field: Field) -> None:
+    """Look for a point of the domain: on an empty one anything is true.
+
+    Raises:
+        UndecidedError: None is found at which the motion has a value.
+    """
+    points = Points(field, ())
+    if next(chain(points.near_defaults(), points), None) is None:
+        raise UndecidedError(
+            f"{name}: no point is found in [domain] at which the motion has a value. Expected real "
+            "points with the declared signs. Correct [domain], the energy or the forces, or give "
+            "defaults near which there are some.",
+            system=name,
+        )
 
 
 def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
@@ -383,7 +403,20 @@ def _integral(first: Equations, claim: Integral) -> Decision:
     level = in_velocities(first, functions)
     kept = [rate for formula in claim.where for rate in _rates(first, formula)]
     where = Ideal(field, level, _vanishing(claim))
-    return decide_zero([*kept, *rates], field, where, parts)
+    return _conserved_on(where, kept, rates, parts)
+
+
+def _conserved_on(
+    where: Ideal, kept: Sequence[Element], rates: Sequence[Element], parts: Sequence[Element]
+) -> Decision:
+    """Whether rates vanish where relations hold, and so do those of the relations themselves."""
+    found = decide_zero([*kept, *rates], where.field, where, parts)
+    if kept and found.verdict is Verdict.REFUTED:
+        with suppress(UndecidedError):  # of a branch without points
+            left = decide_zero(kept, where.field, where, parts)
+            if left.verdict is Verdict.REFUTED:
+                return replace(left, method=f"{left.method}: {LEAVES}")
+    return found
 
 
 def _statement(claim: Integral) -> str:
@@ -397,10 +430,10 @@ def _constrained_integral(motion: ConstrainedRates, claim: Integral) -> Decision
     names = _emitted(first)
     parts = first.setting.components(claim.formula, names)
     level = [g for f in claim.where for g in first.setting.components(f, names)]
-    rates = [motion.rate(part) for part in (*level, *parts)]
+    kept, rates = ([motion.rate(each) for each in functions] for functions in (level, parts))
     text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
     where = motion.where.also(list(map(motion.in_state, level)), text)
-    return decide_zero(rates, motion.field, where, list(map(motion.in_state, parts)))
+    return _conserved_on(where, kept, rates, list(map(motion.in_state, parts)))
 
 
 def _vanishing(claim: Integral) -> str:

@@ -93,8 +93,9 @@ class LegendreMap:
         field = self.setting.field
         left = [matrix for _, matrix in self.blocks if not _keeps_sign(field, matrix)]
         if not left:
+            inside = "in all of [domain], " if field.region.conditions else ""
             return Invertible(
-                "wherever the Lagrangian is defined and the declared signs hold",
+                f"{inside}wherever the Lagrangian is defined and the declared signs hold",
                 "the determinants of the blocks of d2l/dxi2 keep their signs there",
             )
         point = witness_regular(field, *left)

@@ -171,8 +171,10 @@ class Ideal:
 
     def may_vanish(self, element: Element) -> bool:
         """Whether a polynomial in what moves may vanish, as far as we know, beside what does."""
-        moves = not self.field.reach(element) <= self.field.region.parameters
-        return moves and not self._signs.is_nonzero(element, self.excluded)
+        value = self.field.normal(element)  # cos^2 + sin^2 is 1
+        moves = not self.field.reach(value) <= self.field.region.parameters
+        factors = list(self._all_factors(value)) or [value]
+        return moves and not all(self._signs.is_nonzero(each, self.excluded) for each in factors)
 
     # -- branches of the zero set ---------------------------------------------------------
 
@@ -185,7 +187,7 @@ class Ideal:
         self._count, own = 0, self._between_parameters
         others = [each for each in self.relations if each not in own]
         found = list[Branch]()
-        for first in self._split(own, Branch()):
+        for first in tuple(self._split(own, Branch())):  # all before what follows is generic
             self._declared = first.rest
             start = Branch(first.solved, (), first.nonzero)
             found += self._split([*first.rest, *others], start)
@@ -194,6 +196,8 @@ class Ideal:
     def _regular(self, branch: Branch) -> list[Branch]:
         """A branch with what must not vanish there; none if that vanishes on all of it."""
         rest, found = Ideal(self.field, branch.rest), list[Element]()
+        if rest.contains(self.field.one):  # an empty branch
+            return []
         for element in self.nonzero:
             try:
                 value = self.field.normal(self._on(branch, element))

@@ -62,6 +62,8 @@ SEARCHED = (
     "rates and of det(eta, d eta/dt, ...)"
 )
 
+#: Where a condition does not rest on velocities.
+REST = "at rest"
 #: Factors of a density with their exponents.
 Powers = list[tuple[Element, Fraction]]
 
@@ -71,7 +73,7 @@ class Condition:
     """``V ln rho = -theta`` along one field.
 
     Attributes:
-        name: The velocity along which it is, or the bracket.
+        name: The velocity along which it is, or the bracket; or that it is at rest.
         parts: The components of V, then -theta.
     """
 
@@ -158,7 +160,7 @@ class Measure:
             )
             for name in self.free
         ]
-        return [*along, *([Condition("rest", still)] if any(x != 0 for x in still) else [])]
+        return [*along, *([Condition(REST, still)] if any(x != 0 for x in still) else [])]
 
     @cached_property
     def curved(self) -> list[Element]:
@@ -299,8 +301,11 @@ def _refusal(
     if contradiction is None:
         return None
     found, rank = contradiction
-    text = f"what it asks for along {', '.join(each.name for each in found)} contradicts itself"
-    method = f"{rank + 1} conditions of rank {rank} at a random point modulo {samples.prime}"
+    names = [each.name for each in found if each.name != REST]
+    places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(found))
+    text = f"what it asks for {' and '.join(places)} contradicts itself"
+    count = f"{rank + 1} conditions" if rank else "1 condition"
+    method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
     if _is_certain(motion, measure, samples, found, rank):
         proof = Decision(Verdict.PROVED, method)
         return f"{none}: {text}", "measure", lambda: proof

@@ -53,6 +53,8 @@ SMALL = Fraction(1, 16)
 NEAR = (Fraction(0), Fraction(1, 3), Fraction(1, 30), Fraction(1, 300))
 #: Size of the last step of Newton's method, beside which a point counts as one of the zero set.
 ARRIVED = mpmath.mpf(10) ** (15 - DIGITS)
+#: Size of a further step, with more digits and slopes of its own, beside which it is one.
+STAYED = 1000 * ARRIVED
 #: Size below which a value counts as zero at points of a zero set found by iteration.
 ON_BRANCH = mpmath.mpf(10) ** -20
 #: How far a value must be from zero to have a sign, where functions occur.
@@ -322,10 +324,18 @@ class Points:
             free, size = self._step(free, zeros, size)
             scale = 1 + max(map(abs, free.values()))
             if size < ARRIVED * scale:
-                return free
+                return free if self._stays(free, zeros, STAYED * scale) else None
             if count > PATIENCE and size > LARGE * scale:
                 return None
         return None
+
+    def _stays(self, free: Values, zeros: Sequence[Wanted], most: Any) -> bool:
+        """Whether a point is one of the zero set with twice as many digits, too.
+
+        Near a zero of high order slopes drown in rounding, and steps become small anywhere.
+        """
+        with mpmath.workdps(4 * DIGITS):
+            return bool(self._step(free, zeros)[1] < most)
 
     def _rounded(self, free: Values) -> Values | None:
         """A rational point near another one, of small numbers if these do."""
@@ -349,6 +359,8 @@ class Points:
             return [target - self.value(each, whole) for each, target in wanted]
 
         here = values(free)
+        if not any(here):  # as on all of a half space where sqrt(x^2) = x
+            return dict(free), mpmath.mpf(0)
         width = mpmath.mpf(10) ** -20 * min(max(before, ARRIVED**2), 1)
         slopes = mpmath.matrix(len(here), len(self.names))
         for column, name in enumerate(self.names):

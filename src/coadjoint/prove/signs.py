@@ -93,7 +93,8 @@ class Signs:
         """Whether all addends have one sign, and one of them vanishes nowhere."""
         moved = self._from_bounds(element)
         return self._sign(element) not in (None, 0) and any(
-            all(map(self._is_positive, powers)) for _, powers in self._addends(moved)
+            all(self._is_positive(name, element) for name in powers)
+            for _, powers in self._addends(moved)
         )
 
     def _sign(self, element: Element) -> int | None:
@@ -104,7 +105,9 @@ class Signs:
         addends = self._addends(moved)
         signs = {1 if number > 0 else -1 for number, _ in addends}
         powers = [each for _, part in addends for each in part.items()]
-        if len(signs) > 1 or not all(self._is_positive(n) or e % 2 == 0 for n, e in powers):
+        if len(signs) > 1 or not all(
+            e % 2 == 0 or self._is_positive(name, element) for name, e in powers
+        ):
             return None
         return signs.pop() if signs else 0
 
@@ -127,14 +130,17 @@ class Signs:
         called = self.field.functions_in(element)
         return any(name in self.field.reach(self.field.adjoined[g].argument) for g in called)
 
-    def _is_positive(self, name: str) -> bool:
-        """Whether a symbol, measured from its bound, or a function is positive."""
+    def _is_positive(self, name: str, element: Element) -> bool:
+        """Whether a symbol, as it is measured in an element, or a function is positive."""
         known = self.field.adjoined.get(name)
         if known is not None:
             return known.function == "exp" or (
                 known.function == "sqrt" and self.is_nonzero(known.argument)
             )
-        return name in self._bounds
+        side, bound = self._bounds.get(name, (0, Fraction(0)))
+        if self._is_called(element, name):  # it is not measured from its bound
+            return side == 1 and bound >= 0
+        return side != 0
 
     def argument(self, element: Element) -> Element | None:
         """The argument of an element that is a square root."""

@@ -211,17 +211,26 @@ def _decide_on_branches(
 ) -> Decision:
     """Whether every element is zero on each branch."""
     ring, counts, split = where.field, list[int](), 0
+    empty: UndecidedError | None = None  # unless another branch refutes
     for branch in where.branches:
         with suppress(ZeroDivisionError):  # a pole on all of the branch
-            values = [ring.substitute(element, branch.solved) for element in elements]
+            named = (*where.given, *defined)
+            values = [ring.substitute(each, branch.solved) for each in (*elements, *named)]
             split += 1
             rest = Ideal(ring, branch.rest)
-            left = [value for value in values if not rest.contains(value)]
-            named = (*where.given, *defined)
-            found = _look(left, ring, branch, where.scope, named) if left else None
+            left = [value for value in values[: len(elements)] if not rest.contains(value)]
+            if not left:
+                continue
+            try:
+                found = _look(left, ring, branch, where.scope, named)
+            except UndecidedError as error:
+                empty = error
+                continue
             if isinstance(found, Decision):
                 return found
-            counts += [] if found is None else [found]
+            counts.append(found)
+    if empty is not None:
+        raise empty
     if not where.branches:
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
     if not split:
@@ -241,7 +250,7 @@ def _proof(
         UndecidedError: No point is found; anything is true of an empty set.
     """
     poles = _poles(elements, where)
-    named = [each for each in defined if not where.field.function_free(each)]
+    named = [each for each in defined if not _is_polynomial(each, where.field)]
     found = where.points([*named, *poles]) if poles or named else where.some_points
     if not any(_is_regular(poles, *at) for at in found):
         if not where.branches:
@@ -263,6 +272,12 @@ ADVICE = (
     "Expected real points, in [domain] and with the declared signs, at which the claim has a "
     "value. Correct the claim, or give defaults near which there are some."
 )
+
+
+def _is_polynomial(element: Element, ring: Field) -> bool:
+    """Whether an element has a value at every point."""
+    divided = any(written.divisors for written in ring.quotients(element))
+    return ring.function_free(element) and not divided
 
 
 def _poles(elements: Sequence[Element], where: Ideal) -> list[Element]:
@@ -307,7 +322,8 @@ def _look(
             with mpmath.workdps(DIGITS):
                 value = _value(element, ring, point, branch)
             if value:
-                exact = ring.function_free(element) and not branch.rest
+                written = (element, *branch.solved.values())
+                exact = not branch.rest and all(map(ring.function_free, written))
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
                 shown = _shown(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)

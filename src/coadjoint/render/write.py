@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from coadjoint.errors import OutputError
+from coadjoint.errors import OutputError, remedy_for
 from coadjoint.render.ownership import (
     LOCK,
     MANIFEST,
@@ -299,7 +299,8 @@ def _reported(path: Path) -> Iterator[None]:
     except OSError as error:
         raise OutputError(
             f"{path} could not be written: {error.strerror or error}; what stood there is "
-            "untouched. Expected a writable folder with free space: check permissions and disk.",
+            "untouched. Expected a writable folder with free space: "
+            f"{remedy_for(error) or 'Check permissions and disk.'}",
             path=str(path),
             found=error.strerror or str(error),
             expected="a writable folder with free space",

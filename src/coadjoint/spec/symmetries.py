@@ -34,7 +34,18 @@ from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.schema import ClaimPart, SymmetryPart, TransformationPart
 from coadjoint.spec.shapes import words
 from coadjoint.spec.source import Source
-from coadjoint.spec.tree import Binary, Call, Index, Name, Negate, Node, Power, children, walk_up
+from coadjoint.spec.tree import (
+    Binary,
+    Call,
+    Index,
+    Name,
+    Negate,
+    Node,
+    Number,
+    Power,
+    children,
+    walk_up,
+)
 
 #: Functions that are linear in each argument, so that degrees add up.
 _MULTILINEAR = ("dot", "cross", "outer", "commutator")
@@ -220,7 +231,7 @@ class SymmetryReader:
         element, *_ = names
         try:
             degree = degree_in(formula.tree, tuple(names))
-            if degree != 1:
+            if degree not in (1, None):
                 raise ExpressionError(
                     f"the value is of degree {degree} in {element!r}",
                     0,
@@ -341,8 +352,8 @@ class SymmetryReader:
         return formula
 
 
-def degree_in(tree: Node, names: Sequence[str]) -> int:
-    """The degree of an expression in some names, if all its terms have the same.
+def degree_in(tree: Node, names: Sequence[str]) -> int | None:
+    """The degree of an expression in some names, if all its terms have the same; None of 0.
 
     Raises:
         ExpressionError: They do not, or a name stands in a divisor or a function.
@@ -350,35 +361,40 @@ def degree_in(tree: Node, names: Sequence[str]) -> int:
     >>> from coadjoint.spec.expressions import read_expression
     >>> degree_in(read_expression("cross(xi, r) + 2*xi"), ["xi"])
     1
+    >>> degree_in(read_expression("vector(0, xi)"), ["xi"])
+    1
     """
-    degrees: dict[int, int] = {}
+    degrees: dict[int, int | None] = {}
     for node in walk_up(tree):
         below = [degrees[id(child)] for child in children(node)]
         degrees[id(node)] = _degree(node, below, names)
     return degrees[id(tree)]
 
 
-def _degree(node: Node, below: Sequence[int], names: Sequence[str]) -> int:
+def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> int | None:
     """The degree of a node by the degrees of its parts."""
+    known = [degree for degree in below if degree is not None]
     match node:
+        case Number(value=value):
+            return 0 if value else None
         case Name(name=found) | Index(name=found):
             return int(found in names)
         case Binary(operator="*"):
-            return sum(below)
+            return sum(known) if len(known) == len(below) else None
         case Call(function=function) if function in _MULTILINEAR:
-            return sum(below)
+            return sum(known) if len(known) == len(below) else None
         case Power(exponent=exponent) if exponent > 0:
-            return below[0] * exponent
-    same = all(a == b for a, b in combinations(below, 2))
+            return known[0] * exponent if known else None
+    same = all(a == b for a, b in combinations(known, 2))
     plain = isinstance(node, (Negate, Binary)) or getattr(node, "function", "") in _LINEAR
     divided = isinstance(node, Binary) and node.operator == "/"
     if divided and not below[1]:
         return below[0]
-    if any(below) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
+    if any(known) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
         raise fault_at(
             node,
             f"this is not linear in {names[0]!r}",
             found=names[0],
             expected=f"sums of terms that are linear in {names[0]}",
         )
-    return below[0] if below else 0
+    return known[0] if known else None if plain else 0

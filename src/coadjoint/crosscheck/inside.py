@@ -1,0 +1,31 @@
+"""Cross-check, points of a domain: where kernels are compared if few random points have values.
+
+Comes in: Equations. Goes out: points at which ``[domain]`` holds and every square root and
+logarithm has a value, as `coadjoint.prove.points` finds them.
+Read next: `coadjoint.crosscheck.points`, which draws others near them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain, islice
+
+import numpy as np
+
+from coadjoint.crosscheck.points import Array
+from coadjoint.derive import Equations
+from coadjoint.derive.domain import region
+from coadjoint.prove.points import Points
+
+#: Points that are found; others are drawn near them.
+CENTRES = 8
+
+
+def points_inside(equations: Equations, names: Sequence[str]) -> Array:
+    """Points of a domain, shape ``(names, N)``; NaN for what the domain does not depend on."""
+    field = equations.setting.field
+    field.region = region(equations)
+    found = Points(field, ())
+    points = islice(chain(found.near_defaults(), found), CENTRES)
+    rows = [[float(point.get(name, np.nan)) for name in names] for point in points]
+    return np.array(rows, dtype=np.float64).reshape(-1, len(names)).T

@@ -1,0 +1,55 @@
+"""Lowering, outputs that are zero everywhere although the kernel would compute them.
+
+Comes in: the Programs ``jacobian`` and ``projection``. Goes out: the places of these outputs. They
+rest on definitions, and on functions with relations between them, so that an output may vanish only
+once everything is put in. What is not zero at a random point modulo a prime is not zero; of the
+others closed forms decide, exactly.
+Read next: `coadjoint.derive.decided`, which decides the definitions.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+
+from coadjoint.algebra.linear import PRIME
+from coadjoint.derive import Equations
+from coadjoint.derive.decided import TRIES, Decided, call_modulo
+from coadjoint.lower.program import ZERO, Program, run
+from coadjoint.poisson.ranks import Residue, residue
+
+
+def hidden_zeros(program: Program, equations: Equations) -> list[int]:
+    """Places of the outputs that are computed and zero everywhere."""
+    return list(vanishing(program.name, _suspects(program), equations))
+
+
+def vanishing(function: str, places: Iterable[int], equations: Equations) -> Iterator[int]:
+    """Those of some outputs of a Jacobian or projection whose closed forms are zero."""
+    own = equations.projection if function == "projection" else equations
+    assert own is not None, "projected only where constraints are kept"
+    field, state, known = own.setting.field, own.setting.state, None
+    for place in places:
+        if known is None:
+            known = Decided(field, state)
+            for name, value in own.exact.definitions:
+                known.define(name, value)
+        i, j = divmod(place, len(state)) if function == "jacobian" else (place, None)
+        closed = known.closed(own.exact.rates[i])
+        if closed is None:
+            continue
+        if field.is_zero(closed if j is None else field.derivative(closed, state[j])):
+            yield place
+
+
+def _suspects(program: Program) -> list[int]:
+    """Places of the outputs that are computed, and zero at a random point modulo a prime."""
+    source, names = random.Random(1), (*program.state, *program.parameters)  # noqa: S311
+    for _ in range(TRIES):
+        inputs = {name: Residue(source.randrange(1, PRIME)) for name in names}
+        with suppress(ZeroDivisionError):  # a pole, or no square root
+            found = run(program, inputs, residue, call_modulo)
+            pairs = enumerate(zip(found, program.outputs, strict=True))
+            return [n for n, (x, output) in pairs if not x.value and output.value != ZERO]
+    return []
