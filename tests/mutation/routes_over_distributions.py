@@ -75,7 +75,6 @@ PROJECTED = (
         "nonholonomic",
         (),
         ("+ slope + force", "+ slope - force", "an external force of the other sign"),
-        ("found[name] - s for name", "found[name] + s for name", "a friction that drives"),
         tests=FORCED,
     ),
 )

@@ -47,6 +47,21 @@ SHARED = (
         tests=("tests/derive/test_routes.py",),
     ),
     *of(
+        "forces",
+        "external",
+        ("heavy_top_damped",),
+        ("found[name] - s for name", "found[name] + s for name", "a friction that drives"),
+        ("x + f for x, f in zip(free", "x - f for x, f in zip(free"),
+    ),
+    *of(
+        "forces",
+        "external",
+        (),
+        (".inverse_mass, along)", ".mass, along)"),
+        ("+ force * weight", "+ force", "a symmetric matrix that is pulled twice"),
+        tests=("tests/derive/test_external.py", "-k", "mass_matrix or symmetric"),
+    ),
+    *of(
         "formulas",
         "interpret",
         ("bloch_iserles_3",),
