@@ -71,6 +71,10 @@ conserved = ["energy", "INTEGRAL"]
 """
 
 
+#: A function of momenta, which free motions keep.
+LEVELS = "(p2^2 + sqrt(p1^2 + 1))"
+
+
 def claimed(text, integral, *where):
     """The claim that something is conserved where relations hold."""
     listed = ", ".join(f'"{each}"' for each in where)
@@ -102,6 +106,9 @@ def last_conserved(text, *changes):
         ("q1", ["sin(p2)*p1"], REFUTED),
         ("q2", ["p1 - sqrt(q1 - 100)"], REFUTED),  # random points have q1 < 100
         ("q1", ["(p1 - p2*cos(q2))*(p1 + p2*cos(q2))"], REFUTED),
+        # two levels of a kept function; its root is seen when p1^2 is written by it
+        ("q2*(H - 5)".replace("H", LEVELS), [f"({LEVELS} - 3)*({LEVELS} - 5)"], REFUTED),
+        ("p1*(H - 5)".replace("H", LEVELS), [f"({LEVELS} - 3)*({LEVELS} - 5)"], PROVED),
         ("q1", ["p1^2*q2^2 - p1^2*q2^2*cos(p2)^2"], REFUTED),  # sin(p2) = 0
         ("q1", ["p1^2*exp(p2) - p1^2*exp(p2)*cos(a)^2"], PROVED),  # for almost all a, p1 = 0
         ("q1", ["sin(p2)*p1 - (1 - cos(p2))*p2"], REFUTED),  # reducible, and no factor shows it

@@ -20,7 +20,7 @@ from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, reduce
-from itertools import combinations, islice, permutations
+from itertools import combinations, islice
 from math import isqrt
 from typing import Any
 
@@ -37,8 +37,8 @@ BRANCHES = 32
 #: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
 SLOPE = 4
 
-#: Sines whose squares are written as those of cosines at a time, to find factors.
-PAIRS = 2
+#: Symbols that are eliminated at a time by the relations of functions, to find factors.
+ELIMINATED = 2
 #: Addends of a relation that is factored; larger ones may take minutes.
 FACTORED = 400
 
@@ -221,7 +221,7 @@ class Ideal:
     def _all_factors(self, element: Element) -> Iterator[Element]:
         """The irreducible factors of a numerator that is not too long.
 
-        Modulo ``s^2 + c^2 = 1`` one form of it may have factors where another has none:
+        Modulo the relations of functions one form of it may have factors where another has none:
         ``x^2 - y^2 c^2`` has two, ``x^2 - y^2 + y^2 s^2`` has one.
         """
         numerator = _numerator(element)
@@ -236,19 +236,34 @@ class Ideal:
             yield from self._all_factors(part) if len(found) > 1 else (part,)
 
     def _other_forms(self, numerator: PolyElement) -> Iterator[PolyElement]:
-        """A numerator with squares of sines as those of cosines, and the other way round."""
-        names = list(map(str, numerator.ring.symbols))
-        degrees = dict(zip(names, numerator.degrees(), strict=True))
-        pairs = [
-            (names.index(one), names.index(other))
-            for known in self.field.adjoined.values()
-            if known.function == "sin" and {known.generator, known.partner} <= set(names)
-            for one, other in permutations((known.generator, known.partner))
-            if degrees[one] > 1
+        """A numerator with other symbols eliminated by the relations of its functions."""
+        present = numerator.degrees()
+        places = {str(symbol): n for n, symbol in enumerate(numerator.ring.symbols)}
+        choices = [
+            (place, power, value)
+            for relation in self._relations_in(numerator, places)
+            for place, power, value in _eliminations(relation)
+            if present[place] >= power
         ]
-        for count in range(1, min(len(pairs), PAIRS) + 1):
-            for chosen in combinations(pairs, count):
-                yield reduce(_with_other_square, chosen, numerator)
+        for count in range(1, min(len(choices), ELIMINATED) + 1):
+            for chosen in combinations(choices, count):
+                yield reduce(_eliminated, chosen, numerator)
+
+    def _relations_in(
+        self, numerator: PolyElement, places: Mapping[str, int]
+    ) -> Iterator[PolyElement]:
+        """``s^2 + c^2 - 1``, and ``h^2 - u`` of ``h = sqrt(u)``, where a numerator has them."""
+        present, gens = numerator.degrees(), numerator.ring.gens
+        for known in self.field.adjoined.values():
+            own = places[known.generator]
+            if known.function == "sin":
+                other = places[known.partner]
+                if present[own] > 0 or present[other] > 0:
+                    yield gens[own] ** 2 + gens[other] ** 2 - 1
+            if known.function == "sqrt" and present[own] > 0 and known.argument != 0:
+                (argument,) = known.argument.combined().parts
+                if not argument.powers:
+                    yield gens[own] ** 2 - argument.numer
 
     @cached_property
     def some_points(self) -> tuple[tuple[Points, Values], ...]:
@@ -437,13 +452,31 @@ def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyEleme
         yield list(map(str, symbols)), factor
 
 
-def _with_other_square(polynomial: PolyElement, places: tuple[int, int]) -> PolyElement:
-    """``s^2`` replaced by ``1 - c^2``, with the places of s and c."""
-    own, other = places
-    square = 1 - polynomial.ring.gens[other] ** 2
-    found = polynomial.ring.zero
-    for power, part in _powers(polynomial, own).items():
-        found += part * polynomial.ring.gens[own] ** (power % 2) * square ** (power // 2)
+#: A symbol by its place, a power of it, and what that is.
+Elimination = tuple[int, int, PolyElement]
+
+
+def _eliminations(relation: PolyElement) -> Iterator[Elimination]:
+    """The symbols x of which a relation has ``x`` or ``x^2`` alone, times a number: the root last.
+
+    >>> from sympy import QQ
+    >>> ring = PolyRing(["x", "h"], QQ, lex)
+    >>> x, h = ring.gens
+    >>> list(_eliminations(h**2 - x**2 - 1))
+    [(0, 2, h**2 - 1), (1, 2, x**2 + 1)]
+    """
+    for place, degree in enumerate(relation.degrees()):
+        parts = _powers(relation, place)
+        if degree in (1, 2) and len(parts) - (0 in parts) == 1 and parts[degree].is_ground:
+            yield place, degree, -parts.get(0, relation.ring.zero) / parts[degree].LC
+
+
+def _eliminated(polynomial: PolyElement, elimination: Elimination) -> PolyElement:
+    """A polynomial with a power of a symbol replaced."""
+    place, degree, value = elimination
+    symbol, found = polynomial.ring.gens[place], polynomial.ring.zero
+    for power, part in _powers(polynomial, place).items():
+        found += part * symbol ** (power % degree) * value ** (power // degree)
     return found
 
 
