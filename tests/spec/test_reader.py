@@ -140,6 +140,12 @@ SHIPPED = {
         "I1 I2 I3 m g chi1 chi2 chi3 d1 d2 d3 tau1 tau2 tau3",
         ("euler-poincare", "lie-poisson", "hamilton-pontryagin", "newton-euler"),
     ),
+    "double_bracket_body": (
+        "Pi1 Pi2 Pi3",
+        "I1 I2 I3 alpha",
+        ("euler-poincare", "lie-poisson", "nambu", "newton-euler"),
+    ),
+    "landau_lifshitz_gilbert": ("m1 m2 m3", "gamma alpha B1 B2 B3 K", ("lie-poisson",)),
     "bloch": ("M1 M2 M3", "omega1 omega2 omega3 T1 T2 M0", ("lie-poisson",)),
     "lorenz_gyrostat": ("x y z", "sigma r b", ("nambu", "poisson")),
     "bloch_iserles_2": ("X11 X12 X22", "N12", ("lax", *TWO)),

@@ -305,7 +305,7 @@ class Equations:
     def keeps_energy(self) -> bool:
         """Whether nothing acts that could change the energy: no force, no constraint that moves."""
         free = self.distribution is None or self.distribution.is_linear
-        return free and not self.spec.is_driven
+        return free and self.spec.keeps_energy
 
     def work(self, function: Element) -> Element:
         """What external forces add to the rate of a function of the state."""

@@ -9,6 +9,9 @@ function R,
 
 Where velocities of coordinates are the state it gives the acceleration :math:`M^{-1} f`. A force
 along a momentum, or along a coordinate of a declared bracket, is added to its rate as it stands.
+Dissipation by a symmetric bracket G beside the Poisson bracket P (Bloch, Krishnaprasad, Marsden and
+Ratiu 1996; Morrison 1986) is :math:`\dot x = P\,\partial h + P G P\,\partial h`, or with an
+entropy S :math:`\dot x = P\,\partial h + G\,\partial S`.
 Comes in: Equations of a motion by its energy alone. Goes out: Equations with the forces.
 Read next: `coadjoint.derive.frames`, for motions on which constraints act as well.
 """
@@ -20,11 +23,17 @@ from dataclasses import replace
 
 from coadjoint.derive.configuration import applied, mechanics
 from coadjoint.derive.equations import Equations, Step, rate, symbol
+from coadjoint.derive.interpret import entries
+from coadjoint.derive.legendre import Matrix
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
-LAW = "f - dR/dxi"
-LATEX = r"f - \partial R / \partial \xi"
+#: What may be added, as LaTeX.
+LATEX = {
+    "f - dR/dxi": r"f - \partial R / \partial \xi",
+    "P G P dh": r"P G P\,\partial h",
+    "G dS": r"G\,\partial S",
+}
 
 
 def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Element, ...]:
@@ -52,21 +61,24 @@ def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
 
 
 def forced(free: Equations) -> Equations:
-    """The motion with the forces that the spec declares; the same where it declares none.
+    """The motion with what the spec declares beside the energy; the same where that is nothing.
 
     Routes with constraints, and those with momenta of their own, put the forces in themselves.
     """
     setting = free.setting
     if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
         return free
-    added = tuple(added_rates(setting))
+    forces, relaxed = added_rates(setting), relaxed_rates(free)
+    added = tuple(f + x for f, x in zip(forces, relaxed, strict=True))
     rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
     lines = zip(setting.state, added, rates, strict=True)
     moved = [(name, force, whole) for name, force, whole in lines if force != 0]
+    relaxation = setting.spec.relaxation
+    text = ["f - dR/dxi"] * setting.spec.is_forced + ([relaxation.added] if relaxation else [])
     step = Step(
-        "Forces, added to the rates",
-        "dx/dt = ... + f - dR/dxi",
-        r"\dot x = \dots + f - \partial R / \partial \xi",
+        "What acts beside the energy, added to the rates",
+        f"dx/dt = ... + {' + '.join(text)}",
+        rf"\dot x = \dots + {' + '.join(LATEX[each] for each in text)}",
         (
             *((symbol(f"f_{name}"), force) for name, force, _ in moved),
             *((rate(name), whole) for name, _, whole in moved),
@@ -88,3 +100,30 @@ def added_rates(setting: Setting) -> list[Element]:
         moved = applied(field, mechanics(setting).inverse_mass, along)
         found |= zip(velocities, moved, strict=True)
     return [found.get(name, field.zero) for name in setting.state]
+
+
+def metric(setting: Setting) -> Matrix:
+    """G of the declared double or metriplectic bracket, with a row for each state component."""
+    relaxation, field = setting.spec.relaxation, setting.field
+    assert relaxation is not None, "asked for only beside one"
+    size, value = len(setting.state), setting.value(relaxation.G)
+    if isinstance(value, tuple):
+        return tuple(tuple(field.zero + x for x in entries(row)) for row in value)
+    return tuple(
+        tuple(field.zero + value if i == j else field.zero for j in range(size))
+        for i in range(size)
+    )
+
+
+def relaxed_rates(free: Equations) -> tuple[Element, ...]:
+    """``P G P dh`` with the rates of the free motion for ``P dh``, or ``G dS``."""
+    setting, relaxation = free.setting, free.spec.relaxation
+    field, tensor = setting.field, free.exact.poisson_tensor
+    if relaxation is None:
+        return (field.zero,) * len(setting.state)
+    if relaxation.S is not None:
+        return applied(
+            field, metric(setting), field.gradient(setting.formula(relaxation.S), setting.state)
+        )
+    assert tensor is not None, "the reader asks for a bracket"
+    return applied(field, tensor, applied(field, metric(setting), free.exact.rates))

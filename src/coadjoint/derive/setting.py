@@ -323,6 +323,8 @@ def formulas(spec: Spec) -> tuple[Formula, ...]:
     stated += [formula for law in spec.newton for formula in (law.mass, law.force)]
     stated += [side for each in spec.constraints for side in (each.left, each.right)]
     stated += [*spec.forces.values(), *([spec.dissipation] if spec.dissipation else ())]
+    if spec.relaxation is not None:
+        stated += [f for f in (spec.relaxation.G, spec.relaxation.S) if f is not None]
     stated += [side for each in spec.domain for side in (each.left, each.right)]
     stated += [spec.rolling.arm] if spec.rolling is not None else []
     stated += [each.rate for each in spec.reconstruction if each.rate is not None]

@@ -213,7 +213,7 @@ def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
         return
     bracket = ReducedBracket(first)
     momenta = ", ".join(map(bracket.label, range(len(bracket.names))))
-    forced = " and the forces" if first.spec.is_driven else ""
+    forced = " and the forces" if first.spec.is_forced else ""
     yield (
         "dH/dM = eta and dH/dz = -dl_c/dz, with M = dl_c/deta along the distribution",
         "bracket",

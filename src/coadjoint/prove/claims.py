@@ -49,6 +49,7 @@ from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
+from coadjoint.prove.relaxation import about_relaxation, lost
 from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
 from coadjoint.prove.searches import within_budget
@@ -320,12 +321,13 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
-            f"the motion by {first.route} is {{x, h}}{' and the forces' * spec.is_driven}",
+            f"the motion by {first.route} is {{x, h}}{_beside(first)}",
             "equivalence",
             partial(hamiltonian_defects, first, energy, tensor),
         )
     if energy is not None:
         yield Balance(first).statement, "conserved", partial(_energy_defects, first, energy)
+    yield from about_relaxation(first)
     proved = list[Element]()
     for place, casimir in enumerate(spec.casimirs):
         decide = cache(partial(_casimir, first, casimir))
@@ -347,11 +349,18 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, first, seen)
 
 
+def _beside(first: Equations) -> str:
+    """What acts beside the energy, as the end of a statement."""
+    relaxation = first.spec.relaxation
+    parts = [" and the forces"] * first.spec.is_forced
+    return "".join([*parts, *([f" and {relaxation.added}"] if relaxation else [])])
+
+
 def _energy_defects(first: Equations, energy: Element) -> list[Element]:
     """The rate of the energy minus what its balance says."""
     balance = Balance(first)
     slopes = dict(zip(first.setting.state, gradient(first, energy), strict=True))
-    power = balance.power + balance.work_along_state(slopes)
+    power = balance.power + balance.work_along_state(slopes) + lost(first, energy)
     return [rate - gain for rate in drift(first, energy) for gain in in_velocities(first, [power])]
 
 
@@ -361,7 +370,7 @@ def _about_survival(first: Equations, casimir: Formula) -> Iterator[Examined]:
         return
     parts = first.setting.components(casimir)
     if all(first.setting.field.is_zero(first.work(part)) for part in parts):
-        statement = f"{casimir.in_one_line} is conserved: the forces do not change it"
+        statement = f"{casimir.in_one_line} is conserved: nothing that acts changes it"
         yield statement, "conserved", lambda: _drifts(first, parts)
 
 

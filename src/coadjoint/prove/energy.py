@@ -38,6 +38,8 @@ class Balance:
         terms = ["the power of the forces"] if self.spec.forces else []
         if self.spec.dissipation is not None:
             terms.append("-2 R" if self._is_quadratic else "-<dR/dxi, xi>")
+        if self.spec.relaxation is not None and self.spec.relaxation.S is None:
+            terms.append("-<P dh, G P dh>")
         if self._moving:
             terms.append("the work of the moving constraints")
         if not terms:

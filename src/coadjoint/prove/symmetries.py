@@ -102,7 +102,7 @@ def _noether(
     if invariant:
         names = [symmetry.components[n] for n in invariant]
         subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
-        idle = " and the forces do no work along it" * first.spec.is_driven
+        idle = " and nothing that acts changes it" * first.spec.is_driven
         yield (
             f"{subject} is conserved by Noether's theorem, since its flow keeps h{idle}",
             "symmetry",

@@ -325,7 +325,7 @@ def _look(
                 written = (element, *branch.solved.values())
                 exact = not branch.rest and all(map(ring.function_free, written))
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
-                shown = _shown(points, point)
+                shown = shown_point(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)
             # without functions the element is not zero, and another point shows it
             seen += value is not None and (bool(branch.rest) or not ring.function_free(element))
@@ -397,7 +397,7 @@ def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:
     return found.value, found.size
 
 
-def _shown(points: Points, point: Values) -> dict[str, str]:
+def shown_point(points: Points, point: Values) -> dict[str, str]:
     """A point as text: the symbols on which values rest, exact where they are."""
     ring, branch = points.ring, points.branch
     reached = frozenset[str]().union(*map(ring.reach, (*points.elements, *branch.rest)))

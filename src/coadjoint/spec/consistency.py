@@ -44,7 +44,7 @@ _ROUTED = (
     *("lax", "newton", "clebsch"),
 )
 #: Tables that act on the motion, so that every route must know them.
-_ACTING = ("constraints", "forces", "dissipation")
+_ACTING = ("constraints", "forces", "dissipation", "double_bracket", "metriplectic")
 #: What a kind of spec has, in words.
 _KINDS = {
     "algebra": "[algebra]",

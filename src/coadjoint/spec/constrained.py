@@ -69,6 +69,31 @@ def reaction_shapes(constraints: Sequence[Constraint]) -> dict[str, Shape]:
 
 
 @dataclass(frozen=True)
+class Relaxation:
+    """Dissipation by a symmetric bracket beside the Poisson bracket P.
+
+    Attributes:
+        G: Symmetric and positive semidefinite: a scalar, times the unit matrix, or a matrix with a
+            row for each component of the state.
+        S: The entropy of a metriplectic motion, ``dx/dt = P dh + G dS``; None for a double
+            bracket, ``dx/dt = P dh + P G P dh``.
+    """
+
+    G: Formula
+    S: Formula | None = None
+
+    @property
+    def table(self) -> str:
+        """The table of a spec that declares it."""
+        return "double_bracket" if self.S is None else "metriplectic"
+
+    @property
+    def added(self) -> str:
+        """What it adds to the rates of the state."""
+        return "P G P dh" if self.S is None else "G dS"
+
+
+@dataclass(frozen=True)
 class Condition:
     """An inequality that bounds where a system is defined.
 

@@ -20,6 +20,31 @@ class DissipationPart(Part):
     R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
 
 
+#: What is enough for a claim, if not a proof.
+Accept = Annotated[
+    Literal["numerical"] | None,
+    Field(
+        description="'numerical' if values at random points are enough for this claim; by default "
+        "it must be proved"
+    ),
+]
+
+
+class DoubleBracketPart(Part):
+    """Dissipation along the symplectic leaves: Casimirs are kept, the energy falls."""
+
+    G: str = Field(description="symmetric, positive semidefinite: a number, or a matrix")
+    accept: Accept = None
+
+
+class MetriplecticPart(Part):
+    """Dissipation along level sets of the energy: it is kept, the entropy S grows."""
+
+    S: str = Field(description="the entropy, a Casimir")
+    G: str = Field(description="symmetric, positive semidefinite, with G dh = 0")
+    accept: Accept = None
+
+
 class RollingPart(Part):
     """A body that rolls on a plane."""
 

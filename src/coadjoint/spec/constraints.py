@@ -12,13 +12,20 @@ import re
 from collections.abc import Mapping, Sequence
 
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.constrained import Condition, Constraint, Section, reaction_shapes
+from coadjoint.spec.constrained import (
+    Condition,
+    Constraint,
+    Relaxation,
+    Section,
+    reaction_shapes,
+)
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
 from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Formula, Variable
 from coadjoint.spec.names import refusal
 from coadjoint.spec.positions import KeyPath
+from coadjoint.spec.quantities import state_of
 from coadjoint.spec.relations import EQUATION, INEQUALITIES, read_relation
 from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import SpecFile
@@ -190,6 +197,48 @@ class ConstraintReader:
                 hint="Declare velocities, or write what acts along a momentum in [forces].",
             )
         return formula
+
+    def relaxation(self) -> Relaxation | None:
+        """Dissipation by a symmetric bracket.
+
+        Raises:
+            SpecError: There are two, the motion is restricted, or G has another size than the
+                state.
+        """
+        if self.file.double_bracket is not None and self.file.metriplectic is not None:
+            raise self.source.fault(
+                ("metriplectic",),
+                "there are both [double_bracket] and [metriplectic]",
+                found="metriplectic",
+                expected="one of them: the first keeps Casimirs, the second the energy",
+                hint="Remove [metriplectic] or [double_bracket].",
+            )
+        table = "double_bracket" if self.file.double_bracket is not None else "metriplectic"
+        part = getattr(self.file, table)
+        if part is None:
+            return None
+        self._check_whole(table)
+        key: KeyPath = (table, "G")
+        scope = make_scope("a metric", self.motion, self.quantities)
+        G = read_formula(self.source, key, part.G, scope, any_shape=True)
+        size = sum(len(each.components) for each in state_of(self.variables))
+        if G.shape not in ((), (size, size)):
+            raise self.source.fault(
+                key,
+                f"G is {words(G.shape)}",
+                found=words(G.shape),
+                expected=f"a number, or a {size} x {size} matrix with a row for each component of "
+                "the state",
+            )
+        if table == "double_bracket":
+            return Relaxation(G)
+        scope = make_scope("an entropy", self._fixed_state, self.quantities)
+        return Relaxation(G, read_formula(self.source, (table, "S"), part.S, scope))
+
+    @property
+    def _fixed_state(self) -> tuple[str, ...]:
+        """Roles of the state."""
+        return tuple(dict.fromkeys(each.role for each in state_of(self.variables)))
 
     def _check_whole(self, table: str) -> None:
         """Nothing acts on a motion that is restricted to a submanifold."""

@@ -21,6 +21,7 @@ from coadjoint.spec.constrained import (
     Constraint,
     Reconstructed,
     ReducedMomentum,
+    Relaxation,
     Rolling,
     Section,
 )
@@ -42,6 +43,7 @@ __all__ = [
     "Poisson",
     "Reconstructed",
     "ReducedMomentum",
+    "Relaxation",
     "Rolling",
     "Section",
     "Shape",
@@ -333,6 +335,7 @@ class Spec:
             momentum or coordinate to whose rate it is added.
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
         domain: Where the system is defined, as far as declared.
+        relaxation: Dissipation by a symmetric bracket, or None.
         rolling: How the body rolls on a plane, if it does.
         reconstruction: Variables that follow from the motion.
         sections: Sections of the constraint distribution with their momenta.
@@ -371,6 +374,7 @@ class Spec:
     forces: Mapping[str, Formula] = field(default_factory=dict)
     dissipation: Formula | None = None
     domain: tuple[Condition, ...] = ()
+    relaxation: Relaxation | None = None
     rolling: Rolling | None = None
     reconstruction: tuple[Reconstructed, ...] = ()
     sections: tuple[Section, ...] = ()
@@ -429,8 +433,19 @@ class Spec:
 
     @property
     def is_driven(self) -> bool:
-        """Whether forces or dissipation act beside the energy."""
+        """Whether anything acts beside the energy: forces or dissipation of any kind."""
+        return self.is_forced or self.relaxation is not None
+
+    @property
+    def is_forced(self) -> bool:
+        """Whether forces act, or friction by Rayleigh's function."""
         return bool(self.forces) or self.dissipation is not None
+
+    @property
+    def keeps_energy(self) -> bool:
+        """Whether nothing that acts beside the energy changes it."""
+        metriplectic = self.relaxation is None or self.relaxation.S is not None
+        return metriplectic and not self.is_forced
 
     @property
     def in_frame(self) -> bool:

@@ -16,6 +16,7 @@ import stat
 from collections.abc import Sequence
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
@@ -62,11 +63,7 @@ from coadjoint.spec.reductions import restricted
 from coadjoint.spec.representations import read_representations, representation_of
 from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import (
-    ClaimPart,
-    FlagPart,
     SpecFile,
-    SymmetryPart,
-    TransformationPart,
 )
 from coadjoint.spec.source import Source
 from coadjoint.spec.structure import read_parameter, read_variable
@@ -192,6 +189,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         forces=constrained.forces(),
         dissipation=constrained.dissipation(),
         domain=constrained.domain(constraints),
+        relaxation=constrained.relaxation(),
         rolling=rolling,
         reconstruction=followed,
         sections=sections,
@@ -205,11 +203,16 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
 def _accepted(file: SpecFile) -> frozenset[KeyPath]:
     """The keys of the claims for which support by numbers is enough."""
     claims = file.claims
-    parts: dict[KeyPath, ClaimPart | FlagPart | SymmetryPart | TransformationPart] = {
+    parts: dict[KeyPath, Any] = {
         **{("claims", "casimirs", n): part for n, part in enumerate(claims.casimirs)},
         **{("claims", "conserved", n): part for n, part in enumerate(claims.conserved)},
         **{("claims", "brackets", n): part for n, part in enumerate(claims.brackets.values())},
         ("claims", "galilean"): claims.galilean,
+        **{
+            (table,): part
+            for table in ("double_bracket", "metriplectic")
+            if (part := getattr(file, table)) is not None
+        },
         **{("symmetries", name): part for name, part in file.symmetries.items()},
         **{("transformations", name): part for name, part in file.transformations.items()},
         **{

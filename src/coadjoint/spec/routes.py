@@ -41,7 +41,9 @@ _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
 #: What acts beside the energy, on routes where a rate of momenta is known.
 _DRIVES = ("forces", "dissipation")
-_ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN, options=_DRIVES)
+#: What acts by the bracket of the state.
+_RELAXES = ("double_bracket", "metriplectic")
+_ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN, options=(*_DRIVES, *_RELAXES))
 _CHART = Start(("algebra",), _LAGRANGIAN, emitted=False)
 _IN_FRAME = Start(
     ("algebra", "configuration"), _LAGRANGIAN, options=("constraints", *_DRIVES), in_frame=True
@@ -50,7 +52,7 @@ _IN_FRAME = Start(
 STARTS: Mapping[str, Start] = MappingProxyType(
     {
         "euler-poincare": _ON_ALGEBRA,
-        "lie-poisson": Start(("algebra",), _EITHER, options=_DRIVES),
+        "lie-poisson": Start(("algebra",), _EITHER, options=(*_DRIVES, *_RELAXES)),
         "hamilton-pontryagin": _ON_ALGEBRA,
         "clebsch": replace(_CHART, options=("clebsch",)),
         "poincare": _ON_ALGEBRA,
@@ -61,8 +63,8 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "complexification": Start(("algebra",), _HAMILTONIAN),
         "manakov": Start(("algebra",), _EITHER),
         "lax": Start(("algebra", "poisson"), _EITHER, "lax"),
-        "nambu": Start(("algebra", "nambu"), _EITHER, options=_DRIVES),
-        "poisson": Start(("poisson",), _HAMILTONIAN, options=_DRIVES),
+        "nambu": Start(("algebra", "nambu"), _EITHER, options=(*_DRIVES, *_RELAXES)),
+        "poisson": Start(("poisson",), _HAMILTONIAN, options=(*_DRIVES, *_RELAXES)),
         "canonical": Start(("canonical", "configuration"), _EITHER, options=_DRIVES),
         "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN, options=_DRIVES),
         "newton": Start(("configuration", "poisson"), (), "newton"),

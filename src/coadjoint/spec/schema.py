@@ -20,7 +20,10 @@ from coadjoint.spec.algebra_schema import (
     named,
 )
 from coadjoint.spec.constrained_schema import (
+    Accept,
     DissipationPart,
+    DoubleBracketPart,
+    MetriplecticPart,
     ReconstructedPart,
     RollingPart,
     SectionPart,
@@ -244,16 +247,6 @@ class SymmetryPart(Part):
         return self
 
 
-#: What is enough for a claim, if not a proof.
-Accept = Annotated[
-    Literal["numerical"] | None,
-    Field(
-        description="'numerical' if values at random points are enough for this claim; by default "
-        "it must be proved"
-    ),
-]
-
-
 class ClaimPart(Part):
     """A claim: its expression, or a table that also says what is enough for it."""
 
@@ -411,10 +404,16 @@ class SpecFile(Part):
     )
     forces: dict[str, str] = Field(
         {},
-        description="forces beside the Lagrangian, by the names of the velocities they work on",
+        description="forces beside the energy, by the names of the velocities they work on",
         json_schema_extra=named(),
     )
     dissipation: DissipationPart | None = Field(None, description="dissipation by a function R")
+    double_bracket: DoubleBracketPart | None = Field(
+        None, description="dissipation that keeps Casimirs, dx/dt = P dh + P G P dh"
+    )
+    metriplectic: MetriplecticPart | None = Field(
+        None, description="dissipation that keeps the energy, dx/dt = P dh + G dS"
+    )
     domain: dict[str, str] = Field(
         {},
         description="where the system is defined, as tilted = 'Gamma3^2 < 1'",

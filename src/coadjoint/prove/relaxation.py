@@ -1,0 +1,127 @@
+r"""Dissipation by a symmetric bracket: what makes it one, and what it does.
+
+With the Poisson bracket P and a symmetric, positive semidefinite G the double bracket
+
+.. math:: \dot x = P\,\partial h + P G P\,\partial h, \qquad
+    \dot h = -(P\,\partial h) \cdot G (P\,\partial h) \le 0
+
+keeps every Casimir (Bloch, Krishnaprasad, Marsden and Ratiu 1996), and the metriplectic motion
+
+.. math:: \dot x = P\,\partial h + G\,\partial S, \qquad P\,\partial S = 0, \quad G\,\partial h = 0,
+    \qquad \dot S = \partial S \cdot G\,\partial S \ge 0
+
+keeps the energy (Morrison 1986). Comes in: Equations whose spec declares one. Goes out: each of
+these conditions as a claim. Read next: `coadjoint.prove.claims`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.external import added_rates, metric
+from coadjoint.exact import Element
+from coadjoint.prove.equivalence import in_velocities
+from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
+from coadjoint.prove.semidefinite import decide_semidefinite
+from coadjoint.prove.zero import Examined, claimed_by
+
+
+def about_relaxation(first: Equations) -> Iterator[Examined]:
+    """The conditions, and the balance of the energy or the entropy."""
+    spec, relaxation = first.spec, first.spec.relaxation
+    energy, tensor = first.exact.energy, first.exact.poisson_tensor
+    if relaxation is None or energy is None or tensor is None:
+        return
+    known = _Relaxed(first, energy, tensor)
+    claims: list[Examined] = [
+        ("G is symmetric", "dissipation", known.asymmetry),
+        (
+            "G is positive semidefinite",
+            "dissipation",
+            lambda: decide_semidefinite(known.G, first.setting.field),
+        ),
+    ]
+    if relaxation.S is not None:
+        entropy = first.setting.formula(relaxation.S)
+        claims += [
+            ("P dS = 0: S is a Casimir", "dissipation", partial(casimir_defects, first, entropy)),
+            ("G dh = 0", "dissipation", known.on_energy),
+        ]
+        if not spec.is_forced:
+            law = ("dS/dt = <dS, G dS>: the entropy never falls", "conserved", known.entropy)
+            claims.append(law)
+    elif not spec.is_forced:
+        law = ("dh/dt = -<P dh, G P dh>: the energy never grows", "conserved", known.energy)
+        claims.append(law)
+    claims.append((f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.added))
+    yield from claimed_by(spec, (relaxation.table,), claims, first.setting.field)
+
+
+def lost(first: Equations, energy: Element) -> Element:
+    """What a double bracket adds to the rate of the energy: ``-<P dh, G P dh>``; 0 without one."""
+    relaxation, tensor = first.spec.relaxation, first.exact.poisson_tensor
+    if relaxation is None or relaxation.S is not None or tensor is None:
+        return first.setting.field.zero
+    return _Relaxed(first, energy, tensor).power()
+
+
+class _Relaxed:
+    """G and what it acts on, by the bracket and the derivatives of the energy."""
+
+    def __init__(self, first: Equations, energy: Element, tensor: Tensor) -> None:
+        self.first, self.field = first, first.setting.field
+        self.G = tuple(tuple(in_velocities(first, row)) for row in metric(first.setting))
+        self._P = [in_velocities(first, row) for row in tensor]
+        self._dh = gradient(first, energy)
+        self._free = self._applied(self._P, self._dh)
+        self._energy = energy
+
+    def asymmetry(self) -> list[Element]:
+        """``G_ij - G_ji``."""
+        size = range(len(self.G))
+        return [self.G[i][j] - self.G[j][i] for i in size for j in range(i)]
+
+    def on_energy(self) -> list[Element]:
+        """``G dh``."""
+        return self._applied(self.G, self._dh)
+
+    def energy(self) -> list[Element]:
+        """``dh/dt + <P dh, G P dh>``."""
+        lost = self._dot(self._free, self._applied(self.G, self._free))
+        return [rate + lost for rate in drift(self.first, self._energy)]
+
+    def entropy(self) -> list[Element]:
+        """``dS/dt - <dS, G dS>``."""
+        relaxation = self.first.spec.relaxation
+        assert relaxation is not None
+        assert relaxation.S is not None
+        S = self.first.setting.formula(relaxation.S)
+        slopes = gradient(self.first, S)
+        gained = self._dot(slopes, self._applied(self.G, slopes))
+        return [rate - gained for rate in drift(self.first, S)]
+
+    def added(self) -> list[Element]:
+        """The rates minus ``P dh``, the forces and what G adds."""
+        relaxation = self.first.spec.relaxation
+        assert relaxation is not None
+        if relaxation.S is None:
+            expected = self._applied(self._P, self._applied(self.G, self._free))
+        else:
+            S = self.first.setting.formula(relaxation.S)
+            expected = self._applied(self.G, gradient(self.first, S))
+        rates = in_velocities(self.first, self.first.exact.rates)
+        forces = in_velocities(self.first, added_rates(self.first.setting))
+        parts = zip(rates, self._free, forces, expected, strict=True)
+        return [rate - free - force - own for rate, free, force, own in parts]
+
+    def power(self) -> Element:
+        """What the double bracket takes from the energy."""
+        return -self._dot(self._free, self._applied(self.G, self._free))
+
+    def _applied(self, matrix: Tensor, vector: Sequence[Element]) -> list[Element]:
+        return [self._dot(row, vector) for row in matrix]
+
+    def _dot(self, a: Sequence[Element], b: Sequence[Element]) -> Element:
+        return self.field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)

@@ -1,0 +1,76 @@
+"""Semidefinite matrices: whether a symmetric matrix of functions has no negative eigenvalue.
+
+Comes in: the matrix. Goes out: a decision. A symmetric matrix is positive semidefinite exactly if
+no principal minor is negative; each minor is a sum of squares and positive terms, or has a sign by
+`coadjoint.exact.signs`. Where that does not tell, eigenvalues at points do: a negative one refutes.
+Read next: `coadjoint.prove.zero`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from itertools import combinations
+
+import mpmath
+
+from coadjoint.derive.interpret import determinant
+from coadjoint.derive.legendre import coupled_blocks
+from coadjoint.exact import Element, Field
+from coadjoint.exact.signs import sign
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.points import DIGITS, Points, real
+from coadjoint.prove.zero import ADVICE, Decision, UndecidedError, shown_point
+
+Matrix = Sequence[Sequence[Element]]
+
+#: Size of the largest block of coupled places whose minors are looked at.
+LARGEST = 6
+#: Points at which eigenvalues are looked at.
+POINTS = 20
+#: Size of an eigenvalue, relative to the largest entry, below which it counts as rounding.
+ROUNDING = mpmath.mpf(10) ** -30
+
+
+def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
+    """Whether a symmetric matrix has no negative eigenvalue, wherever it is defined.
+
+    Args:
+        matrix: Symmetric, which is a claim of its own.
+        ring: Where its entries live.
+
+    Raises:
+        UndecidedError: It is not proved, and no point is found at which it has a value.
+    """
+    blocks = coupled_blocks(tuple(map(tuple, matrix)))
+    if all(_has_no_negative_minor(ring, matrix, block) for block in blocks):
+        method = "no principal minor of G is negative: sums of squares and of positive terms"
+        return Decision(Verdict.PROVED, method)
+    entries = [entry for row in matrix for entry in row]
+    points, seen = Points(ring, entries), 0
+    for point in points:
+        with mpmath.workdps(DIGITS), suppress(ZeroDivisionError, ValueError, OverflowError):
+            values = mpmath.matrix([[real(points.value(e, point)) for e in row] for row in matrix])
+            least = min(mpmath.eigsy((values + values.T) / 2, eigvals_only=True))
+            seen += 1
+            if least < -ROUNDING * max(map(abs, values)):
+                method = f"an eigenvalue of {DIGITS} digits"
+                shown = shown_point(points, point)
+                return Decision(Verdict.REFUTED, method, shown, mpmath.nstr(least, 15))
+        if seen == POINTS:
+            break
+    if not seen:
+        raise UndecidedError(f"no point is found at which G has a value. {ADVICE}")
+    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit eigenvalues at {seen} random points")
+
+
+def _has_no_negative_minor(ring: Field, matrix: Matrix, block: Sequence[int]) -> bool:
+    """Whether each principal minor of a block is zero or has a positive sign."""
+    if len(block) > LARGEST:
+        return False
+    for size in range(1, len(block) + 1):
+        for chosen in combinations(block, size):
+            minor = determinant(tuple(tuple(matrix[i][j] for j in chosen) for i in chosen))
+            if not ring.is_zero(minor) and sign(ring, minor, strict=False) != 1:
+                return False
+    return True

@@ -1,0 +1,194 @@
+"""Double and metriplectic brackets: what makes them so is proved, and wrong ones are refuted."""
+
+import importlib
+import math
+
+import numpy as np
+import pytest
+
+from coadjoint.derive import external
+from coadjoint.errors import ClaimError, SpecError
+from coadjoint.exact import Condition, Field, Region
+from coadjoint.prove import Verdict, prove
+from coadjoint.prove.semidefinite import decide_semidefinite
+from tests.specs import RIGID_BODY, shipped, spec
+
+PARAMETER = ("[parameters]", "[parameters]\na = { positive = true, default = 1 }")
+#: Keeps the energy (Morrison 1986): G dh = G Omega = 0.
+PROJECTION = "a*(dot(Omega, Omega)*diag(vector(1, 1, 1)) - outer(Omega, Omega))"
+
+
+def double(G, *changes):
+    """Verdicts of a body with a double bracket."""
+    return verdicts(("[claims]", f'[double_bracket]\nG = "{G}"\n[claims]'), PARAMETER, *changes)
+
+
+def metriplectic(G, S="dot(Pi, Pi)/2"):
+    """Verdicts of a body with a metriplectic bracket."""
+    table = f'[metriplectic]\nG = "{G}"\nS = "{S}"\n[claims]'
+    return verdicts(("[claims]", table), PARAMETER)
+
+
+def verdicts(*changes):
+    """Verdict by statement."""
+    return {claim.statement: claim.verdict for claim in prove(spec(RIGID_BODY, *changes)).claims}
+
+
+def test_a_double_bracket_keeps_casimirs_and_loses_energy():
+    """Each condition and each law is a claim, and proved."""
+    found = double("a")
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
+    assert "dot(Pi, Pi) is conserved: nothing that acts changes it" in found
+    assert "the energy is conserved" not in found
+
+
+def test_a_metriplectic_bracket_keeps_energy_and_gains_entropy():
+    """The mirror image: the energy is kept, and the Casimir S changes."""
+    found = metriplectic(PROJECTION)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "the energy is conserved" in found
+    assert "dS/dt = <dS, G dS>: the entropy never falls" in found
+    assert "dot(Pi, Pi) is conserved: nothing that acts changes it" not in found
+
+
+@pytest.mark.parametrize(
+    ("G", "statement"),
+    [
+        ("-a", "G is positive semidefinite"),
+        ("Pi1", "G is positive semidefinite"),
+        ("diag(vector(a, a, -a))", "G is positive semidefinite"),
+        ("hat(vector(a, 0, 0))", "G is symmetric"),
+        # of the Killing form of sl(2, R), which is not compact
+        ("diag(vector(8, 8, -8))", "G is positive semidefinite"),
+    ],
+)
+def test_what_is_no_metric_is_refuted(G, statement):
+    """With a point at which it is none."""
+    changes = (("[claims]", f'[double_bracket]\nG = "{G}"\n[claims]'), PARAMETER)
+    certificate = prove(spec(RIGID_BODY, *changes))
+    (claim,) = [each for each in certificate.claims if each.statement == statement]
+    assert claim.verdict is Verdict.REFUTED
+    assert eval_fraction(claim.defect)
+    with pytest.raises(ClaimError, match="refuted"):
+        certificate.require()
+
+
+@pytest.mark.parametrize(
+    ("G", "S", "statement"),
+    [
+        (PROJECTION, "Pi1^2", "P dS = 0: S is a Casimir"),
+        # the matrix of the double bracket: G dS = 0, so nothing relaxes, and G dh is not zero
+        ("a*(dot(Pi, Pi)*diag(vector(1, 1, 1)) - outer(Pi, Pi))", "dot(Pi, Pi)", "G dh = 0"),
+        ("a", "dot(Pi, Pi)", "G dh = 0"),
+    ],
+)
+def test_what_does_not_keep_the_energy_is_refuted(G, S, statement):
+    """Wrong twins: S that is no Casimir, and a G that does not annihilate dh."""
+    assert metriplectic(G, S)[statement] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("spoil", [-1, 2, 0])
+def test_a_spoiled_double_bracket_is_caught(spoil, monkeypatch):
+    """The laws come from bracket, G and h, not from what the routes have added."""
+    relaxed = external.relaxed_rates
+    monkeypatch.setattr(external, "relaxed_rates", lambda free: [spoil * x for x in relaxed(free)])
+    found = double("a")
+    assert found["beside {x, h} the rates are P G P dh"] is Verdict.REFUTED
+    assert found["dh/dt = -<P dh, G P dh>: the energy never grows"] is Verdict.REFUTED
+
+
+def test_a_matrix_is_semidefinite_by_its_minors():
+    """``(1, q; q, q^2)`` is, ``(1, q; q, q)`` is not; with q >= 1 in the domain it is again."""
+    field = Field(["q"])
+    q, one = field["q"], field.one
+    assert decide_semidefinite([[one, q], [q, q * q]], field).verdict is Verdict.PROVED
+    refuted = decide_semidefinite([[one, q], [q, q]], field)
+    assert refuted.verdict is Verdict.REFUTED
+    value = float(eval_fraction(refuted.point["q"]))
+    least = (1 + value - math.hypot(1 - value, 2 * value)) / 2  # of the 2 x 2 matrix, by hand
+    assert float(refuted.defect) == pytest.approx(least)
+    field.region = Region(frozenset(), {}, (Condition(q - 1, strict=False),))
+    assert decide_semidefinite([[q, q], [q, q * q]], field).verdict is Verdict.PROVED
+
+
+def eval_fraction(text):
+    """A fraction as a number."""
+    top, _, bottom = text.partition("/")
+    return float(top) / float(bottom or 1)
+
+
+def test_a_matrix_that_nobody_can_decide_is_only_supported():
+    """``exp(q) - 1 - q`` is never negative, which no sum of squares shows."""
+    field = Field(["q"], slots=1)
+    q = field["q"]
+    found = decide_semidefinite([[field.call("exp", q) - 1 - q]], field)
+    assert found.verdict is Verdict.SUPPORTED
+    assert "20" in found.method
+
+
+def test_support_may_be_accepted():
+    """Only where the spec says so."""
+    G = 'G = "exp(Pi1) - 1 - Pi1"'
+    table = f"[double_bracket]\n{G}\n[claims]"
+    assert not prove(spec(RIGID_BODY, ("[claims]", table))).holds
+    accepted = table.replace(G, f'{G}\naccept = "numerical"')
+    assert prove(spec(RIGID_BODY, ("[claims]", accepted))).holds
+
+
+REFUSED = [
+    ('[double_bracket]\nG = "1"\n[metriplectic]\nG = "1"\nS = "Pi1"', "one of them"),
+    ('[double_bracket]\nG = "vector(1, 2)"', "3 x 3 matrix"),
+    ('[double_bracket]\nS = "1"', "unknown key 'S'"),
+    ('[metriplectic]\nG = "1"\nS = "Pi"', "a scalar"),
+    ('[metriplectic]\nG = "1"\nS = "dot(Omega, Omega)"', "'Omega' is a velocity"),
+]
+
+
+@pytest.mark.parametrize(("table", "message"), REFUSED)
+def test_what_cannot_be_read_is_refused(table, message):
+    """Before any work, at its place."""
+    with pytest.raises(SpecError) as caught:
+        spec(RIGID_BODY, ("[claims]", f"{table}\n[claims]"))
+    assert message in str(caught.value)
+
+
+def test_a_route_that_knows_no_bracket_is_refused():
+    """With one that does."""
+    table = ("[claims]", '[double_bracket]\nG = "1"\n[claims]')
+    with pytest.raises(SpecError, match="the route clebsch knows no double_bracket") as caught:
+        spec(RIGID_BODY, table, ('"lie-poisson"]', '"clebsch"]'))
+    assert 'Write "euler-poincare"' in str(caught.value)
+
+
+def test_a_spin_falls_into_the_field_as_landau_and_lifshitz_have_it():
+    """``tan(theta/2)`` falls like ``exp(-lambda B t)`` and phi turns by ``gamma' B t``."""
+    spin = importlib.import_module("coadjoint.systems.landau_lifshitz_gilbert")
+    gamma, alpha, B, start = 2.0, 0.3, 1.5, 2.0
+    state = [math.sin(start), 0, math.cos(start)]
+    parameters = {"gamma": gamma, "alpha": alpha, "B": [0, 0, B], "K": 0}
+    times = np.linspace(0, 3, 31)
+    found = spin.simulate(state, (0, 3), parameters, samples=31)
+    slower = gamma / (1 + alpha**2)
+    theta = 2 * np.arctan(math.tan(start / 2) * np.exp(-alpha * slower * B * times))
+    assert np.allclose(found["m3"], np.cos(theta), atol=1e-8)
+    assert np.allclose(found["m1"], np.sin(theta) * np.cos(slower * B * times), atol=1e-8)
+    assert set(found.drift) == {"casimir1"}
+
+
+def test_a_body_falls_onto_its_largest_axis():
+    """With I2 = I3: ``tan(theta) = tan(theta0) exp(-alpha Pi^2 (1/I2 - 1/I1) t)``."""
+    body = importlib.import_module("coadjoint.systems.double_bracket_body")
+    inertia, alpha, size, start = [3.0, 1.0, 1.0], 0.2, 2.0, 1.0
+    state = [size * math.cos(start), size * math.sin(start), 0]
+    times = np.linspace(0, 2, 21)
+    found = body.simulate(state, (0, 2), {"I": inertia, "alpha": alpha}, samples=21)
+    rate = alpha * size**2 * (1 / inertia[1] - 1 / inertia[0])
+    theta = np.arctan(math.tan(start) * np.exp(-rate * times))
+    assert np.allclose(found["Pi1"], size * np.cos(theta), atol=1e-8)
+
+
+def test_shipped_motions_name_what_they_lose():
+    """The heads of generated files and the certificate agree."""
+    found = {c.statement for c in prove(shipped("landau_lifshitz_gilbert")).claims}
+    assert "the energy changes by -<P dh, G P dh>" in found
