@@ -45,8 +45,9 @@ class Constraints:
         self.any = "projection" in system.functions
         self._state, self._nearest = np.empty((2, system.STATE.size))
         if self.any:
-            shared = (self._state, parameters, self._nearest, target)
-            self._project = system.bind("projection", *shared)
+            self._project = system.bind(
+                "projection", self._state, parameters, out=self._nearest, target=target
+            )
 
     # -- along the way ------------------------------------------------------------------
 
@@ -60,7 +61,7 @@ class Constraints:
             return state.copy()
         moved, own = state.copy(), state[: self._state.size]
         if state.ndim > 1:
-            nearest = self.system.evaluate("projection", own, self.parameters, self.target)
+            nearest = self.system.evaluate("projection", own, self.parameters, target=self.target)
         else:  # at each step: without the checks, which take as long as five evaluations
             self._state[:], nearest = own, self._nearest
             self._project()
@@ -102,7 +103,9 @@ class Constraints:
         return self.onto(state)
 
     def _residuals(self, states: Array) -> Array:
-        return self.system.evaluate("constraint_residual", states, self.parameters, self.target)
+        return self.system.evaluate(
+            "constraint_residual", states, self.parameters, target=self.target
+        )
 
     def _roundings(self, state: Array, residuals: Array, atol: float) -> Array:
         """What residuals come to where each component is off by `TYPED` of those of its unit.

@@ -61,7 +61,9 @@ class Domain:
         self._least = np.array([np.nextafter(0.0, 1.0) * bound.strict for bound in self.bounds])
         self._state, self._rows = np.empty(system.STATE.size), np.empty(len(self.bounds))
         if self.bounds:
-            self._evaluate = system.bind("domain", self._state, parameters, self._rows, target)
+            self._evaluate = system.bind(
+                "domain", self._state, parameters, out=self._rows, target=target
+            )
 
     def violated(self, state: Array) -> int | None:
         """The first row that is violated or not finite at a state; None inside the domain."""

@@ -142,7 +142,7 @@ class Kernels:
                     warnings.warn(
                         f"{error} The NumPy kernels are used instead. {advice}".rstrip(),
                         CompilerWarning,
-                        stacklevel=6,
+                        stacklevel=7,
                     )
         return self._loaded[target]
 

@@ -151,9 +151,10 @@ def _rates(system: System, parameters: Array, target: Any, followed: int) -> tup
     """
     n = system.STATE.size
     whole, latest = np.empty(n + followed), np.empty(n + followed)
-    calls = [system.bind("rhs", whole[:n], parameters, latest[:n], target)]
+    bind = partial(system.bind, parameters=parameters, target=target)
+    calls = [bind("rhs", whole[:n], out=latest[:n])]
     if followed:
-        calls.append(system.bind("reconstruction", whole, parameters, latest[n:], target))
+        calls.append(bind("reconstruction", whole, out=latest[n:]))
 
     def rates(_: float, y: Array) -> Array:
         whole[:] = y
@@ -167,7 +168,7 @@ def _rates(system: System, parameters: Array, target: Any, followed: int) -> tup
 def _slopes(system: System, parameters: Array, target: Any) -> Rates:
     """The Jacobian for SciPy."""
     state, slopes = np.empty(system.STATE.size), np.empty((system.STATE.size,) * 2)
-    evaluate = system.bind("jacobian", state, parameters, slopes, target)
+    evaluate = system.bind("jacobian", state, parameters, out=slopes, target=target)
 
     def jacobian(_: float, y: Array) -> Array:
         state[:] = y

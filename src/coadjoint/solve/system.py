@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, wraps
 from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar
 
-from coadjoint.errors import OutputError
+from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.files import read_certificate
 from coadjoint.solve.quantities import Bound, Quantities, Quantity
 
@@ -29,10 +29,34 @@ if TYPE_CHECKING:
     from coadjoint.solve.solution import Solution
 
     Array = NDArray[Any]
+    #: One array, or arrays by name.
+    Values = ArrayLike | Mapping[str, ArrayLike]
 
 __all__ = ["Bound", "Quantities", "Quantity", "System", "load_folder"]
 
 Target = Literal["c", "numpy", "c-fast"]
+_Given = ParamSpec("_Given")
+_Result = TypeVar("_Result")
+
+
+def _by_name(method: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
+    """Refuse what is passed by position and goes by name, with the spelling that works."""
+    most = method.__code__.co_argcount
+    names = ", ".join(method.__code__.co_varnames[1:most])
+
+    @wraps(method)
+    def called(*given: _Given.args, **named: _Given.kwargs) -> _Result:
+        if len(given) > most:
+            raise KernelArgumentError(
+                f"{method.__name__} takes {names} by position, and found {len(given) - most} more; "
+                "expected the others by name. "
+                f'Write {method.__name__}({names}, target="c", out=out).',
+                found=len(given) - 1,
+                expected=most - 1,
+            )
+        return method(*given, **named)
+
+    return called
 
 
 class System:
@@ -80,10 +104,12 @@ class System:
 
     # -- functions --------------------------------------------------------------------------------
 
+    @_by_name
     def rhs(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -103,42 +129,50 @@ class System:
             KernelArgumentError: A shape, name, sign or aliasing that cannot be right.
             KernelTypeError: A type that cannot become float64 without loss.
         """
-        return self.evaluate("rhs", state, parameters, target, out)
+        return self._evaluate("rhs", state, parameters, target, out)
 
+    @_by_name
     def jacobian(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """Derivative of `rhs` by the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
-        return self.evaluate("jacobian", state, parameters, target, out)
+        return self._evaluate("jacobian", state, parameters, target, out)
 
+    @_by_name
     def energy(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """Energy, shape ``batch``; arguments as in `rhs`."""
-        return self.evaluate("energy", state, parameters, target, out)
+        return self._evaluate("energy", state, parameters, target, out)
 
+    @_by_name
     def observables(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """All observables, one row for each component of ``OBSERVABLES``; arguments as in `rhs`."""
-        return self.evaluate("observables", state, parameters, target, out)
+        return self._evaluate("observables", state, parameters, target, out)
 
+    @_by_name
     def poisson_tensor(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -149,12 +183,14 @@ class System:
         energy, which is the velocities and minus the slopes of the constrained Lagrangian. It is
         antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.
         """
-        return self.evaluate("poisson_tensor", state, parameters, target, out)
+        return self._evaluate("poisson_tensor", state, parameters, target, out)
 
+    @_by_name
     def constraint_residual(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -164,12 +200,14 @@ class System:
         that its rows are 0; those of other constraints stay at the level of rounding along a
         trajectory that `simulate` follows.
         """
-        return self.evaluate("constraint_residual", state, parameters, target, out)
+        return self._evaluate("constraint_residual", state, parameters, target, out)
 
+    @_by_name
     def projection(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -179,12 +217,14 @@ class System:
         which all constraints hold to rounding. Only systems have it that keep a constraint,
         one that gives no velocity outright.
         """
-        return self.evaluate("projection", state, parameters, target, out)
+        return self._evaluate("projection", state, parameters, target, out)
 
+    @_by_name
     def domain(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -195,12 +235,14 @@ class System:
         that is not ``strict`` may be zero. Where one is violated, the other functions give what
         arithmetic gives, infinities and NaN among it; `simulate` stops there.
         """
-        return self.evaluate("domain", state, parameters, target, out)
+        return self._evaluate("domain", state, parameters, target, out)
 
+    @_by_name
     def reconstruction(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -209,7 +251,7 @@ class System:
         Arguments as in `rhs`, but that the state is followed by the rows of ``RECONSTRUCTED``:
         ``(n + k, *batch)``, or a mapping that names them all.
         """
-        return self.evaluate("reconstruction", state, parameters, target, out)
+        return self._evaluate("reconstruction", state, parameters, target, out)
 
     def inputs(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
@@ -217,26 +259,35 @@ class System:
             return self.STATE
         return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
 
+    @_by_name
     def evaluate(
         self,
         function: str,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        *,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """One of the ``functions`` by name; arguments as in `rhs`."""
+        return self._evaluate(function, state, parameters, target, out)
+
+    def _evaluate(self, function: str, *arguments: Any) -> Array:
+        """A function that is called with arguments in the order of `Call`, then the target."""
         from coadjoint.solve.arrays import Call
 
-        call = Call(self, function, state, parameters, out)
+        *given, target, out = arguments
+        call = Call(self, function, *given, out)
         self._kernels.run(function, call, target)
         return call.result
 
+    @_by_name
     def bind(
         self,
         function: str,
         state: Array,
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        parameters: Values | None = None,
+        *,
         out: Array | None = None,
         target: Target = "c",
     ) -> Callable[[], None]:
@@ -258,7 +309,7 @@ class System:
         call = Call(self, function, state, parameters, out, bound=True)
         return self._kernels.bind(function, call, target)
 
-    def pack(self, parameters: ArrayLike | Mapping[str, ArrayLike] | None = None) -> Array:
+    def pack(self, parameters: Values | None = None) -> Array:
         """Parameters as one array ``(k,)`` or ``(k, *batch)``, defaults filled in."""
         from coadjoint.solve.arrays import pack_parameters
 
@@ -266,9 +317,9 @@ class System:
 
     def simulate(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
+        state: Values,
         t: ArrayLike,
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        parameters: Values | None = None,
         *,
         method: str = "auto",
         rtol: float = 1e-10,
