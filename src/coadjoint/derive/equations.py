@@ -313,8 +313,8 @@ class Equations:
 
     @cached_property
     def moving(self) -> frozenset[str]:
-        """Names whose values depend on the member: the state, and definitions that rest on it."""
-        names = {*self.setting.state, *self.setting.velocities}
+        """Names whose values depend on the member: state, inputs, time, and what rests on them."""
+        names = {*self.setting.state, *self.setting.velocities, *self.setting.driving}
         names |= {name for each in self.spec.reconstruction for name in each.components}
         for name, value in self.exact.definitions:
             if self.setting.field.reach(value) & names:

@@ -46,7 +46,7 @@ class Reference:
             function: ``rhs``, ``jacobian``, ``energy``, ``observables``,
                 ``poisson_tensor``, ``constraint_residual``, ``projection``, ``reconstruction`` or
                 ``domain``.
-            inputs: State and parameter components by name.
+            inputs: State, parameters, inputs and time by component.
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function by name.
         """

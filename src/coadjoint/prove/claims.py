@@ -28,6 +28,13 @@ from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints, keeps_energy
+from coadjoint.prove.driven import (
+    OWN_CHANGE,
+    changes_by_time,
+    law_of_change,
+    own_change,
+    while_constant,
+)
 from coadjoint.prove.duality import about_duality
 from coadjoint.prove.equivalence import LegendreMap, in_velocities
 from coadjoint.prove.galilean import about_galilean
@@ -134,7 +141,8 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         for place, claim in enumerate(first.spec.conserved):
             if _statement(claim) != "energy is conserved" or not keeps_energy(first):
                 examine = partial(_constrained_integral, motion, claim)
-                claimed = [(_statement(claim), "conserved", examine)]
+                statement = _statement(claim) + _held(first, claim)
+                claimed = [(statement, "conserved", examine)]
                 yield from claimed_by(
                     first.spec, ("claims", "conserved", place), claimed, motion.field
                 )
@@ -154,7 +162,13 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 
 def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
-    """What is found out about a constrained motion, each search with a budget of its own."""
+    """What is found out about a constrained motion, each search with a budget of its own.
+
+    Of a driven one nothing is searched for: unknown coefficients would count time and inputs among
+    the constants.
+    """
+    if motion.equations.spec.driving:
+        return
     searches: dict[tuple[str, str], Iterator[Examined]] = {
         ("integrability", "the growth vector"): about_integrability(motion.equations),
         ("jacobi", "the Jacobi identity of the reduced bracket"): about_reduced_jacobi(motion),
@@ -303,7 +317,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
             partial(hamiltonian_defects, first, energy, tensor),
         )
     if energy is not None:
-        yield "the energy is conserved", "conserved", partial(drift, first, energy)
+        yield _energy_law(first, energy), "conserved", partial(_energy_defects, first, energy)
     proved = list[Element]()
     for place, casimir in enumerate(spec.casimirs):
         decide = cache(partial(_casimir, first, casimir))
@@ -315,13 +329,34 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         searched = _about_completeness(first, proved)
         yield from within_budget(field, "casimir", "Casimirs", searched)
     for place, claim in enumerate(spec.conserved):
-        claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
+        statement = _statement(claim) + _held(first, claim)
+        claimed = [(statement, "conserved", partial(_integral, first, claim))]
         yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)
     yield from claimed_by(spec, ("claims", "galilean"), about_galilean(first), field)
     yield from about_symmetries(first, _emitted(first))
     for seen in spec.spatial:
         if seen.conserved:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, first, seen)
+
+
+def _energy_law(first: Equations, energy: Element) -> str:
+    """What becomes of the energy."""
+    law = "the energy is conserved"
+    if changes_by_time(first):
+        law = f"the energy changes by {OWN_CHANGE}: {law_of_change(first)}"
+    return law + while_constant(first, [energy])
+
+
+def _energy_defects(first: Equations, energy: Element) -> list[Element]:
+    """The rate of the energy minus what time adds to it."""
+    change = in_velocities(first, [own_change(first)])
+    return [rate - own for rate, own in zip(drift(first, energy), change, strict=True)]
+
+
+def _held(first: Equations, claim: Integral) -> str:
+    """The condition on the inputs under which a claim holds."""
+    formulas, names = (claim.formula, *claim.where), _emitted(first)
+    return while_constant(first, (g for f in formulas for g in first.setting.components(f, names)))
 
 
 def _seen_from_space(first: Equations, seen: SpatialMomentum) -> Decision:

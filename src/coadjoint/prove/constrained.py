@@ -19,6 +19,7 @@ from functools import cached_property, partial
 from coadjoint.derive import Equations
 from coadjoint.derive.constrained import section_components
 from coadjoint.derive.distribution import Distribution, Row
+from coadjoint.derive.driving import explicit
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.kinematics import kept_rows, rate_name
 from coadjoint.derive.legendre import LARGEST_BLOCK
@@ -28,6 +29,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.driven import OWN_CHANGE, changes_by_time, own_change, while_constant
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
@@ -74,10 +76,11 @@ class ConstrainedRates:
         return self.value(self._carried(self.in_state(function)))
 
     def _carried(self, function: Element) -> Element:
-        """The time derivative of a function of the state, in accelerations."""
+        """The time derivative of a function of state and time, in accelerations."""
+        own = explicit(self.equations.setting, function)
         names = self.equations.setting.state
         slopes = zip(self.field.gradient(function, names), names, strict=True)
-        return self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
+        return own + self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
     def in_state(self, function: Element) -> Element:
         """A function of the state alone, also where it names reactions."""
@@ -157,7 +160,7 @@ class ConstrainedRates:
         ]
 
     def energy_balance(self) -> Element:
-        """``dE/dt`` minus the power of declared forces and of constraints that move."""
+        """``dE/dt`` minus the power of declared forces, of constraints that move, and of time."""
         setting, found = self.equations.setting, self.distribution
         field, energy = self.field, self.equations.exact.energy
         assert energy is not None, "a Lagrangian has an energy"
@@ -165,7 +168,8 @@ class ConstrainedRates:
         power = [f * x for f, x in zip(external_forces(found.frame), xi, strict=True)]
         rest = dict.fromkeys(found.frame.velocities, field.zero)
         work = [-field.substitute(e.residual, rest) * field[e.reaction] for e in found.equations]
-        return self.value(self._carried(self.closed(energy)) - field.sum([*power, *work]))
+        gains = field.sum([*power, *work, own_change(self.equations)])
+        return self.value(self._carried(self.closed(energy)) - gains)
 
 
 def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
@@ -293,16 +297,20 @@ def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
 
 def _balance_text(first: Equations) -> str:
     """The law of the energy."""
+    energy = first.exact.energy
+    assert energy is not None, "a Lagrangian has an energy"
+    held = while_constant(first, [energy])
     if keeps_energy(first):
-        return "the energy is conserved"
+        return f"the energy is conserved{held}"
     gains = ["the power of the forces"] * _driven(first)
     gains += ["the work of the moving constraints"] * (not _linear(first))
-    return f"the energy changes by {' and '.join(gains)}"
+    gains += [OWN_CHANGE] * changes_by_time(first)
+    return f"the energy changes by {' and '.join(gains)}{held}"
 
 
 def keeps_energy(first: Equations) -> bool:
     """Whether the law of the energy says that it is conserved."""
-    return not _driven(first) and _linear(first)
+    return not _driven(first) and _linear(first) and not changes_by_time(first)
 
 
 def _driven(first: Equations) -> bool:

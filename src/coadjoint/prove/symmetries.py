@@ -15,12 +15,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.driving import explicit
 from coadjoint.derive.interpret import Quantity, entries
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import MomentumMap
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import drift
 from coadjoint.prove.zero import Examined, claimed_by, decide_zero
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
@@ -96,12 +98,15 @@ def _noether(
 ) -> Iterator[Examined]:
     """What is conserved since h is invariant: nothing is claimed of the other components."""
     rates = J.rates(h)
-    invariant = [n for n, rate in enumerate(rates) if rate == 0]
+    setting = first.setting
+    own = [explicit(setting, first.closed(value)) for value in J.values]
+    invariant = [n for n, rate in enumerate(rates) if rate == own[n] == 0]
     if invariant:
         names = [symmetry.components[n] for n in invariant]
         subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
         yield (
-            f"{subject} is conserved by Noether's theorem, since its flow keeps h",
+            f"{subject} is conserved by Noether's theorem, since its flow keeps h"
+            f"{while_constant(first, [J.values[n] for n in invariant])}",
             "symmetry",
             lambda: [defect for n in invariant for defect in drift(first, J.values[n])],
         )
@@ -124,6 +129,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
         statement = (
             f"the flow of {claim.formula.in_one_line} takes motions to motions"
             f"{_kind_of(first, flows)}"
+            f"{while_constant(first, first.setting.components(claim.formula, known))}"
         )
         follows = [(statement, "symmetry", partial(_commutators, first, flows))]
         key = ("claims", "conserved", place)  # it follows from the claim there
@@ -165,11 +171,15 @@ def _kind_of(first: Equations, flows: Sequence[VectorField]) -> str:
 
 
 def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element]:
-    """``[X_h, X_F]`` with the emitted rates as X_h."""
+    """``[X_h, X_F] + dX_F/dt`` with the emitted rates as X_h."""
     setting = first.setting
     rates = tuple(map(first.closed, first.exact.rates))
     motion = VectorField(setting.field, setting.state, rates)
-    return [part for X in flows for part in lie_derivative(motion, X).components]
+    return [
+        part + explicit(setting, own)
+        for X in flows
+        for part, own in zip(lie_derivative(motion, X).components, X.components, strict=True)
+    ]
 
 
 # -- brackets and transformations -----------------------------------------------------------------
@@ -218,13 +228,14 @@ def _map(first: Equations, transformation: Transformation) -> dict[str, Element]
 
 
 def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:
-    """``D phi . X -+ X o phi``."""
+    """``D phi . X -+ X o phi``; where time is reversed, it is in X, too."""
     field, phi = first.setting.field, _map(first, transformation)
+    moved = phi | {t: -field[t] for t in first.setting.time if transformation.reverses_time}
     rates = tuple(map(first.closed, first.exact.rates))
     motion = VectorField(field, first.setting.state, rates)
     sign = -1 if transformation.reverses_time else 1
     return [
-        motion.derivative(phi[name]) - sign * field.substitute(rate, phi)
+        motion.derivative(phi[name]) - sign * field.substitute(rate, moved)
         for name, rate in zip(first.setting.state, rates, strict=True)
     ]
 

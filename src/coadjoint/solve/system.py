@@ -276,8 +276,8 @@ class System:
         """A function that is called with arguments in the order of `Call`, then the target."""
         from coadjoint.solve.arrays import Call
 
-        *given, target, out = arguments
-        call = Call(self, function, *given, out)
+        state, parameters, target, out = arguments
+        call = Call(self, function, state, parameters, out)
         self._kernels.run(function, call, target)
         return call.result
 

@@ -101,7 +101,7 @@ class ConstraintReader:
         source: The text of the spec.
         file: Its tables.
         variables: All variables.
-        quantities: Variables, parameters and definitions.
+        quantities: Variables, parameters, inputs, time and definitions.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class ConstraintReader:
             name: (velocity, sign)
             for velocity, (name, sign) in (solved_velocities(self.file) or {}).items()
         }
-        scope = make_scope("a constraint", self.motion, self.quantities)
+        scope = make_scope("a constraint", self.motion, self.quantities, driven=True)
         found = []
         for name, text in (self.file.constraints or {}).items():
             key: KeyPath = ("constraints", name)
@@ -144,7 +144,7 @@ class ConstraintReader:
         Raises:
             SpecError: There is no such velocity, or the force has another shape.
         """
-        scope = make_scope("a force", self.motion, self.quantities)
+        scope = make_scope("a force", self.motion, self.quantities, driven=True)
         return {
             name: self._along(("forces", name), text, scope, self.velocities)
             for name, text in self.file.forces.items()
@@ -154,7 +154,7 @@ class ConstraintReader:
         """Rayleigh's function."""
         if self.file.dissipation is None:
             return None
-        scope = make_scope("a dissipation", self.motion, self.quantities)
+        scope = make_scope("a dissipation", self.motion, self.quantities, driven=True)
         return read_formula(self.source, ("dissipation", "R"), self.file.dissipation.R, scope)
 
     def domain(self, constraints: Sequence[Constraint]) -> tuple[Condition, ...]:
@@ -167,7 +167,7 @@ class ConstraintReader:
             SpecError: One is no inequality between scalars, or has a name that none may have.
         """
         reactions = reaction_shapes(constraints)
-        scope = make_scope("a condition", self.motion, self.quantities, reactions)
+        scope = make_scope("a condition", self.motion, self.quantities, reactions, driven=True)
         found = []
         for name, text in self.file.domain.items():
             key: KeyPath = ("domain", name)

@@ -48,7 +48,7 @@ def read_newton(
                 hint=did_you_mean(name, coordinates),
                 at=source.positions.key(("newton", name)),
             )
-    scope = make_scope("Newton's law", ("coordinate", "velocity"), quantities)
+    scope = make_scope("Newton's law", ("coordinate", "velocity"), quantities, driven=True)
     moving = {each.of for each in state_of(variables) if each.role == "velocity"}
     for name in coordinates:
         _check_law(source, name, name in parts, name in moving)

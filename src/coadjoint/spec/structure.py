@@ -19,10 +19,10 @@ from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.components import FORMS
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.model import Parameter, Shape, Variable, matrix_size
+from coadjoint.spec.model import Input, Parameter, Shape, Variable, matrix_size
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.representations import block_places, representation_of
-from coadjoint.spec.schema import ParameterPart, VariablePart
+from coadjoint.spec.schema import InputPart, ParameterPart, VariablePart
 from coadjoint.spec.source import Source
 
 #: Keys that say how large a variable is, and the variables that each is for.
@@ -330,6 +330,20 @@ def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
             expected="positive numbers, since positive = true",
         )
     return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
+
+
+def read_inputs(source: Source, parts: Mapping[str, InputPart]) -> tuple[Input, ...]:
+    """The inputs with one exact default for each component, or none.
+
+    Raises:
+        SpecError: A default does not have the shape.
+    """
+    found = []
+    for name, part in parts.items():
+        shape = tuple(part.shape)
+        default = read_default(source, ("inputs", name, "default"), part.default, shape)
+        found.append(Input(name, shape, default, part.unit, part.doc))
+    return tuple(found)
 
 
 def read_default(
