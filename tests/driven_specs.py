@@ -18,7 +18,7 @@ u = { default = 0, unit = "1/s^2", doc = "torque" }
 [time]
 name = "t"
 [lagrangian]
-l = "(L*v)^2/2 - L*a*w*sin(w*t)*sin(phi)*v*(0 - 1) + g*L*cos(phi) + u*phi"
+l = "(L*v)^2/2 - L*a*w*sin(w*t)*sin(phi)*v + g*L*cos(phi) + u*phi"
 """
 #: A free particle with the integral of Galilean boosts, K = t P - m r.
 BOOST = """

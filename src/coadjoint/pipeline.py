@@ -26,6 +26,7 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
+from coadjoint.derive.setting import Declared
 from coadjoint.exact import Element
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
@@ -33,7 +34,7 @@ from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
-from coadjoint.spec import Formula, Parameter, Spec, Variable
+from coadjoint.spec import Formula, Spec, Variable
 from coadjoint.spec.model import Constraint, Reconstructed, Shape, component_names
 from coadjoint.spec.units import Unit, parse_unit, product_of, unit_of, unit_text
 
@@ -131,6 +132,8 @@ def kernel_context(
         programs=tuple(programs.values()),
         supported=supported,
         reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
+        inputs=tuple(map(_quantity, spec.inputs)),
+        time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         domain=tuple(
             Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
         ),
@@ -152,8 +155,8 @@ def _origin(spec: Spec) -> str:
     }[spec.poisson.kind]
 
 
-def _quantity(declared: Variable | Parameter) -> Quantity:
-    """A variable or parameter as the generated package declares it."""
+def _quantity(declared: Declared) -> Quantity:
+    """What is declared as the generated package declares it."""
     default = getattr(declared, "default", None)
     return Quantity(
         declared.name,
@@ -273,7 +276,7 @@ def _unit_of_value(equations: Equations, element: Element) -> str:
 
 def _units(spec: Spec) -> dict[str, Unit | None]:
     """The unit of every declared name."""
-    quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
+    quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     return {
         name: parse_unit(quantity.unit)
         for quantity in quantities
@@ -283,7 +286,7 @@ def _units(spec: Spec) -> dict[str, Unit | None]:
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:
     """The certificate with the spec's free text, for programs and documents."""
-    quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
+    quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     record: dict[str, Any] = {
         "title": spec.title,
         "source": spec.source,

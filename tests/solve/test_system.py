@@ -234,5 +234,5 @@ def test_target_and_out_go_by_name(function, arguments):
 def test_signatures_show_what_goes_by_name():
     """What an editor shows is the signature of the method, not that of its guard."""
     shown = inspect.signature(rigid_body.rhs)
-    assert list(shown.parameters) == ["state", "parameters", "target", "out"]
+    assert list(shown.parameters) == ["state", "parameters", "inputs", "time", "target", "out"]
     assert shown.parameters["target"].kind is inspect.Parameter.KEYWORD_ONLY

@@ -106,7 +106,7 @@ def check_inverse(equations: Equations, program: Program) -> None:
 def _differing_elements(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say, as elements."""
     field = equations.setting.field
-    inputs = {name: field[name] for name in (*program.state, *program.parameters)}
+    inputs = {name: field[name] for name in program.names}
     found = run(program, inputs, field.number, field.call)
     expected = expected_outputs(equations, program.name)
     assert len(found) == len(expected) > 0, (program.name, len(found), len(expected))
@@ -118,7 +118,7 @@ def _differing_elements(equations: Equations, program: Program) -> Iterator[_Pai
 def _differing_residues(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say at some points modulo a prime."""
     source, reference = random.Random(1), Reference(equations)  # noqa: S311 (not for secrets)
-    names, reached = (*program.state, *program.parameters), 0
+    names, reached = program.names, 0
     for prime in islice(primes(), TRIES):
         number, call = partial(residue, prime=prime), partial(_call, prime=prime)
         inputs = {name: Residue(source.randrange(1, prime), prime) for name in names}

@@ -10,7 +10,7 @@ Read next: `coadjoint.lower.check`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from coadjoint.derive import Equations
 from coadjoint.derive.solver import Solve, factors
@@ -76,7 +76,7 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
     graph, n = Graph(), len(rhs.state)
     definitions, values = _inserted(graph, rhs, {name for name, _ in equations.exact.definitions})
     slopes: dict[int, Slopes] = {graph.symbol(name): {name: graph.number(1)} for name in rhs.state}
-    slopes |= {graph.symbol(name): {} for name in rhs.parameters}
+    slopes |= {graph.symbol(name): {} for name in rhs.names if name not in rhs.state}
     rows: dict[int, dict[str, int]] = {}
     for residual, node in zip(residuals, values[n:], strict=False):
         rows.setdefault(residual.row, {})[residual.by] = node
@@ -102,9 +102,9 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
         outputs += [
             (f"d({output.label})/d{name}", _total(graph, slope, solved, name)) for name in rhs.state
         ]
-    return Naming(graph, list(definitions.items()), outputs, rhs.parameters).program(
-        "jacobian", rhs.state, rhs.parameters, (n, n)
-    )
+    naming = Naming(graph, list(definitions.items()), outputs, rhs.parameters)
+    program = naming.program("jacobian", rhs.state, rhs.parameters, (n, n))
+    return replace(program, inputs=rhs.inputs, time=rhs.time)
 
 
 def _through(

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -322,7 +322,8 @@ def _program(
     naming = Naming(lowering.graph, named, results, setting.parameters)
     size = (len(outputs),) if shape is None else shape
     read = setting.state if inputs is None else inputs
-    return naming.program(name, read, setting.parameters, size)
+    program = naming.program(name, read, setting.parameters, size)
+    return replace(program, inputs=setting.inputs, time=setting.time)
 
 
 #: Names with their values: definitions or outputs.

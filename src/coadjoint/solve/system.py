@@ -76,6 +76,8 @@ class System:
         id: The id that all files of the folder carry.
         DOMAIN: What the rows of `domain` are; empty where the system is defined everywhere.
         RECONSTRUCTED: What follows from the motion without acting on it, in order.
+        INPUTS: Quantities of the inputs, in order; empty where the system has none.
+        TIME: The time, if the system depends on it.
     """
 
     def __init__(
@@ -90,6 +92,8 @@ class System:
         identity: str,
         domain: Sequence[Bound] = (),
         reconstructed: Quantities | None = None,
+        inputs: Quantities | None = None,
+        time: Quantities | None = None,
     ) -> None:
         self.name = name
         self.folder = Path(file).parent
@@ -101,6 +105,8 @@ class System:
         self.id = identity
         self.DOMAIN = tuple(domain)
         self.RECONSTRUCTED = Quantities() if reconstructed is None else reconstructed
+        self.INPUTS = Quantities() if inputs is None else inputs
+        self.TIME = Quantities() if time is None else time
 
     # -- functions --------------------------------------------------------------------------------
 
@@ -109,7 +115,9 @@ class System:
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -119,6 +127,9 @@ class System:
             state: ``(n,)`` or ``(n, *batch)``, or a mapping by name: ``{"Pi": [...], ...}``.
             parameters: Packed, ``(k,)`` for all members or ``(k, *batch)``; or a mapping by name,
                 ``{"I": [1, 2, 3], "m": masses}``, that overrides defaults; None for the defaults.
+            inputs: Of a system that has ``INPUTS``, in the same forms: ``(m,)``, ``(m, *batch)``,
+                a mapping, or None for the defaults.
+            time: Of a system that depends on it: a number, or one for each member, ``batch``.
             target: ``"c"``, ``"numpy"``, or ``"c-fast"`` (fused operations: not the same bits).
             out: Where to write the result: float64, C-contiguous, apart from the inputs.
 
@@ -129,50 +140,58 @@ class System:
             KernelArgumentError: A shape, name, sign or aliasing that cannot be right.
             KernelTypeError: A type that cannot become float64 without loss.
         """
-        return self._evaluate("rhs", state, parameters, target, out)
+        return self._evaluate("rhs", target, state, parameters, inputs, time, out)
 
     @_by_name
     def jacobian(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """Derivative of `rhs` by the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
-        return self._evaluate("jacobian", state, parameters, target, out)
+        return self._evaluate("jacobian", target, state, parameters, inputs, time, out)
 
     @_by_name
     def energy(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """Energy, shape ``batch``; arguments as in `rhs`."""
-        return self._evaluate("energy", state, parameters, target, out)
+        return self._evaluate("energy", target, state, parameters, inputs, time, out)
 
     @_by_name
     def observables(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """All observables, one row for each component of ``OBSERVABLES``; arguments as in `rhs`."""
-        return self._evaluate("observables", state, parameters, target, out)
+        return self._evaluate("observables", target, state, parameters, inputs, time, out)
 
     @_by_name
     def poisson_tensor(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -183,14 +202,16 @@ class System:
         energy, which is the velocities and minus the slopes of the constrained Lagrangian. It is
         antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.
         """
-        return self._evaluate("poisson_tensor", state, parameters, target, out)
+        return self._evaluate("poisson_tensor", target, state, parameters, inputs, time, out)
 
     @_by_name
     def constraint_residual(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -200,14 +221,16 @@ class System:
         that its rows are 0; those of other constraints stay at the level of rounding along a
         trajectory that `simulate` follows.
         """
-        return self._evaluate("constraint_residual", state, parameters, target, out)
+        return self._evaluate("constraint_residual", target, state, parameters, inputs, time, out)
 
     @_by_name
     def projection(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -217,14 +240,16 @@ class System:
         which all constraints hold to rounding. Only systems have it that keep a constraint,
         one that gives no velocity outright.
         """
-        return self._evaluate("projection", state, parameters, target, out)
+        return self._evaluate("projection", target, state, parameters, inputs, time, out)
 
     @_by_name
     def domain(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -235,14 +260,16 @@ class System:
         that is not ``strict`` may be zero. Where one is violated, the other functions give what
         arithmetic gives, infinities and NaN among it; `simulate` stops there.
         """
-        return self._evaluate("domain", state, parameters, target, out)
+        return self._evaluate("domain", target, state, parameters, inputs, time, out)
 
     @_by_name
     def reconstruction(
         self,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
@@ -251,9 +278,9 @@ class System:
         Arguments as in `rhs`, but that the state is followed by the rows of ``RECONSTRUCTED``:
         ``(n + k, *batch)``, or a mapping that names them all.
         """
-        return self._evaluate("reconstruction", state, parameters, target, out)
+        return self._evaluate("reconstruction", target, state, parameters, inputs, time, out)
 
-    def inputs(self, function: str) -> Quantities:
+    def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
         if function != "reconstruction":
             return self.STATE
@@ -265,19 +292,21 @@ class System:
         function: str,
         state: Values,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """One of the ``functions`` by name; arguments as in `rhs`."""
-        return self._evaluate(function, state, parameters, target, out)
+        return self._evaluate(function, target, state, parameters, inputs, time, out)
 
-    def _evaluate(self, function: str, *arguments: Any) -> Array:
-        """A function that is called with arguments in the order of `Call`, then the target."""
+    def _evaluate(self, function: str, target: Target, *given: Any) -> Array:
+        """A function at the state, parameters, inputs, time and result of a `Call`."""
         from coadjoint.solve.arrays import Call
 
-        state, parameters, target, out = arguments
-        call = Call(self, function, state, parameters, out)
+        *arrays, time, out = given
+        call = Call(self, function, *arrays, time=time, out=out)
         self._kernels.run(function, call, target)
         return call.result
 
@@ -287,8 +316,10 @@ class System:
         function: str,
         state: Array,
         parameters: Values | None = None,
+        inputs: Values | None = None,
         *,
         out: Array | None = None,
+        time: ArrayLike | None = None,
         target: Target = "c",
     ) -> Callable[[], None]:
         """A call without arguments that evaluates ``state`` as it then is into ``out``.
@@ -301,12 +332,14 @@ class System:
             state: A float64, C-contiguous array, read at each call.
             parameters: As in `rhs`. A packed float64 array is read at each call, as the state is;
                 anything else is copied now. Signs are checked now.
+            inputs: As in `rhs`, and read as parameters are.
             out: As in `rhs`, and not optional: it is where the results appear.
+            time: As in `rhs`; an array of float64, also one without axes, is read at each call.
             target: As in `rhs`.
         """
         from coadjoint.solve.arrays import Call
 
-        call = Call(self, function, state, parameters, out, bound=True)
+        call = Call(self, function, state, parameters, inputs, time=time, out=out, bound=True)
         return self._kernels.bind(function, call, target)
 
     def pack(self, parameters: Values | None = None) -> Array:
