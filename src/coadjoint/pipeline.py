@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from coadjoint.build.cache import working_folder
@@ -32,6 +32,7 @@ from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
+from coadjoint.prove.driven import changes_by_time, while_constant
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Spec, Variable
@@ -180,7 +181,7 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     spec, found = equations.spec, equations.setting.integrals
     stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
     energy = [
-        _emitted("energy", _unit(spec, formula), conserved=True)
+        _emitted("energy", _unit(spec, formula), conserved=not changes_by_time(equations))
         for formula in (spec.hamiltonian or spec.lagrangian,)
         if equations.exact.energy is not None
     ]
@@ -222,7 +223,7 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     momenta += [
         _emitted(each.name, each.unit, conserved=each.name in stated) for each in spec.sections
     ]
-    return (
+    emitted = (
         *energy,
         *casimirs,
         *velocities,
@@ -233,6 +234,14 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
         *of_pair,
         *of_space,
     )
+    return tuple(_held(equations, each) if each.conserved else each for each in emitted)
+
+
+def _held(equations: Equations, quantity: Quantity) -> Quantity:
+    """A conserved quantity, marked if it is one only while the inputs are constant."""
+    values = dict(equations.exact.observables)
+    named = [values[name] for name in quantity.components if name in values]
+    return replace(quantity, while_constant=bool(while_constant(equations, named)))
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:

@@ -70,7 +70,7 @@ class Kernels:
         """The call of a function of the NumPy kernel."""
         given = [call.state, call.parameters]
         given += [array for name, array in call.driving.items() if name != "time"]
-        named = {"time": call.driving["time"][0]} if "time" in call.driving else {}
+        named = {"time": call.driving["time"][0, ...]} if "time" in call.driving else {}
         return partial(self._numpy_function(function), *given, out=call.block, **named)
 
     def _pieces(self, function: str, call: Call, target: str) -> Iterator[Callable[[], None]]:

@@ -353,6 +353,7 @@ class System:
         state: Values,
         t: ArrayLike,
         parameters: Values | None = None,
+        inputs: Any = None,
         *,
         method: str = "auto",
         rtol: float = 1e-10,
@@ -368,6 +369,11 @@ class System:
             state: Initial state, ``(n,)`` or by name.
             t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
             parameters: As in `rhs`, shared.
+            inputs: Constants, ``(m,)`` or by name; samples over time as ``(times, values,
+                "previous")``, each of which holds until the next one, or ``(times, values,
+                "linear")``, with values ``(m, T)`` or by name, over the whole of the run; or a
+                function of time that returns ``(m,)`` or values by name. No step crosses a jump
+                of samples. None for the defaults.
             method: A method of `scipy.integrate`; ``"auto"`` is ``"DOP853"``, order 8. Where
                 constraints are kept, one-step methods go on from the `projection` of each step;
                 BDF and LSODA remember steps and are left alone.
@@ -400,6 +406,7 @@ class System:
             state,
             t,
             parameters,
+            inputs=inputs,
             method=method,
             rtol=rtol,
             atol=atol,
