@@ -77,3 +77,56 @@ knife = "Omega[3] == 0"
 [forces]
 Omega = "u"
 """
+#: A particle in a plane whose velocities are the state, with a mass that grows with time.
+VELOCITIES = """
+title = "Growing mass"
+routes = ["euler-lagrange", "canonical"]
+[variables]
+x = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "x" }
+[parameters]
+c = { positive = true, default = 1 }
+[inputs]
+u = { shape = [2], default = 0 }
+[time]
+name = "t"
+[lagrangian]
+l = "exp(c*t)*dot(v, v)/2 + dot(u, x) + t*v[1]"
+"""
+#: A bead on a rod that turns with the angle t^2/2: the constraint moves.
+ROD = """
+title = "Bead on a turning rod"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+vx = { role = "velocity", of = "x" }
+vy = { role = "velocity", of = "y" }
+[parameters]
+m = { positive = true, default = 1 }
+[inputs]
+f = { default = 0 }
+[time]
+name = "t"
+[lagrangian]
+l = "m*(vx^2 + vy^2)/2"
+[constraints]
+belt = "vy == t^2*vx + sin(t)"
+[forces]
+vx = "f"
+"""
+#: A particle driven by a force.
+POINT = """
+title = "Pushed particle"
+routes = ["newton"]
+[variables]
+x = { role = "coordinate" }
+v = { role = "velocity", of = "x" }
+[parameters]
+m = { positive = true, default = 2 }
+[inputs]
+f = { default = 3, unit = "N" }
+k = { shape = [2], default = [0, 1] }
+[newton]
+x = { mass = "m", force = "f + k[1]*v*k[2]" }
+"""

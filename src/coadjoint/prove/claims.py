@@ -32,6 +32,8 @@ from coadjoint.prove.driven import (
     OWN_CHANGE,
     changes_by_time,
     law_of_change,
+    motion_defects,
+    moving_momenta,
     own_change,
     while_constant,
 )
@@ -40,6 +42,7 @@ from coadjoint.prove.equivalence import LegendreMap, in_velocities
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import (
+    Tensor,
     antisymmetry_defects,
     casimir_defects,
     drift,
@@ -311,10 +314,11 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     spec, field = first.spec, first.setting.field
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
+        moving = moving_momenta(first)
         yield (
-            f"the motion by {first.route} is {{x, h}}",
+            f"the motion by {first.route} is {{x, h}}{' + dx/dt at fixed momenta' * moving}",
             "equivalence",
-            partial(hamiltonian_defects, first, energy, tensor),
+            partial(_bracket_defects, first, energy, tensor),
         )
     if energy is not None:
         yield _energy_law(first, energy), "conserved", partial(_energy_defects, first, energy)
@@ -337,6 +341,12 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     for seen in spec.spatial:
         if seen.conserved:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, first, seen)
+
+
+def _bracket_defects(first: Equations, energy: Element, tensor: Tensor) -> list[Element]:
+    """The rates minus the brackets with the energy, and minus what time adds to velocities."""
+    defects = hamiltonian_defects(first, energy, tensor)
+    return motion_defects(first, defects) if moving_momenta(first) else defects
 
 
 def _energy_law(first: Equations, energy: Element) -> str:

@@ -1,0 +1,131 @@
+"""Claims about driven motions: what time and inputs leave, and where statements say so."""
+
+import pytest
+
+from coadjoint.errors import ClaimError
+from coadjoint.prove import Verdict, prove
+from tests.driven_specs import BOOST, PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
+from tests.specs import spec
+
+
+def claims(text, *changes):
+    """Verdicts by statement."""
+    return {c.statement: c.verdict for c in prove(spec(text, *changes)).claims}
+
+
+def conserved(text, *changes):
+    """The statements on integrals and the energy, all of them proved."""
+    found = claims(text, *changes)
+    assert set(found.values()) == {Verdict.PROVED}
+    words = ("is conserved", "energy changes")
+    return {statement for statement in found if any(each in statement for each in words)}
+
+
+def test_the_boost_of_a_free_particle():
+    """K = t P - m r depends on time and is conserved; its flow takes motions to motions."""
+    found = claims(BOOST)
+    assert found["K is conserved"] is Verdict.PROVED
+    assert found["the flow of K takes motions to motions, a transformation of positions"]
+    assert set(found.values()) == {Verdict.PROVED}
+
+
+@pytest.mark.parametrize("wrong", ["t*P + m*r", "2*t*P - m*r", "t*P - m*r + t*r"])
+def test_a_spoiled_boost_is_refuted(wrong):
+    """With a point at which its rate is not zero."""
+    with pytest.raises(ClaimError, match="K is conserved"):
+        prove(spec(BOOST, ("t*P - m*r", wrong))).require()
+
+
+def test_where_inputs_have_to_be_constant():
+    """The energy of the field needs it; what the field does not enter does not."""
+    assert conserved(TOP) == {
+        "the energy is conserved while the inputs are constant",
+        "energy is conserved while the inputs are constant",
+        "dot(Pi, Gamma) is conserved",
+    }
+
+
+def test_an_input_that_cancels_needs_nothing():
+    """It is the value that counts, not the text."""
+    claimed = 'conserved = ["dot(Pi, Gamma) + u[1] - u[1]", "u[1]*dot(Pi, Gamma)"]'
+    found = conserved(TOP, ('conserved = ["energy", "dot(Pi, Gamma)"]', claimed))
+    assert "dot(Pi, Gamma) + u[1] - u[1] is conserved" in found
+    assert "u[1]*dot(Pi, Gamma) is conserved while the inputs are constant" in found
+
+
+def test_energy_changes_with_time():
+    """By its explicit part: in momenta that of h, in velocities minus that of l."""
+    assert conserved(PENDULUM) == {
+        "the energy changes by its explicit dependence on time: dh/dt = dh/dt|explicit while the "
+        "inputs are constant"
+    }
+    assert conserved(VELOCITIES) == {
+        "the energy changes by its explicit dependence on time: dE/dt = -dl/dt|explicit while the "
+        "inputs are constant"
+    }
+
+
+def test_claimed_energy_of_a_driven_motion_is_refuted():
+    """Who claims it conserved all the same is shown a point."""
+    with pytest.raises(ClaimError, match="energy is conserved"):
+        prove(spec(PENDULUM + '[claims]\nconserved = ["energy"]\n')).require()
+
+
+def test_forces_need_no_constant_inputs():
+    """Their power is what it is at each moment."""
+    assert conserved(SUSLOV) == {"the energy changes by the power of the forces"}
+
+
+def test_constraints_that_move_with_time():
+    """They work; both routes agree."""
+    found = claims(ROD)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert (
+        "the energy changes by the power of the forces and the work of the moving constraints"
+        in found
+    )
+    assert "nonholonomic and hamel give the same motion" in found
+
+
+@pytest.mark.parametrize("belt", ["vy == t^2*vx", "vy == (t + x)*vx"])
+def test_linear_constraints_that_move_do_no_work(belt):
+    """Energy is gained by the force alone; the momentum along the moving field gains <p, dD/dt>."""
+    found = claims(ROD, ("vy == t^2*vx + sin(t)", belt))
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "the energy changes by the power of the forces" in found
+    assert "the motion of (x, y, M_vx) is the bracket with H and the forces" in found
+
+
+def test_a_lagrangian_of_time_beside_constraints():
+    """The balance gains minus the explicit part of l, as a third term."""
+    found = conserved(ROD, ('"m*(vx^2 + vy^2)/2"', '"m*(vx^2 + vy^2)/2*(1 + t^2) - t*x"'))
+    assert found == {
+        "the energy changes by the power of the forces and the work of the moving constraints and "
+        "its explicit dependence on time"
+    }
+
+
+FLOATING = """
+title = "Kept constraint that moves"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+vx = { role = "velocity", of = "x" }
+vy = { role = "velocity", of = "y" }
+[time]
+name = "t"
+[lagrangian]
+l = "(vx^2 + vy^2)/2 - y"
+[constraints]
+belt = "cos(t)*vx + (2 + x^2)*vy - t == 0"
+[momenta]
+M = { section = { vx = "x", vy = "1" } }
+"""
+
+
+def test_a_kept_constraint_that_moves():
+    """Its residual keeps its value along the motion, and the momentum equation holds."""
+    found = claims(FLOATING)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "the motion keeps belt" in found
