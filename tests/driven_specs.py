@@ -1,4 +1,14 @@
-"""Driven systems for tests: specs with inputs and time, as text."""
+"""Driven systems for tests: specs with inputs and time, as text and built."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from coadjoint import pipeline
+from coadjoint.pipeline import Rendered
+from coadjoint.solve.system import System, load_folder
+from tests.specs import spec
 
 #: A pendulum whose pivot moves up and down by a cos(w t), driven by a torque u.
 PENDULUM = """
@@ -130,3 +140,16 @@ k = { shape = [2], default = [0, 1] }
 [newton]
 x = { mass = "m", force = "f + k[1]*v*k[2]" }
 """
+
+
+def rendered(text: str, *changes: tuple[str, str], name: str = "sample") -> Rendered:
+    """A driven system as text, proved."""
+    return pipeline.render(spec(text, *changes, name=name))
+
+
+def build(texts: Mapping[str, str], folder: Path) -> System:
+    """The System of rendered texts, in a folder."""
+    folder.mkdir(exist_ok=True)
+    for name, text in texts.items():
+        (folder / name).write_text(text)
+    return load_folder(folder)

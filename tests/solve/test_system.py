@@ -227,7 +227,7 @@ def test_quantities_are_escaped_in_notebooks():
 )
 def test_target_and_out_go_by_name(function, arguments):
     """The former positional use is refused with the spelling that works."""
-    with pytest.raises(KernelArgumentError, match=r'target="c", out=out\)'):
+    with pytest.raises(KernelArgumentError, match='target="c", out=out'):
         getattr(rigid_body.system, function)(*arguments)
 
 

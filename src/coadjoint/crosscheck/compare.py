@@ -305,6 +305,8 @@ def _check_reached(subject: Subject, points: ExactPoints, reached: int) -> None:
 def _hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]:
     """Each family, one with shared parameters, and one where one output nearly cancels.
 
+    Of driven systems also one with shared inputs and time.
+
     They end in the middle of a vector register, as the sizes are odd.
     """
     size = share | 1
@@ -315,6 +317,11 @@ def _hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch
     yield _completed(
         subject, function, alike, lambda count: _alike(_others(subject, "random", count), start)
     ).shared()
+    if start.driving:
+        calm = _calm(subject.points.families(4, size)["random"], start)
+        yield _completed(
+            subject, function, calm, lambda count: _calm(_others(subject, "random", count), start)
+        ).steady()
     yield cancelling(lambda batch: subject.evaluate(function, batch, "numpy"), start, seed=2)
 
 
@@ -333,6 +340,13 @@ def _alike(batch: Batch, start: Batch) -> Batch:
     """The states of a batch, all with the parameters of one member of another."""
     members = batch.state.shape[1]
     return replace(batch, parameters=np.repeat(start.parameters[:, :1], members, axis=1))
+
+
+def _calm(batch: Batch, start: Batch) -> Batch:
+    """The states and parameters of a batch, all with inputs and time of one member of another."""
+    members = batch.state.shape[1]
+    driving = {name: np.repeat(a[:, :1], members, axis=1) for name, a in start.driving.items()}
+    return replace(batch, driving=driving)
 
 
 def _completed(

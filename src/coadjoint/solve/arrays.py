@@ -211,10 +211,12 @@ def pack_inputs(system: System, inputs: Any) -> Array:
         KernelArgumentError: As for `pack`, or the system has no inputs.
     """
     quantities = system.INPUTS
-    if not quantities and inputs is not None:
+    if inputs is not None and (not quantities or isinstance(inputs, str)):
+        has = f"has the inputs {', '.join(quantities)}" if quantities else "has no inputs"
+        expected = "an array, or values by name" if quantities else "None"
         raise KernelArgumentError(
-            f"{system.name} has no inputs, and found {_short(inputs)} in their place; expected "
-            'target and out by name. Write rhs(state, parameters, target="c", out=out).',
+            f"{system.name} {has}, and found {_short(inputs)} in their place; expected {expected}. "
+            'Where target or out was meant, write target="c", out=out.',
             found=_short(inputs),
         )
     if inputs is None or isinstance(inputs, Mapping):

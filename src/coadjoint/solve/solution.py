@@ -165,6 +165,12 @@ class Solution:
         names = self.system.STATE.components
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
+    @property
+    def _last_inputs(self) -> dict[str, float]:
+        """The last inputs by component."""
+        names = self.system.INPUTS.components
+        return dict(zip(names, self._inputs_over_time[:, -1].tolist(), strict=True))
+
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values."""
         parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
@@ -177,6 +183,7 @@ class Solution:
             "parameters": dict(parameters),
             "final": self.final,
             "drift": self.drift,
+            **({} if self.inputs is None else {"inputs": self._last_inputs}),
         } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
 
     def to_xarray(self) -> Any:
