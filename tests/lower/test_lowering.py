@@ -52,6 +52,7 @@ def test_lowering_is_undone_exactly(system):
     equations = derive(shipped(system))
     programs = lower(equations)
     without = {
+        "parameter_jacobian": not equations.spec.parameters,
         "energy": equations.energy is None,
         "poisson_tensor": not equations.poisson_tensor,
         "constraint_residual": equations.distribution is None,
@@ -59,7 +60,7 @@ def test_lowering_is_undone_exactly(system):
         "reconstruction": not equations.followed,
         "domain": equations.distribution is None and not equations.spec.domain,
     }
-    named = ["rhs", "jacobian", "energy", "observables", "poisson_tensor"]
+    named = ["rhs", "jacobian", "parameter_jacobian", "energy", "observables", "poisson_tensor"]
     named += ["constraint_residual", "projection", "reconstruction", "domain"]
     assert list(programs) == [name for name in named if not without.get(name)]
     for program in programs.values():

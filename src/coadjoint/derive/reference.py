@@ -2,7 +2,7 @@
 
 Comes in: Equations. Goes out: a `Reference` that computes each function of the kernels straight
 from the field elements, never from the Programs, so that a fault of lowering, printing or compiling
-shows. The Jacobian is the derivative of the rates as they are written: rates are evaluated in
+shows. A Jacobian is the derivative of the rates as they are written: rates are evaluated in
 numbers that carry their slopes, by the product, quotient and chain rules. The derivative as an
 element of the field would be brought to a common denominator, where terms cancel that no formula of
 doubles can cancel without rounding (docs/decisions/envelope.md). Definitions are evaluated in their
@@ -43,7 +43,8 @@ class Reference:
         """All outputs of one function, row by row.
 
         Args:
-            function: ``rhs``, ``jacobian``, ``energy``, ``observables``,
+            function: ``rhs``, ``jacobian``, ``input_jacobian``, ``parameter_jacobian``,
+                ``energy``, ``observables``,
                 ``poisson_tensor``, ``constraint_residual``, ``projection``, ``reconstruction`` or
                 ``domain``.
             inputs: State, parameters, inputs and time by component.
@@ -55,8 +56,8 @@ class Reference:
         if function not in self._functions:
             elements = self._elements(function)
             self._functions[function] = elements, self.equations.definitions_of(elements)
-        if function == "jacobian":
-            return self._jacobian(inputs, number, call)
+        if function in self.equations.derivatives:
+            return self._jacobian(function, inputs, number, call)
         return self._values(function, inputs, number, call)
 
     def _values(
@@ -74,10 +75,10 @@ class Reference:
         return [value(element) for element in elements]
 
     def _elements(self, function: str) -> Sequence[Element]:
-        """What a function computes; of the Jacobian, what it is the derivative of."""
+        """What a function computes; of a Jacobian, what it is the derivative of."""
         exact = self.equations.exact
         match function:
-            case "rhs" | "jacobian":
+            case "rhs" | "jacobian" | "input_jacobian" | "parameter_jacobian":
                 return exact.rates
             case "energy" if exact.energy is not None:
                 return (exact.energy,)
@@ -94,12 +95,13 @@ class Reference:
         raise AssertionError(function)
 
     def _jacobian(
-        self, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
+        self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
     ) -> list[Value]:
-        """``d rate_i / d x_j``, row by row."""
+        """``d rate_i / d x_j``, row by row, by state, inputs or parameters x."""
+        names = self.equations.derivatives[function]
         one, zero = number(Fraction(1)), number(Fraction(0))
         known = {name: Sloped(value, {}) for name, value in inputs.items()}
-        for j, name in enumerate(self.state):
+        for j, name in enumerate(names):
             known[name] = Sloped(inputs[name], {j: one})
 
         def constant(value: Fraction) -> Sloped[Value]:
@@ -108,8 +110,8 @@ class Reference:
         def apply(function: str, argument: Sloped[Value]) -> Sloped[Value]:
             return _applied(function, argument, number, call)
 
-        rates = self._values("jacobian", known, constant, apply)
-        return [rate.slopes.get(j, zero) for rate in rates for j in range(len(self.state))]
+        rates = self._values(function, known, constant, apply)
+        return [rate.slopes.get(j, zero) for rate in rates for j in range(len(names))]
 
     @cached_property
     def _projection(self) -> Reference:
@@ -118,11 +120,11 @@ class Reference:
 
 
 class Sloped(Generic[Value]):
-    """A value with its slopes along the state, and the arithmetic of both.
+    """A value with its slopes by some variables, and the arithmetic of both.
 
     Args:
         value: The value, in any arithmetic that has ``+ * /`` and ``-u``.
-        slopes: Derivatives by the place in the state; one that is left out is zero.
+        slopes: Derivatives by the place of the variable; one that is left out is zero.
         factors: What the value is the product of, itself by default: the slope of ``1/D^2`` is
             ``-2 D'/D / D^2``, where the rule for a quotient would say ``-2 D D' / (D^2 D^2)``.
     """

@@ -37,11 +37,9 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
     match name:
         case "rhs":
             return [equations.closed(rate) for rate in exact.rates]
-        case "jacobian":
-            rates = expected_outputs(equations, "rhs")
-            return [
-                slope for rate in rates for slope in setting.field.gradient(rate, setting.state)
-            ]
+        case "jacobian" | "input_jacobian" | "parameter_jacobian":
+            rates, by = expected_outputs(equations, "rhs"), equations.derivatives[name]
+            return [slope for rate in rates for slope in setting.field.gradient(rate, by)]
         case "energy" if exact.energy is not None:
             return [equations.closed(exact.energy)]
         case "observables":

@@ -30,6 +30,8 @@ TEMPLATES: Final = {
 SUMMARIES: Final = {
     "rhs": "Time derivative of the state",
     "jacobian": "Derivative of rhs by the state, one row for each rate",
+    "input_jacobian": "Derivative of rhs by the inputs, one row for each rate",
+    "parameter_jacobian": "Derivative of rhs by the parameters, one row for each rate",
     "energy": "Energy",
     "observables": "Observables, one row for each component",
     "poisson_tensor": "Poisson tensor, brackets of the components of the state",
