@@ -36,6 +36,60 @@ def test_a_spoiled_boost_is_refuted(wrong):
         prove(spec(BOOST, ("t*P - m*r", wrong))).require()
 
 
+BOOSTS = """
+[symmetries.B]
+algebra = "R^3"
+vector = "xi"
+generators = { r = "t*xi", P = "m*xi" }
+map = "dot(xi, t*P - m*r)"
+[transformations.boost]
+map = { r = "r + t*c", P = "P + m*c" }
+exchanges = { K = "K" }
+[transformations.backwards]
+map = { P = "-P" }
+reverses_time = true
+exchanges = { K = "K" }
+"""
+
+
+def test_galilean_boosts():
+    """A symmetry and a transformation that name time; K keeps its value under both maps."""
+    boosted = BOOST.replace("m = {", "c = { shape = [3] }\nm = {") + BOOSTS
+    found = claims(boosted)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "B is their momentum map: {x, B} = dx/ds" in found
+    assert not any("Noether" in statement for statement in found)
+    for wrong in (
+        ("r + t*c", "r + 2*t*c"),
+        ('exchanges = { K = "K" }', 'exchanges = { K = "-K" }'),
+    ):
+        with pytest.raises(ClaimError, match="boost takes"):
+            prove(spec(boosted.replace(*wrong))).require()
+
+
+REVERSED = """
+title = "Shaken oscillator"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[time]
+name = "t"
+[hamiltonian]
+h = "p^2/2 + q^2/2 + q*cos(t)"
+[transformations.back]
+map = { p = "-p" }
+reverses_time = true
+"""
+
+
+def test_motions_run_backwards_with_their_time():
+    """cos(t) is even, sin(t) is not."""
+    assert set(claims(REVERSED).values()) == {Verdict.PROVED}
+    with pytest.raises(ClaimError, match="back takes the motion to its reverse"):
+        prove(spec(REVERSED, ("cos(t)", "sin(t)"))).require()
+
+
 def test_where_inputs_have_to_be_constant():
     """The energy of the field needs it; what the field does not enter does not."""
     assert conserved(TOP) == {

@@ -227,15 +227,23 @@ def _map(first: Equations, transformation: Transformation) -> dict[str, Element]
     return found | moved_components(setting, transformation.map)
 
 
+def _time_after(first: Equations, transformation: Transformation) -> dict[str, Element]:
+    """The time after a map: where it is reversed, that is minus the time before."""
+    setting = first.setting
+    return {t: -setting.field[t] for t in setting.time if transformation.reverses_time}
+
+
 def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:
-    """``D phi . X -+ X o phi``; where time is reversed, it is in X, too."""
-    field, phi = first.setting.field, _map(first, transformation)
-    moved = phi | {t: -field[t] for t in first.setting.time if transformation.reverses_time}
+    """``D phi . X + dphi/dt -+ X o phi``."""
+    setting, phi = first.setting, _map(first, transformation)
+    field, moved = setting.field, phi | _time_after(first, transformation)
     rates = tuple(map(first.closed, first.exact.rates))
     motion = VectorField(field, first.setting.state, rates)
     sign = -1 if transformation.reverses_time else 1
     return [
-        motion.derivative(phi[name]) - sign * field.substitute(rate, moved)
+        motion.derivative(phi[name])
+        + explicit(setting, phi[name])
+        - sign * field.substitute(rate, moved)
         for name, rate in zip(first.setting.state, rates, strict=True)
     ]
 
@@ -248,7 +256,8 @@ def _exchange_defects(
     known: Mapping[str, Quantity],
 ) -> list[Element]:
     """``F o phi`` minus what it should be."""
-    field, phi = first.setting.field, _map(first, transformation)
+    field = first.setting.field
+    phi = _map(first, transformation) | _time_after(first, transformation)
     moved = [field.substitute(first.closed(part), phi) for part in entries(known[observable])]
     expected = [first.closed(part) for part in first.setting.components(formula, known)]
     return [a - b for a, b in zip(moved, expected, strict=True)]

@@ -15,7 +15,7 @@ from coadjoint.errors import CoadjointError
 from coadjoint.spec.constrained import Condition, Constraint, Section, reaction_shapes
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Formula, Variable
 from coadjoint.spec.names import refusal
 from coadjoint.spec.positions import KeyPath
@@ -130,7 +130,7 @@ class ConstraintReader:
             name: (velocity, sign)
             for velocity, (name, sign) in (solved_velocities(self.file) or {}).items()
         }
-        scope = make_scope("a constraint", self.motion, self.quantities, driven=True)
+        scope = make_scope("a constraint", self.motion, self.quantities, driven=DRIVING)
         found = []
         for name, text in (self.file.constraints or {}).items():
             key: KeyPath = ("constraints", name)
@@ -144,7 +144,7 @@ class ConstraintReader:
         Raises:
             SpecError: There is no such velocity, or the force has another shape.
         """
-        scope = make_scope("a force", self.motion, self.quantities, driven=True)
+        scope = make_scope("a force", self.motion, self.quantities, driven=DRIVING)
         return {
             name: self._along(("forces", name), text, scope, self.velocities)
             for name, text in self.file.forces.items()
@@ -154,7 +154,7 @@ class ConstraintReader:
         """Rayleigh's function."""
         if self.file.dissipation is None:
             return None
-        scope = make_scope("a dissipation", self.motion, self.quantities, driven=True)
+        scope = make_scope("a dissipation", self.motion, self.quantities, driven=DRIVING)
         return read_formula(self.source, ("dissipation", "R"), self.file.dissipation.R, scope)
 
     def domain(self, constraints: Sequence[Constraint]) -> tuple[Condition, ...]:
@@ -167,7 +167,7 @@ class ConstraintReader:
             SpecError: One is no inequality between scalars, or has a name that none may have.
         """
         reactions = reaction_shapes(constraints)
-        scope = make_scope("a condition", self.motion, self.quantities, reactions, driven=True)
+        scope = make_scope("a condition", self.motion, self.quantities, reactions, driven=DRIVING)
         found = []
         for name, text in self.file.domain.items():
             key: KeyPath = ("domain", name)

@@ -15,7 +15,7 @@ from coadjoint.errors import CoadjointError
 from coadjoint.spec.constrained import Reconstructed, Rolling
 from coadjoint.spec.constrained_schema import ReconstructedPart
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Definition, Shape, Variable
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.quantities import Parameter
@@ -168,7 +168,7 @@ class FollowedReader:
             record = Reconstructed(name, None, part.attitude or "", _shape(part))
             shapes |= dict.fromkeys(record.components, ()) | {name: record.shape}
         roles = tuple(dict.fromkeys(("velocity", *(each.role for each in self.variables))))
-        scope = make_scope("a rate", roles, self.quantities, shapes, driven=True)
+        scope = make_scope("a rate", roles, self.quantities, shapes, driven=DRIVING)
         return (*first, *(self._reconstructed(name, part, scope) for name, part in parts.items()))
 
     def _units(self) -> dict[str, Unit | None]:

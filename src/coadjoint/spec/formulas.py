@@ -6,7 +6,7 @@ checked for names, shapes and size. Read next: `coadjoint.spec.consistency`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from coadjoint.spec.definitions import expand, functions
@@ -69,7 +69,7 @@ def make_scope(
     quantities: Iterable[Quantity],
     others: Mapping[str, Shape] | Iterable[str] = (),
     *,
-    driven: bool = False,
+    driven: Sequence[str] = (),
 ) -> Scope:
     """The scope of a kind of formula.
 
@@ -78,7 +78,7 @@ def make_scope(
         roles: Roles of variables that it may use; parameters it always may.
         quantities: Everything the spec declares.
         others: Further names with their shapes, or of scalars.
-        driven: Whether it may use inputs and time.
+        driven: Which of `DRIVING` it may use.
     """
     shapes = dict(others) if isinstance(others, Mapping) else dict.fromkeys(others, ())
     outside: dict[str, str] = {}
@@ -89,7 +89,7 @@ def make_scope(
             definitions[quantity.name] = quantity
             continue
         role = quantity.role
-        if driven and role in DRIVING:
+        if role in driven:
             present[role] = None
         if role in present or role == "parameter" or role in roles:
             shapes |= dict.fromkeys(quantity.components, ())

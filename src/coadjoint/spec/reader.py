@@ -37,7 +37,7 @@ from coadjoint.spec.constraints import ConstraintReader, solved_velocities
 from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
 from coadjoint.spec.followed import FollowedReader
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.lax import read_lax
 from coadjoint.spec.model import (
     Constraint,
@@ -275,13 +275,15 @@ class _Formulas:
     def lagrangian(self) -> Formula | None:
         if self.file.lagrangian is None:
             return None
-        scope = make_scope("a Lagrangian", ("velocity", *self.fixed), self.quantities, driven=True)
+        scope = make_scope(
+            "a Lagrangian", ("velocity", *self.fixed), self.quantities, driven=DRIVING
+        )
         return read_formula(self.source, ("lagrangian", "l"), self.file.lagrangian.l, scope)
 
     def hamiltonian(self) -> Formula | None:
         if self.file.hamiltonian is None:
             return None
-        scope = make_scope("a Hamiltonian", self.state, self.quantities, driven=True)
+        scope = make_scope("a Hamiltonian", self.state, self.quantities, driven=DRIVING)
         return read_formula(self.source, ("hamiltonian", "h"), self.file.hamiltonian.h, scope)
 
     def lax(self) -> Lax | None:
@@ -296,7 +298,7 @@ class _Formulas:
 
     def observables(self, constraints: Sequence[Constraint]) -> tuple[Observable, ...]:
         reactions = reaction_shapes(constraints)
-        scope = make_scope("an observable", self.motion, self.quantities, reactions, driven=True)
+        scope = make_scope("an observable", self.motion, self.quantities, reactions, driven=DRIVING)
         found = []
         for name, part in self.file.observables.items():
             key: KeyPath = ("observables", name)
@@ -320,7 +322,7 @@ class _Formulas:
         named = emitted_shapes(emitted)
         if self.file.hamiltonian is None and self.file.lagrangian is None:
             del named["energy"]
-        scope = make_scope("an integral", self.motion, self.quantities, named, driven=True)
+        scope = make_scope("an integral", self.motion, self.quantities, named, driven=DRIVING)
         found = []
         for place, part in enumerate(self.file.claims.conserved):
             key: KeyPath = ("claims", "conserved", place)
