@@ -183,3 +183,35 @@ def test_a_kept_constraint_that_moves():
     found = claims(FLOATING)
     assert set(found.values()) == {Verdict.PROVED}
     assert "the motion keeps belt" in found
+
+
+PARTICLES = """
+title = "Two points"
+routes = ["newton"]
+[variables]
+x = { role = "coordinate", shape = [3] }
+y = { role = "coordinate", shape = [3] }
+u = { role = "velocity", of = "x" }
+w = { role = "velocity", of = "y" }
+[inputs]
+k = { default = 1 }
+[time]
+name = "t"
+[newton]
+x = { force = "FACTOR*(y - x)" }
+y = { force = "FACTOR*(x - y)" }
+[claims]
+conserved = ["u + w", "t*(u + w) - x - y"]
+galilean = true
+[observables]
+pull = "k*dot(x, y)"
+"""
+
+
+@pytest.mark.parametrize("factor", ["(1 + t)", "k"])
+def test_laws_that_change_are_not_galilean(factor):
+    """Time shifts take a law that depends on time, or on an input, to another one."""
+    assert set(claims(PARTICLES, ("FACTOR", "2")).values()) == {Verdict.PROVED}
+    found = claims(PARTICLES, ("FACTOR", factor))
+    refuted = {statement for statement, verdict in found.items() if verdict is not Verdict.PROVED}
+    assert refuted == {"Newton's law is the same after a time shift of space and time"}
