@@ -42,3 +42,18 @@ def test_texts_that_lose_inputs_are_caught(pendulum, file, right, wrong):
     spoiled = pendulum.texts | {file: pendulum.texts[file].replace(right, wrong)}
     with pytest.raises(CoadjointError, match=r"rung|wrong kernel|cannot be"):
         verify(replace(pendulum, texts=spoiled))
+
+
+def test_signatures_of_driven_kernels(pendulum):
+    """Inputs follow the parameters, time goes by name in Python and follows them in C."""
+    assert "def rhs(state, parameters, inputs, *, time, out=None):" in pendulum.texts["kernel.py"]
+    prototype = """void sample_input_jacobian(
+    size_t count,
+    const double *state, size_t state_stride,
+    const double *parameters, size_t parameters_stride,
+    const double *inputs, size_t inputs_stride,
+    const double *time, size_t time_stride,
+    double *out, size_t out_stride);
+"""
+    assert prototype in pendulum.texts["kernel.h"]
+    assert "def rhs(state, parameters, inputs, out=None):" in rendered(TOP).texts["kernel.py"]

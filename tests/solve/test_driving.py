@@ -243,3 +243,25 @@ def test_a_run_without_inputs_takes_none():
     """A system that has none refuses them."""
     with pytest.raises(KernelArgumentError, match="rigid_body has no inputs"):
         rigid_body.simulate([1.0, 2.0, 3.0], (0.0, 1.0), None, lambda t: [t])
+
+
+def test_a_domain_that_moves(tmp_path):
+    """X = 3 t^2/4 < f + t, with f = 3, until t = (1 + sqrt(10))/1.5; the message has f and t."""
+    bounded = POINT + '[time]\nname = "t"\n[domain]\nahead = "x < f + t"\n'
+    found = build(rendered(bounded).texts, tmp_path / "sample").simulate([0.0, 0.0], (0.0, 4.0))
+    assert found.status == "DOMAIN"
+    assert abs(found.time_reached - (1 + np.sqrt(10)) / 1.5) < 1e-9
+    assert "f = 3" in found.message
+    assert "t = 2.77485" in found.message
+
+
+@pytest.mark.parametrize("method", ["Radau", "BDF", "LSODA"])
+def test_jacobians_are_those_of_the_moment(system, method):
+    """Implicit methods, which use them at the times of their steps, find the explicit run."""
+    run = (system(PENDULUM), [0.5, 0.0], (0.0, 2.0), None, lambda t: np.cos(t))
+    expected, found = (
+        run[0].simulate(*run[1:], method=each, rtol=1e-9, atol=1e-12, samples=5)
+        for each in ("DOP853", method)
+    )
+    assert found.status == "OK"
+    np.testing.assert_allclose(found.state, expected.state, rtol=0, atol=1e-6)

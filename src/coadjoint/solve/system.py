@@ -281,8 +281,11 @@ class System(Functions):
         return dict(self.certificate.get("docs", {}))
 
     def __repr__(self) -> str:
-        state, parameters = ", ".join(self.STATE.components), ", ".join(self.PARAMETERS.components)
-        return f"<System {self.name}: state {state}; parameters {parameters or 'none'}>"
+        tables = {"state": self.STATE, "parameters": self.PARAMETERS}
+        driving = {"inputs": self.INPUTS, "time": self.TIME}
+        tables |= {name: quantities for name, quantities in driving.items() if quantities}
+        told = (f"{name} {', '.join(q.components) or 'none'}" for name, q in tables.items())
+        return f"<System {self.name}: {'; '.join(told)}>"
 
 
 def load_folder(folder: Path) -> System:
