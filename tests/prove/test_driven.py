@@ -99,6 +99,20 @@ def test_where_inputs_have_to_be_constant():
     }
 
 
+def test_charts_that_keep_an_input():
+    """Of the route kaluza-klein, the charges p = -u are kept while u is; with time they are not."""
+    further = ('"newton-euler"]', '"newton-euler", "kaluza-klein", "clebsch"]')
+    found = {s for s, v in claims(TOP, further).items() if v is Verdict.PROVED}
+    kept = "the route kaluza-klein keeps p1 = -u1, p2 = -u2, p3 = -u3"
+    assert f"{kept} while the inputs are constant" in found
+    same = "euler-poincare and clebsch give the same motion, through Pi = p_Gamma x Gamma"
+    assert same in found
+    timed = ("[inputs]", '[time]\nname = "t"\n[inputs]')
+    changes = (further, (" - dot(u, Gamma)", " - t*dot(u, Gamma)"), timed)
+    with pytest.raises(ClaimError, match="the route kaluza-klein keeps"):
+        prove(spec(TOP, *changes)).require()
+
+
 def test_an_input_that_cancels_needs_nothing():
     """It is the value that counts, not the text."""
     claimed = 'conserved = ["dot(Pi, Gamma) + u[1] - u[1]", "u[1]*dot(Pi, Gamma)"]'

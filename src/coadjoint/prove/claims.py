@@ -292,14 +292,16 @@ def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
     chart_map = ChartMap(first, other)
     relations = ", ".join(relation.text for relation in other.chart.relations)
     where = f", where {relations}" if relations else ""
-    through = f"through {other.chart.through}{where}"
+    elements = [relation.element for relation in other.chart.relations]
+    held = while_constant(other, [*elements, *other.chart.state])
+    through = f"through {other.chart.through}{where}{held}"
     yield (
         f"{first.route} and {other.route} give the same motion, {through}",
         "equivalence",
         chart_map.related,
     )
     if relations:
-        yield f"the route {other.route} keeps {relations}", "equivalence", chart_map.kept
+        yield f"the route {other.route} keeps {relations}{held}", "equivalence", chart_map.kept
     statement, decision = reach(chart_map)
     yield statement, "equivalence", lambda: decision
 
