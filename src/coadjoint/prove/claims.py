@@ -31,9 +31,9 @@ from coadjoint.prove.constrained import ConstrainedRates, about_constraints, kee
 from coadjoint.prove.driven import (
     OWN_CHANGE,
     changes_by_time,
+    has_moving_momenta,
     law_of_change,
     motion_defects,
-    moving_momenta,
     own_change,
     while_constant,
 )
@@ -316,7 +316,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
     spec, field = first.spec, first.setting.field
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
-        moving = moving_momenta(first)
+        moving = has_moving_momenta(first)
         yield (
             f"the motion by {first.route} is {{x, h}}{' + dx/dt at fixed momenta' * moving}",
             "equivalence",
@@ -348,7 +348,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
 def _bracket_defects(first: Equations, energy: Element, tensor: Tensor) -> list[Element]:
     """The rates minus the brackets with the energy, and minus what time adds to velocities."""
     defects = hamiltonian_defects(first, energy, tensor)
-    return motion_defects(first, defects) if moving_momenta(first) else defects
+    return motion_defects(first, defects) if has_moving_momenta(first) else defects
 
 
 def _energy_law(first: Equations, energy: Element) -> str:

@@ -34,7 +34,7 @@ def changes_by_time(equations: Equations) -> bool:
     return not equations.setting.field.is_zero(own_change(equations))
 
 
-def moving_momenta(equations: Equations) -> bool:
+def has_moving_momenta(equations: Equations) -> bool:
     """Whether velocities are in the state, and their momenta depend on time explicitly."""
     setting = equations.setting
     return not setting.momenta and any(not setting.field.is_zero(p) for p in _own(equations))
