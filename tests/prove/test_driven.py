@@ -142,6 +142,7 @@ def test_claimed_energy_of_a_driven_motion_is_refuted():
 def test_forces_need_no_constant_inputs():
     """Their power is what it is at each moment."""
     assert conserved(SUSLOV) == {"the energy changes by the power of the forces"}
+    assert any("not integrable" in statement for statement in claims(SUSLOV))
 
 
 def test_constraints_that_move_with_time():

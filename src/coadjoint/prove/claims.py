@@ -167,11 +167,10 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
 def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
     """What is found out about a constrained motion, each search with a budget of its own.
 
-    Of a driven one nothing is searched for: unknown coefficients would count time and inputs among
-    the constants.
+    Of a driven one only its constraints are examined, if they are the same at all times: the
+    unknown coefficients of other searches would count time and inputs among the constants.
     """
-    if motion.equations.spec.driving:
-        return
+    driving = {*motion.equations.setting.driving}
     searches: dict[tuple[str, str], Iterator[Examined]] = {
         ("integrability", "the growth vector"): about_integrability(motion.equations),
         ("jacobi", "the Jacobi identity of the reduced bracket"): about_reduced_jacobi(motion),
@@ -179,6 +178,11 @@ def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iter
         ("integrals", "integrals"): _integrals(motion, emitted),
         ("measure", "invariant measures"): about_measure(motion),
     }
+    if driving:
+        residuals = (equation.residual for equation in motion.distribution.equations)
+        moving = frozenset[str]().union(*map(motion.field.reach, residuals)) & driving
+        kept = () if moving else ("integrability",)
+        searches = {key: found for key, found in searches.items() if key[0] in kept}
     for (kind, subject), examined in searches.items():
         yield from within_budget(motion.field, kind, subject, examined)
 
