@@ -125,6 +125,11 @@ belt = "vy == t^2*vx + sin(t)"
 [forces]
 vx = "f"
 """
+#: The same, its belt moved by an input whose rate is another one.
+BELT = ROD.replace("sin(t)", "b").replace(
+    "f = { default = 0 }",
+    'f = { default = 0 }\nb = { default = 0, rate = "db" }\ndb = { default = 0 }',
+)
 #: A particle driven by a force.
 POINT = """
 title = "Pushed particle"

@@ -5,7 +5,7 @@ import sympy
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.errors import DerivationError
-from tests.driven_specs import PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
+from tests.driven_specs import BELT, PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
 from tests.specs import spec
 
 
@@ -90,7 +90,22 @@ def test_inputs_act_without_their_rates(text, change, name):
         derive(spec(text, change))
 
 
+def test_an_input_with_a_rate_moves_a_constraint():
+    """M (1 + t^4) vx' = f - m t^2 (2 t vx + db): what was cos(t) is the rate."""
+    for route in ("nonholonomic", "hamel"):
+        found = derive(spec(BELT), route)
+        field = found.setting.field
+        (solve,) = found.exact.solves
+        t, vx, m, f, db = (field[name] for name in ("t", "vx", "m", "f", "db"))
+        assert field.is_zero(found.closed(solve.known[0]) - f + m * t**2 * (2 * t * vx + db))
+
+
 def test_the_advice_leads_somewhere():
-    """As a function of time, or as a parameter, the same term is derived."""
+    """With its rate, as a function of time, or as a parameter, the same term is derived."""
+    rate = (
+        "u = { shape = [2], default = 0 }",
+        ('u = { shape = [2], default = 0, rate = "a" }\na = { shape = [2], default = 0 }'),
+    )
+    derive(spec(VELOCITIES, ("t*v[1]", "u[1]*v[1]"), rate))
     derive(spec(ROD, ("sin(t)", "cos(2*t)*sin(t)")))
     derive(spec(ROD, ("sin(t)", "b*sin(t)"), ("m = {", "b = { default = 1 }\nm = {")))

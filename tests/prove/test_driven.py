@@ -4,7 +4,7 @@ import pytest
 
 from coadjoint.errors import ClaimError
 from coadjoint.prove import Verdict, prove
-from tests.driven_specs import BOOST, PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
+from tests.driven_specs import BELT, BOOST, PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
 from tests.specs import spec
 
 
@@ -154,6 +154,27 @@ def test_constraints_that_move_with_time():
         in found
     )
     assert "nonholonomic and hamel give the same motion" in found
+
+
+def test_a_constraint_that_an_input_moves():
+    """With the rate of the input as another one, the same is proved, and needs no condition."""
+    found = claims(BELT)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert (
+        "the energy changes by the power of the forces and the work of the moving constraints"
+        in found
+    )
+
+
+def test_reversed_rates():
+    """Turned back in time, a rate turns its sign; the rate of a rate does not."""
+    text = REVERSED.replace("[hamiltonian]", "[inputs]\n%s\n[hamiltonian]").replace(
+        "q*cos(t)", "q*cos(t)*(%s)"
+    )
+    inputs = 'c = { rate = "b" }\nb = { }\na = { rate = "c" }'  # a -> c -> b
+    assert set(claims(text % (inputs, "a + b + c^2 + t*c")).values()) == {Verdict.PROVED}
+    with pytest.raises(ClaimError, match="back takes the motion to its reverse"):
+        prove(spec(text % (inputs, "a + b + c"))).require()
 
 
 @pytest.mark.parametrize("belt", ["vy == t^2*vx", "vy == (t + x)*vx"])

@@ -6,7 +6,7 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
 from coadjoint.systems import rigid_body
-from tests.driven_specs import BOOST, PENDULUM, POINT, ROD, SUSLOV, TOP, build, rendered
+from tests.driven_specs import BELT, BOOST, PENDULUM, POINT, ROD, SUSLOV, TOP, build, rendered
 
 METHODS = ("DOP853", "RK23", "Radau", "BDF", "LSODA")
 
@@ -210,6 +210,14 @@ def test_a_constraint_that_moves_is_followed(system):
 
     expected = solve_ivp(rates, (0, 2), [0.0, 0.0, 1.0], "Radau", found.time, rtol=1e-9, atol=1e-11)
     np.testing.assert_allclose(found.state, expected.y, rtol=0, atol=1e-7)
+
+
+def test_an_input_with_its_rate_moves_a_constraint(system):
+    """With b = sin t and db = cos t, the belt moves the bead as the function of time does."""
+    run = ([0.0, 0.0, 1.0], np.linspace(0, 2, 5), None)
+    expected = system(ROD).simulate(*run, [0.5])
+    found = system(BELT).simulate(*run, lambda t: {"f": 0.5, "b": np.sin(t), "db": np.cos(t)})
+    np.testing.assert_allclose(found.state, expected.state, rtol=0, atol=1e-12)
 
 
 WRONG = [

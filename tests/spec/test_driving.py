@@ -4,7 +4,7 @@ import pytest
 
 from coadjoint.errors import SpecError
 from coadjoint.spec.model import Input, Time
-from tests.driven_specs import BOOST, PENDULUM, ROD, SUSLOV, TOP
+from tests.driven_specs import BELT, BOOST, PENDULUM, ROD, SUSLOV, TOP
 from tests.specs import spec
 
 
@@ -29,6 +29,15 @@ REFUSED = [
     (PENDULUM, ("u = {", "t = {"), "'t' is a name that generated code"),
     (PENDULUM, ("u = {", "phi = {"), "'phi' is doubled"),
     (ROD, ("m = {", "inputs = {"), "'inputs' is a name that generated code"),
+]
+
+
+REFUSED += [
+    (BELT, ('rate = "db"', 'rate = "dc"'), "'dc' is no other input .* expected one of f, db"),
+    (BELT, ('rate = "db"', 'rate = "b"'), "'b' is no other input of the shape of 'b'"),
+    (BELT, ("db = { default = 0 }", "db = { shape = [2], default = 0 }"), "'db' is no other input"),
+    (BELT, ("db = { default = 0 }", 'db = { default = 0, rate = "b" }'), "b -> db -> b go round"),
+    (BELT, ("db = { default = 0 }", 'db = { default = 0, rate = "zz" }'), "'zz' is no other input"),
 ]
 
 

@@ -6,8 +6,9 @@ Along a motion :math:`\dot x = X(x, u, t)`,
     \frac{df}{dt} = \frac{\partial f}{\partial x} X + \frac{\partial f}{\partial t}
         + \frac{\partial f}{\partial u} \dot u.
 
-The second term is the explicit part. The third is known to nobody, since inputs are any functions
-of time: rates may not need it, and an integral that has it is one while the inputs are constant.
+The second term is the explicit part, and so is the third where a spec says which input is the rate
+of u. Otherwise nobody knows it, since inputs are any functions of time: rates may not need it, and
+an integral that has it is one while the inputs are constant.
 Comes in: a Setting and elements. Goes out: explicit parts, and whether inputs are named.
 Read next: `coadjoint.prove.identities`.
 """
@@ -22,9 +23,10 @@ from coadjoint.exact import Element
 
 
 def explicit(setting: Setting, element: Element) -> Element:
-    """``df/dt`` at fixed state and fixed inputs."""
-    field = setting.field
-    return field.sum(field.derivative(element, name) for name in setting.time)
+    """``df/dt`` at fixed state and fixed inputs, but those whose rates are known."""
+    field, rates = setting.field, setting.own_rates
+    slopes = zip(field.gradient(element, list(rates)), rates.values(), strict=True)
+    return field.sum(slope * rate for slope, rate in slopes if slope != 0)
 
 
 def explicit_rate(setting: Setting, element: Element, what: str) -> Element:
@@ -38,13 +40,14 @@ def explicit_rate(setting: Setting, element: Element, what: str) -> Element:
     Raises:
         DerivationError: It depends on an input.
     """
-    for name in setting.inputs:
+    for name in _free(setting):
         if not setting.field.is_zero(setting.field.derivative(element, name)):
             path = str(setting.spec.path)
             raise DerivationError(
                 f"{path}: {what} depends on the input {name}, so the motion needs the rate of "
-                f"{name}; expected inputs that act without their rates. Declare {name} as a "
-                "parameter, or write it as a function of time.",
+                f"{name}; expected inputs that act without their rates, or whose rate is an input. "
+                'Declare that input and name it, as rate = "..." of this one; or write a function '
+                "of time or a parameter in its place.",
                 path=path,
                 found=name,
             )
@@ -57,5 +60,10 @@ def names_inputs(setting: Setting, elements: Iterable[Element]) -> bool:
     return any(
         not field.is_zero(field.derivative(element, name))
         for element in elements
-        for name in setting.inputs
+        for name in _free(setting)
     )
+
+
+def _free(setting: Setting) -> list[str]:
+    """Inputs whose rates are not known, by component."""
+    return [name for name in setting.inputs if name not in setting.own_rates]

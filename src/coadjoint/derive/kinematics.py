@@ -66,7 +66,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
 def _moving_entries(found: Distribution) -> list[Element]:
     """Entries of B, beta and A that move and are no symbols, each up to its sign."""
     field = found.setting.field
-    moving = {*found.frame.positions, *found.setting.time}
+    moving = {*found.frame.positions, *found.setting.own_rates}
     kept = [e for row in kept_rows(found) for e in row]
     places = [n for n, name in enumerate(found.frame.velocities) if name in found.solved]
     given = [e for n in places for e in (*found.B[n], found.beta[n])]
@@ -108,7 +108,7 @@ def kept_rows(found: Distribution) -> list[Row]:
 def is_symbol(found: Distribution, entry: Element) -> bool:
     """Whether an element is a name or minus a name, which needs no other."""
     field = found.setting.field
-    names = (*found.frame.positions, *found.setting.time)
+    names = (*found.frame.positions, *found.setting.own_rates)
     return any(entry in (field[name], -field[name]) for name in names)
 
 
@@ -158,7 +158,7 @@ class Kinematics:
         A square root h moves by its rate: ``N/h`` by ``(N' - (N/h) h')/h``, with the name of N/h.
         """
         setting = self.frame.setting
-        field, rates = setting.field, {**self.position_rates, **dict.fromkeys(setting.time, 1)}
+        field, rates = setting.field, {**self.position_rates, **setting.own_rates}
         explicit_rate(setting, function, "a constraint or a momentum")
         slopes = dict(zip(rates, field.gradient(function, rates), strict=True))
         parts = []

@@ -74,6 +74,17 @@ class Setting:
         """The name of the time; empty where no formula names it."""
         return () if self.spec.time is None else self.spec.time.components
 
+    @cached_property
+    def own_rates(self) -> Mapping[str, Element]:
+        """The time derivatives of what moves by itself: of time, and of inputs with known rates."""
+        rates = dict.fromkeys(self.time, self.field.one)
+        inputs = {each.name: each for each in self.spec.inputs}
+        for each in self.spec.inputs:
+            if each.rate:
+                named = self.elements(inputs[each.rate].components)
+                rates |= zip(each.components, named, strict=True)
+        return rates
+
     @property
     def driving(self) -> tuple[str, ...]:
         """What moves by itself: the inputs and the time."""

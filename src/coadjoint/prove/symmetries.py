@@ -228,9 +228,20 @@ def _map(first: Equations, transformation: Transformation) -> dict[str, Element]
 
 
 def _time_after(first: Equations, transformation: Transformation) -> dict[str, Element]:
-    """The time after a map: where it is reversed, that is minus the time before."""
+    """Time and rates of inputs after a map: where it reverses time, minus what they are before.
+
+    The rate of a rate keeps its value.
+    """
     setting = first.setting
-    return {t: -setting.field[t] for t in setting.time if transformation.reverses_time}
+    inputs = {each.name: each for each in setting.spec.inputs}
+    first_ones = inputs.keys() - {each.rate for each in inputs.values()}
+    turned = list(setting.time)
+    for name in sorted(first_ones):
+        chain = [name]
+        while inputs[chain[-1]].rate:
+            chain.append(inputs[chain[-1]].rate)
+        turned += [component for rate in chain[1::2] for component in inputs[rate].components]
+    return {t: -setting.field[t] for t in turned if transformation.reverses_time}
 
 
 def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:

@@ -123,6 +123,7 @@ class Input:
         default: One exact value per component, row by row; None if the user must give it.
         unit: Unit text, ``"1"`` if dimensionless.
         doc: Free text for documents.
+        rate: The input that is its time derivative, or "".
     """
 
     role: ClassVar[str] = "input"
@@ -132,6 +133,7 @@ class Input:
     default: tuple[Fraction, ...] | None = None
     unit: str = "1"
     doc: str = ""
+    rate: str = ""
 
     @property
     def components(self) -> tuple[str, ...]:

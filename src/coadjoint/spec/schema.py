@@ -152,6 +152,9 @@ class InputPart(Part):
     default: Numbers | None = Field(
         None, description="exact default: a number for all components, or nested lists of them"
     )
+    rate: str | None = Field(
+        None, description="the input that is its time derivative, where the motion needs this"
+    )
     unit: Unit = Field("1", description="unit, such as 'N m'; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")
 

@@ -48,6 +48,7 @@ def check_used(source: Source, spec: Spec) -> None:
     """
     trees = [formula.tree for formula in formulas(spec)]
     named = {n.name for tree in trees for n in walk(tree) if isinstance(n, Name | Index)}
+    named |= {each.rate for each in spec.inputs}
     for each in spec.driving:
         if not named & {each.name, *each.components}:
             table = "time" if each is spec.time else "inputs"
