@@ -20,7 +20,7 @@ def measure() -> list[Figure]:
     system = load_folder(systems_folder() / "heavy_top")
     state = np.random.default_rng(0).normal(size=system.STATE.size)
     out, parameters = np.empty_like(state), system.pack(None)
-    call = system.bind("rhs", state, None, out)
+    call = system.bind("rhs", state, None, out=out)
     kernel = load_library(system.folder, system.name, system.id, "exact", lambda _: None)
     with tempfile.TemporaryDirectory() as folder:
         repeat = compiled("repeat", Path(folder)).repeat

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from coadjoint.build.cache import working_folder
@@ -26,14 +26,17 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
+from coadjoint.derive.setting import Declared
 from coadjoint.exact import Element
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
+from coadjoint.prove.driven import while_constant
+from coadjoint.prove.energy import keeps_energy
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
-from coadjoint.spec import Formula, Parameter, Spec, Variable
+from coadjoint.spec import Formula, Spec, Variable
 from coadjoint.spec.model import Constraint, Reconstructed, Shape, component_names
 from coadjoint.spec.units import Unit, parse_unit, product_of, unit_of, unit_text
 
@@ -131,6 +134,8 @@ def kernel_context(
         programs=tuple(programs.values()),
         supported=supported,
         reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
+        inputs=tuple(map(_quantity, spec.inputs)),
+        time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         domain=tuple(
             Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
         ),
@@ -152,8 +157,8 @@ def _origin(spec: Spec) -> str:
     }[spec.poisson.kind]
 
 
-def _quantity(declared: Variable | Parameter) -> Quantity:
-    """A variable or parameter as the generated package declares it."""
+def _quantity(declared: Declared) -> Quantity:
+    """What is declared as the generated package declares it."""
     default = getattr(declared, "default", None)
     return Quantity(
         declared.name,
@@ -177,7 +182,7 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     spec, found = equations.spec, equations.setting.integrals
     stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
     energy = [
-        _emitted("energy", _unit(spec, formula), conserved=equations.keeps_energy)
+        _emitted("energy", _unit(spec, formula), conserved=keeps_energy(equations))
         for formula in (spec.hamiltonian or spec.lagrangian,)
         if equations.exact.energy is not None
     ]
@@ -227,7 +232,7 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
     momenta += [
         _emitted(each.name, each.unit, conserved=each.name in stated) for each in spec.sections
     ]
-    return (
+    emitted = (
         *energy,
         *casimirs,
         *velocities,
@@ -238,6 +243,14 @@ def _observables(equations: Equations) -> tuple[Quantity, ...]:
         *of_pair,
         *of_space,
     )
+    return tuple(_held(equations, each) if each.conserved else each for each in emitted)
+
+
+def _held(equations: Equations, quantity: Quantity) -> Quantity:
+    """A conserved quantity, marked if it is one only while the inputs are constant."""
+    values = dict(equations.exact.observables)
+    named = [values[name] for name in quantity.components if name in values]
+    return replace(quantity, while_constant=bool(while_constant(equations, named)))
 
 
 def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:
@@ -281,7 +294,7 @@ def _unit_of_value(equations: Equations, element: Element) -> str:
 
 def _units(spec: Spec) -> dict[str, Unit | None]:
     """The unit of every declared name."""
-    quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
+    quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     return {
         name: parse_unit(quantity.unit)
         for quantity in quantities
@@ -291,7 +304,7 @@ def _units(spec: Spec) -> dict[str, Unit | None]:
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:
     """The certificate with the spec's free text, for programs and documents."""
-    quantities: Sequence[Variable | Parameter] = (*spec.variables, *spec.parameters)
+    quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     record: dict[str, Any] = {
         "title": spec.title,
         "source": spec.source,

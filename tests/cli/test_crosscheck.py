@@ -15,7 +15,7 @@ def test_figures_of_a_shipped_system(run):
     record = json.loads(run("crosscheck", "rigid_body", "--points", "1001", "--json").stdout)
     assert record["rungs"] == {"3": "passed", "4": "passed", "5": "passed"}
     assert set(record["figures"]) == {
-        *("rhs", "jacobian", "energy", "observables", "poisson_tensor"),
+        *("rhs", "jacobian", "parameter_jacobian", "energy", "observables", "poisson_tensor"),
     }
     assert set(record["figures"]["rhs"]) == {"numpy", "c", "c-fast"}
     assert 0 < max(figures["k"] for figures in record["figures"]["rhs"].values()) <= 4
@@ -26,7 +26,7 @@ def test_the_table_names_functions_targets_and_rungs(run):
     """The table has a line for each function and target."""
     result = run("crosscheck", "rigid_body", "--points", "17")
     assert result.exit_code == 0, result.stderr
-    assert result.stdout.count("c-fast") == 5
+    assert result.stdout.count("c-fast") == 6
     assert "rung 5: passed" in result.stdout
 
 

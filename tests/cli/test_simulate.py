@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from coadjoint.cli.arguments import load_system
+from tests.driven_specs import POINT
 from tests.rolling import FOLLOWED_SLEIGH
 from tests.solve.domains import STONE, SUSLOV
 from tests.specs import RIGID_BODY
@@ -198,3 +199,15 @@ def test_without_a_path_on_a_plane_there_is_no_trace(folder, run):
     assert "rigid_body leaves no trace: no x and no y among Pi" in result.stderr
     assert not result.stdout
     assert not list(folder.iterdir())
+
+
+def test_constant_inputs_come_from_the_command_line(run, folder):
+    """A force of 4 N moves 2 kg from rest by 4 m in 2 s; the default, 3 N, by 3 m."""
+    (folder / "pushed.toml").write_text(POINT)
+    words = ["simulate", "pushed.toml", "--state", "0,0", "--time", "2", "--json"]
+    for given, force in (([], 3), (["--input", "f=4"], 4)):
+        record = json.loads(run(*words, *given).stdout)
+        assert record["inputs"] == {"f": force, "k1": 0, "k2": 1}
+        assert abs(record["final"]["x"] - force) < 1e-9
+    assert "'w' is not one of f, k" in run(*words, "--input", "w=1").stderr
+    assert "has no inputs" in run("simulate", "rigid_body", "--input", "w=1").stderr

@@ -52,6 +52,7 @@ def test_lowering_is_undone_exactly(system):
     equations = derive(shipped(system))
     programs = lower(equations)
     without = {
+        "parameter_jacobian": not equations.spec.parameters,
         "energy": equations.energy is None,
         "poisson_tensor": not equations.poisson_tensor,
         "constraint_residual": equations.distribution is None,
@@ -59,7 +60,7 @@ def test_lowering_is_undone_exactly(system):
         "reconstruction": not equations.followed,
         "domain": equations.distribution is None and not equations.spec.domain,
     }
-    named = ["rhs", "jacobian", "energy", "observables", "poisson_tensor"]
+    named = ["rhs", "jacobian", "parameter_jacobian", "energy", "observables", "poisson_tensor"]
     named += ["constraint_residual", "projection", "reconstruction", "domain"]
     assert list(programs) == [name for name in named if not without.get(name)]
     for program in programs.values():
@@ -221,6 +222,25 @@ def test_jacobian_equals_divided_differences_exactly(system):
         slopes = [(a - b) / (2 * h) for a, b in zip(up, down, strict=True)]
         for i, slope in enumerate(slopes):
             assert abs(found[i * n + j] - slope) <= slack * abs(slope)
+
+
+def test_derivatives_by_parameters_are_divided_differences(system):
+    """Central differences with a step of 1e-20, whose error is of the order of its square."""
+    programs = lower(derive(shipped(system)))
+    rhs, by_parameters = programs["rhs"], programs.get("parameter_jacobian")
+    if by_parameters is None:
+        assert not rhs.parameters
+        return
+    (point,) = rational_points((*rhs.state, *rhs.parameters), 1, seed=8)
+    point = textbook.rational(system, point)
+    found = run(by_parameters, point, Fraction, to_digits)
+    h, k = Fraction(1, 10**20), len(rhs.parameters)
+    for j, name in enumerate(rhs.parameters):
+        up = run(rhs, {**point, name: point[name] + h}, Fraction, to_digits)
+        down = run(rhs, {**point, name: point[name] - h}, Fraction, to_digits)
+        for i, (a, b) in enumerate(zip(up, down, strict=True)):
+            slope = (a - b) / (2 * h)
+            assert abs(found[i * k + j] - slope) <= Fraction(1, 10**30) * (1 + abs(slope))
 
 
 def test_programs_give_the_book_formulas(system):

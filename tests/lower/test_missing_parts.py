@@ -29,7 +29,7 @@ def bare():
 def test_kernels_have_no_such_functions(bare, tmp_path):
     """No energy and no tensor anywhere; asking for one is an error that names the rest."""
     programs = lower(bare)
-    assert list(programs) == ["rhs", "jacobian", "observables"]
+    assert list(programs) == ["rhs", "jacobian", "parameter_jacobian", "observables"]
     for program in programs.values():
         check_inverse(bare, program)
     folder = tmp_path / "bare"

@@ -122,7 +122,35 @@ CHECKS = (
         tests=("tests/test_regenerate.py", "-k", "check_says_what_to_do"),
     ),
 )
+#: Proofs about motions that depend on time or inputs, and kernels that lose these.
+DRIVEN = (
+    *(
+        Mutant(PROVE + file, old, new, tests=("tests/prove/test_driven.py",))
+        for file, old, new in (
+            ("identities.py", "[carried + own_rate(", "[carried - own_rate("),
+            ("constrained.py", "return own + self.field.sum(", "return self.field.sum("),
+            (
+                "driven.py",
+                "return -equations.closed(explicit(",
+                "return equations.closed(explicit(",
+            ),
+            ("driven.py", 'if needed else ""', 'if not needed else ""'),
+            ("symmetries.py", "part + explicit(setting, own)", "part - explicit(setting, own)"),
+            ("symmetries.py", "{t: -setting.field[t] for t", "{t: setting.field[t] for t"),
+            ("almost_poisson.py", "explicit(setting, a) * x for", "-explicit(setting, a) * x for"),
+        )
+    ),
+    *(
+        Mutant("templates/" + file, old, new, tests=("tests/crosscheck/test_driven.py",))
+        for file, old, new in (
+            ("numpy/kernel.py.j2", "else {{ array }}[:, chunk]", "else {{ array }}[:, :1]"),
+            ("c/kernel.c.j2", "_n * _{{ array }}_member]", "_n * 0]"),
+            ("c/kernel.c.j2", "_member = {{ array }}_stride != 0", "_member = 0"),
+        )
+    ),
+)
 MUTANTS = (
+    *DRIVEN,
     *(replace(mutant, always=True) for mutant in CHECKS),
     *(replace(mutant, always=True) for mutant in SIGNS),
     # structure constants
@@ -359,7 +387,7 @@ MUTANTS = (
     ),
     Mutant(PROVE + "zero.py", "if not min(counts):", "if min(counts):"),
     # symmetries and Lax pairs
-    Mutant(PROVE + "symmetries.py", "if rate == 0]", "if rate != 0]"),
+    Mutant(PROVE + "symmetries.py", "if rate == own[n] == 0]", "if rate != own[n] == 0]"),
     Mutant(PROVE + "symmetries.py", "lie_derivative(motion, X)", "lie_derivative(X, X)"),
     Mutant(
         PROVE + "symmetries.py",

@@ -13,6 +13,8 @@ GYROSCOPIC = (SOURCES, "-k", "gyroscopic")
 CHRISTOFFEL = (SOURCES, "-k", "christoffel_symbols_of_the_sphere or christoffel_symbols_of_the_hyp")
 MASSES = ("tests/derive/test_configuration.py", "-k", "row_has_its_mass")
 FOUND = ("tests/sources/test_tops.py", "-k", "2_5_4")
+#: Systems that depend on time, with rates typed by hand.
+DRIVEN = ("tests/derive/test_driving.py",)
 
 BRACKETS = (
     *of(
@@ -71,9 +73,17 @@ LAGRANGE = (
     *of(
         "euler-lagrange",
         "euler_lagrange",
+        (),  # Lagrangians that depend on time
+        ("[slope - c - e for slope", "[slope - c + e for slope"),
+        ("[slope - c - e for slope", "[slope - c for slope"),
+        tests=DRIVEN,
+    ),
+    *of(
+        "euler-lagrange",
+        "euler_lagrange",
         ("rocking_disk",),
-        ("[slope - c for slope, c", "[slope + c for slope, c"),
-        ("[slope - c for slope, c", "[slope for slope, c"),
+        ("[slope - c - e for slope", "[slope + c - e for slope"),
+        ("[slope - c - e for slope", "[slope - e for slope"),
         ("moved = applied(field, known.inverse_mass,", "moved = applied(field, known.mass,"),
         ("zip(setting.positions + setting.velocities, v + moved", "zip(setting.state, moved + v"),
     ),

@@ -13,6 +13,8 @@ BY_HAND = "tests/derive/test_nonholonomic.py"
 FRAMES = ("tests/derive/test_frames.py",)
 DISTRIBUTIONS = ("tests/derive/test_distribution.py", "-k", "annihilate or affine or sign")
 SLEIGH, BALL = ("chaplygin_sleigh",), ("chaplygin_ball_centred",)
+#: Systems that depend on time, with rates typed by hand.
+DRIVEN = ("tests/derive/test_driving.py",)
 PARTICLE = (BY_HAND, "-k", "particle")
 AFFINE = (BY_HAND, "-k", "constraint_that_moves")
 MOVING_MASS = (BY_HAND, "-k", "mass_that_moves")
@@ -83,6 +85,14 @@ CONSTRAINED_LAGRANGIAN = (
     *of(
         "hamel",
         "hamel",
+        (),  # constraints that move
+        ("[a + b for a, b in zip(frame", "[a - b for a, b in zip(frame"),
+        ("carried += explicit_rate", "carried -= explicit_rate"),
+        tests=(*DRIVEN, "tests/prove/test_driven.py"),
+    ),
+    *of(
+        "hamel",
+        "hamel",
         SLEIGH,
         ("+ gyroscopic + driven", "+ driven", "a constraint put in before varying"),
         ("+ gyroscopic + driven", "- gyroscopic + driven"),
@@ -91,8 +101,8 @@ CONSTRAINED_LAGRANGIAN = (
         "hamel",
         "hamel",
         BALL,
-        ("turned = frame.bracket(found.xi, D)", "turned = frame.structure(found.xi, D)"),
-        ("turned = frame.bracket(found.xi, D)", "turned = frame.bracket(D, found.xi)"),
+        ("zip(frame.bracket(found.xi, D), own", "zip(frame.structure(found.xi, D), own"),
+        ("zip(frame.bracket(found.xi, D), own", "zip(frame.bracket(D, found.xi), own"),
         ("+ driven - carried", "+ driven"),
         ("+ driven - carried", "+ driven + carried"),
     ),

@@ -5,6 +5,7 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.constraints import Constraints
+from coadjoint.solve.driving import Driving
 from coadjoint.systems import chaplygin_sleigh, knife_edge_cvt, snakeboard, suslov, veselova
 from tests.constrained import PENDULUM
 from tests.solve.domains import built
@@ -41,7 +42,7 @@ def run(name, method="auto", **options):
 @pytest.fixture
 def unprojected(monkeypatch):
     """Runs as they are without the projection."""
-    monkeypatch.setattr(Constraints, "onto", lambda self, state: state.copy())
+    monkeypatch.setattr(Constraints, "onto", lambda self, time, state: state.copy())
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -115,7 +116,8 @@ def test_a_projection_is_idempotent_and_the_same_in_both_languages(name):
 def test_systems_that_keep_nothing_have_no_projection():
     """The sleigh's constraint gives a velocity; a run of it is what the solver makes of it."""
     assert "projection" not in chaplygin_sleigh.system.functions
-    assert not Constraints(chaplygin_sleigh.system, chaplygin_sleigh.system.pack(), "c").any
+    system = chaplygin_sleigh.system
+    assert not Constraints(system, system.pack(), "c", Driving(system, None, 0.0, 1.0)).any
 
 
 @pytest.mark.parametrize("name", KEPT)

@@ -52,7 +52,7 @@ def test_a_bound_call_works_without_a_compiler(monkeypatch, fresh):
     monkeypatch.setenv("CC", "no-such-compiler")
     state, out = np.array([1.0, 2.0, 3.0]), np.empty(3)
     with pytest.warns(CompilerWarning):
-        call = fresh(rigid_body).bind("rhs", state, [1.0, 2.0, 4.0], out)
+        call = fresh(rigid_body).bind("rhs", state, [1.0, 2.0, 4.0], out=out)
     call()
     assert out.tolist() == [-1.5, 2.25, -1.0]
 
@@ -92,7 +92,7 @@ def test_large_batches_are_computed_in_pieces(monkeypatch, size):
         expected = kirchhoff.jacobian(state, parameters, target="numpy")
         assert np.array_equal(kirchhoff.jacobian(state, parameters), expected)
         out = np.zeros_like(expected)
-        kirchhoff.bind("jacobian", state, parameters, out)()
+        kirchhoff.bind("jacobian", state, parameters, out=out)()
         assert np.array_equal(out, expected)
 
 
@@ -100,7 +100,7 @@ def test_one_call_is_short_enough_to_be_interrupted():
     """The largest piece of the largest function computes for less than a second."""
     state = np.ones((6, kernels.CHUNK // (6 + 36 + 1)))
     out = np.empty((6, 6, state.shape[1]))
-    call = heavy_top.bind("jacobian", state, None, out)
+    call = heavy_top.bind("jacobian", state, None, out=out)
     start = process_time()
     call()
     assert process_time() - start < 1

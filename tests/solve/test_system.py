@@ -1,5 +1,6 @@
 """Systems: targets agree, binding, light imports, threads, forks, odd numbers."""
 
+import inspect
 import os
 import resource
 import shutil
@@ -60,7 +61,7 @@ def test_a_bound_call_reads_and_writes_in_place():
     """State changes are seen, results appear in out, for every target."""
     for target in ("c", "numpy", "c-fast"):
         state, out = np.array([1.0, 2.0, 3.0]), np.empty(3)
-        call = rigid_body.bind("rhs", state, {"I": [1.0, 2.0, 4.0]}, out, target)
+        call = rigid_body.bind("rhs", state, {"I": [1.0, 2.0, 4.0]}, out=out, target=target)
         call()
         first = out.copy()
         state *= 2
@@ -81,7 +82,7 @@ def test_bound_calls_ask_for_arrays_they_can_use_in_place():
 def test_bound_calls_keep_their_arrays_alive():
     """Temporaries passed to bind are not freed under the call."""
     out = np.empty(3)
-    call = rigid_body.bind("rhs", np.array([1.0, 2.0, 3.0]), [1.0, 2.0, 3.0], out)
+    call = rigid_body.bind("rhs", np.array([1.0, 2.0, 3.0]), [1.0, 2.0, 3.0], out=out)
     np.ones((100, 1000))
     call()
     assert out.tolist() == pytest.approx([-1.0, 2.0, -1.0])
@@ -202,7 +203,7 @@ def test_systems_describe_themselves():
 def test_packed_parameters_of_a_bound_call_are_read_at_each_call():
     """A packed array is used in place, a mapping is copied."""
     state, inertia, out = np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0]), np.empty(3)
-    call = rigid_body.bind("rhs", state, inertia, out)
+    call = rigid_body.bind("rhs", state, inertia, out=out)
     call()
     assert out.tolist() == [-1.5, 2.25, -1.0]
     inertia[2] = 2.0
@@ -213,3 +214,25 @@ def test_packed_parameters_of_a_bound_call_are_read_at_each_call():
 def test_quantities_are_escaped_in_notebooks():
     """A unit cannot bring markup."""
     assert "<b>" not in Quantities(Quantity("x", (), "<b>", ("x",)))._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [
+        ("rhs", ([1.0, 2.0, 3.0], None, "numpy")),
+        ("jacobian", ([1.0, 2.0, 3.0], None, "c", np.empty((3, 3)))),
+        ("evaluate", ("energy", [1.0, 2.0, 3.0], None, "numpy")),
+        ("bind", ("rhs", np.ones(3), None, np.empty(3))),
+    ],
+)
+def test_target_and_out_go_by_name(function, arguments):
+    """The former positional use is refused with the spelling that works."""
+    with pytest.raises(KernelArgumentError, match='target="c", out=out'):
+        getattr(rigid_body.system, function)(*arguments)
+
+
+def test_signatures_show_what_goes_by_name():
+    """What an editor shows is the signature of the method, not that of its guard."""
+    shown = inspect.signature(rigid_body.rhs)
+    assert list(shown.parameters) == ["state", "parameters", "inputs", "time", "target", "out"]
+    assert shown.parameters["target"].kind is inspect.Parameter.KEYWORD_ONLY

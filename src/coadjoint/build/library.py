@@ -24,8 +24,11 @@ from coadjoint.build.compiler import LABEL, Compiler, compile_kernel, find_compi
 from coadjoint.errors import CompilerError, OutputError
 
 _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
-#: count, state, state_stride, parameters, parameters_stride, out, out_stride
-_SIGNATURE = (_SIZE, _ADDRESS, _SIZE, _ADDRESS, _SIZE, _ADDRESS, _SIZE)
+#: An array: where it is, and its stride.
+_ARRAY = (_ADDRESS, _SIZE)
+#: count, state, state_stride, parameters, parameters_stride, out, out_stride; inputs and time, with
+#: their strides, before out.
+_LEAST = 7
 
 
 class Library:
@@ -76,19 +79,23 @@ class Library:
 
     def function(self, function: str) -> Callable[..., None]:
         """One function of the kernel by its bare name, for plain integers."""
-        found: Any = self._found(function)
-        found.argtypes, found.restype = _SIGNATURE, None
-        return found  # type: ignore[no-any-return]
+        self._found(function)
+
+        def call(*arguments: int) -> None:
+            self.bind(function, *arguments)()
+
+        return call
 
     def bind(self, function: str, *arguments: int) -> Callable[[], None]:
-        """A call of a function with its seven arguments, converted once.
+        """A call of a function with its arguments, converted once.
 
         ctypes passes values of its own types as they are; without ``argtypes`` it does not look
         at them again, which saves 60 of 540 nanoseconds a call (docs/decisions/loading.md).
         """
         found: Any = self._found(function)
         found.restype = None
-        pairs = zip(_SIGNATURE, arguments, strict=True)
+        assert len(arguments) >= _LEAST, len(arguments)
+        pairs = zip((_SIZE, *_ARRAY * (len(arguments) // 2)), arguments, strict=True)
         return partial(found, *(kind(value) for kind, value in pairs))
 
     def _found(self, function: str) -> Any:

@@ -54,6 +54,14 @@ def _assignments(
     help="A parameter, e.g. I=1,2,3; the others have their defaults. Repeatable.",
 )
 @click.option(
+    "--input",
+    "inputs",
+    metavar="NAME=NUMBERS",
+    callback=_assignments,
+    multiple=True,
+    help="A constant input, e.g. u=0.5; the others have their defaults. Repeatable.",
+)
+@click.option(
     "--state",
     metavar="NAME=NUMBERS",
     callback=_assignments,
@@ -87,6 +95,7 @@ def _assignments(
 def command(
     system: str,
     parameters: list[Assignment],
+    inputs: list[Assignment],
     state: list[Assignment],
     time: float,
     method: str,
@@ -106,14 +115,16 @@ def command(
 
         check_traced(loaded)
     given = chosen_parameters(loaded.PARAMETERS, parameters)
+    driven = chosen_parameters(loaded.INPUTS, inputs) or None
     start: Any = initial_state(loaded.STATE, state)
     declared = state or all(quantity.default for quantity in loaded.STATE.values())
     if "projection" in loaded.functions and not declared:  # no fault of the user
-        start = loaded.projection(start, given)
+        start = loaded.projection(start, given, driven, time=0.0 if loaded.TIME else None)
     solution = loaded.simulate(
         start,
         (0.0, time),
         given,
+        driven,
         method=method,
         rtol=rtol,
         samples=samples,

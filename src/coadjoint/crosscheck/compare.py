@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, cached_property
 from typing import Any, Final
@@ -83,7 +83,7 @@ def depth(program: Program) -> int:
     The error of a sum is at most those of its addends and one rounding, and its envelope is the sum
     of theirs: k grows by 1 at most. The same holds for a product, a quotient and a function.
     """
-    inputs = dict.fromkeys((*program.state, *program.parameters), _Levels(0))
+    inputs = dict.fromkeys(program.names, _Levels(0))
     outputs = run(program, inputs, _constant, lambda _, of: _Levels(of.count + 1))
     return max(output.count for output in outputs)
 
@@ -134,7 +134,10 @@ class Subject:
         quantities = self.system.PARAMETERS.values()
         positive = tuple(each.positive for each in quantities for _ in each.components)
         states = len(self._widest.state)
-        return Points(states, positive, safe_exponent(self.programs, self.elementary))
+        exponent = safe_exponent(self.programs, self.elementary)
+        driving = {"inputs": len(self._widest.inputs), "time": len(self._widest.time)}
+        counts = {name: count for name, count in driving.items() if count}
+        return Points(states, positive, exponent, counts)
 
     @cached_property
     def inside(self) -> Array:
@@ -156,10 +159,10 @@ class Subject:
             CrossCheckError: The kernel raised an error.
         """
         program, members = self.programs[function], batch.state.shape[1]
-        own = batch.state[: len(program.state)]
+        given, named = batch.arguments(len(program.state))
         values = np.full((*program.shape, members), UNTOUCHED)
         try:
-            getattr(self.system, function)(own, batch.parameters, target=target, out=values)
+            getattr(self.system, function)(*given, **named, target=target, out=values)
         except CoadjointError:
             raise
         except Exception as error:
@@ -179,8 +182,7 @@ class Subject:
 
         So must the functions in them: the slope of ``log(x)`` has a value where x is negative.
         """
-        names = (*self._widest.state, *self._widest.parameters)
-        known = dict(zip(names, (*batch.state, *batch.parameters), strict=True))
+        known: dict[str, Any] = dict(zip(self._widest.names, batch.rows(), strict=True))
         called = list[Array]()
 
         def call(function: str, argument: Array) -> Array:
@@ -195,12 +197,9 @@ class Subject:
         return found
 
     def inputs(self, batch: Batch, member: int) -> dict[str, float]:
-        """State and parameters of one member by name."""
-        program = self._widest
-        shared = batch.parameters.ndim == 1
-        own = batch.parameters if shared else batch.parameters[:, member]
-        values = [*batch.state[:, member].tolist(), *own.tolist()]
-        return dict(zip((*program.state, *program.parameters), values, strict=True))
+        """State, parameters, inputs and time of one member by name."""
+        values = [float(row[member] if row.ndim else row) for row in batch.rows()]
+        return dict(zip(self._widest.names, values, strict=True))
 
     def failure(
         self, function: str, row: int, batch: Batch, member: int, **parts: Any
@@ -321,6 +320,8 @@ def _check_reached(subject: Subject, points: ExactPoints, reached: int) -> None:
 def _hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]:
     """Each family, one with shared parameters, and one where one output nearly cancels.
 
+    Of driven systems also one with shared inputs and time.
+
     They end in the middle of a vector register, as the sizes are odd.
     """
     size = share | 1
@@ -331,9 +332,12 @@ def _hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch
     yield _completed(
         subject, function, alike, lambda count: _alike(_others(subject, "random", count), start)
     ).shared()
-    yield cancelling(
-        lambda state, own: subject.evaluate(function, Batch(state, own), "numpy"), start, seed=2
-    )
+    if start.driving:
+        calm = _calm(subject.points.families(4, size)["random"], start)
+        yield _completed(
+            subject, function, calm, lambda count: _calm(_others(subject, "random", count), start)
+        ).steady()
+    yield cancelling(lambda batch: subject.evaluate(function, batch, "numpy"), start, seed=2)
 
 
 def _drawn(subject: Subject, function: str, family: str, seed: int, size: int) -> Batch:
@@ -357,7 +361,14 @@ def _others(subject: Subject, family: str, count: int) -> Batch:
 def _alike(batch: Batch, start: Batch) -> Batch:
     """The states of a batch, all with the parameters of one member of another."""
     members = batch.state.shape[1]
-    return Batch(batch.state, np.repeat(start.parameters[:, :1], members, axis=1))
+    return replace(batch, parameters=np.repeat(start.parameters[:, :1], members, axis=1))
+
+
+def _calm(batch: Batch, start: Batch) -> Batch:
+    """The states and parameters of a batch, all with inputs and time of one member of another."""
+    members = batch.state.shape[1]
+    driving = {name: np.repeat(a[:, :1], members, axis=1) for name, a in start.driving.items()}
+    return replace(batch, driving=driving)
 
 
 def _completed(
@@ -369,10 +380,7 @@ def _completed(
         return batch
     more = others(TRIES * batch.state.shape[1])
     found = np.flatnonzero(subject.is_defined(function, more))[: missing.size]
-    state, parameters = batch.state.copy(), batch.parameters.copy()
-    state[:, missing[: found.size]] = more.state[:, found]
-    parameters[:, missing[: found.size]] = more.parameters[:, found]
-    return Batch(state, parameters)
+    return batch.with_members(missing[: found.size], more.members(found))
 
 
 def _measure(exact: list[Bounded]) -> Callable[[int, float], tuple[float, float]]:
@@ -479,10 +487,13 @@ def _bit_batches(points: Points, count: int) -> Iterator[Batch]:
 
 
 def _both_ways(batches: Iterator[Batch]) -> Iterator[Batch]:
-    """Each batch with parameters of its own and with shared ones."""
+    """Each batch with parameters of its own and with shared ones; inputs and time likewise."""
     for batch in batches:
         yield batch
         yield batch.shared()
+        if batch.driving:
+            yield batch.steady()
+            yield batch.shared().steady()
 
 
 def differing(one: Array, other: Array) -> NDArray[np.bool_]:

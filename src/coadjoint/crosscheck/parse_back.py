@@ -27,7 +27,7 @@ def check_python(program: Program, text: str) -> int:
     Raises:
         CrossCheckError: It does not; the message names the first difference.
     """
-    return _check_same(program, read_python(text, program.name), "kernel.py")
+    return _check_same(program, read_python(text, program.name, tuple(program.arrays)), "kernel.py")
 
 
 def check_c(program: Program, text: str, system: str) -> int:
@@ -72,8 +72,11 @@ def _check_same(program: Program, body: Body, file: str) -> int:
     Returns:
         How many lines were compared.
     """
-    rows = {name: ("state", row) for row, name in enumerate(program.state)}
-    rows |= {name: ("parameters", row) for row, name in enumerate(program.parameters)}
+    rows = {
+        name: (array, row)
+        for array, names in program.arrays.items()
+        for row, name in enumerate(names)
+    }
     wanted = {name: rows[name] for name in sorted(program.used() & rows.keys())}
     read = {name: body.inputs[name] for name in sorted(body.inputs)}
     if read != wanted:

@@ -1,17 +1,18 @@
 """Cross-check, points: where kernels are compared, random and hard, the same in every run.
 
-Comes in: names, signs and a seed. Goes out: batches of state and parameters, component first. The
-hard families are those in which faults of floating-point code show: outputs near cancellation,
-nearly equal parameters, zeros and small integers, huge and tiny magnitudes; and, for comparisons of
-bits alone, overflow, infinities, NaN and subnormals.
+Comes in: names, signs and a seed. Goes out: batches of state, parameters, inputs and time,
+component first. The hard families are those in which faults of floating-point code show: outputs
+near cancellation, nearly equal parameters, zeros and small integers, huge and tiny magnitudes; and,
+for comparisons of bits alone, overflow, infinities, NaN and subnormals.
 Read next: `coadjoint.crosscheck.ladder`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import accumulate
 from typing import Final
 
 import numpy as np
@@ -20,8 +21,8 @@ from numpy.typing import NDArray
 from coadjoint.lower.program import Program, run
 
 Array = NDArray[np.float64]
-#: Evaluates one function on states ``(n, N)`` and parameters ``(k,)`` or ``(k, N)``.
-Evaluate = Callable[[Array, Array], Array]
+#: Evaluates one function.
+Evaluate = Callable[["Batch"], Array]
 
 SEED: Final = 20110707
 #: Batches that end in the middle of any vector register, and the single member.
@@ -43,14 +44,46 @@ class Batch:
     Attributes:
         state: Shape ``(n, N)``.
         parameters: Shape ``(k,)`` if shared, else ``(k, N)``.
+        driving: The same of inputs and of time, one row of this, by name; as far as the system
+            has them.
     """
 
     state: Array
     parameters: Array
+    driving: Mapping[str, Array] = field(default_factory=dict)
 
     def shared(self) -> Batch:
         """The same states with the first member's parameters for all."""
-        return Batch(self.state, np.ascontiguousarray(self.parameters[:, 0]))
+        return replace(self, parameters=np.ascontiguousarray(self.parameters[:, 0]))
+
+    def steady(self) -> Batch:
+        """The same with the first member's inputs and time for all."""
+        firsts = {name: np.ascontiguousarray(a[:, 0]) for name, a in self.driving.items()}
+        return replace(self, driving=firsts)
+
+    def arguments(self, states: int) -> tuple[list[Array], dict[str, Array]]:
+        """What a function of so many rows of state takes, by position and by name."""
+        given = [self.state[:states], self.parameters]
+        given += [self.driving["inputs"]] if "inputs" in self.driving else []
+        return given, {"time": self.driving["time"][0]} if "time" in self.driving else {}
+
+    def rows(self) -> tuple[Array, ...]:
+        """Every row of state, parameters, inputs and time."""
+        return (*self.state, *self.parameters, *(row for a in self.driving.values() for row in a))
+
+    def with_members(self, members: NDArray[np.intp], other: Batch) -> Batch:
+        """The same, some members put in the place of those of another batch."""
+        own = {"state": self.state, "parameters": self.parameters, **self.driving}
+        new = {"state": other.state, "parameters": other.parameters, **other.driving}
+        merged = {name: array.copy() for name, array in own.items()}
+        for name, array in merged.items():
+            array[:, members] = new[name]
+        return Batch(merged.pop("state"), merged.pop("parameters"), merged)
+
+    def members(self, chosen: NDArray[np.intp]) -> Batch:
+        """Some of the members."""
+        driving = {name: array[:, chosen] for name, array in self.driving.items()}
+        return Batch(self.state[:, chosen], self.parameters[:, chosen], driving)
 
 
 @dataclass(frozen=True)
@@ -61,11 +94,17 @@ class Points:
         states: Number of state components.
         positive: For each parameter component, whether it must be positive.
         exponent: Binary exponent that magnitudes may reach, so that no product leaves the range.
+        driving: Number of rows of inputs and time, by name.
     """
 
     states: int
     positive: tuple[bool, ...]
     exponent: int
+    driving: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def _rows(self) -> int:
+        return self.states + len(self.positive) + sum(self.driving.values())
 
     def families(self, seed: int, count: int) -> Mapping[str, Batch]:
         """Finite points with results in range, ``count`` of each family."""
@@ -75,7 +114,7 @@ class Points:
             "integers": self._integers,
             "huge and tiny": self._huge_and_tiny,
         }
-        shape = (self.states + len(self.positive), count)
+        shape = (self._rows, count)
         return {
             name: self._batch(maker(np.random.default_rng([SEED, seed, number]), shape))
             for number, (name, maker) in enumerate(makers.items())
@@ -98,17 +137,24 @@ class Points:
     def special(self, seed: int, count: int) -> Batch:
         """Overflow, infinities, NaN, subnormals and signed zeros among ordinary numbers."""
         generator = np.random.default_rng([SEED, seed, 99])
-        shape = (self.states + len(self.positive), count)
+        shape = (self._rows, count)
         ordinary = generator.normal(size=shape)
         strange = generator.choice(SPECIAL, size=shape)
         return self._batch(np.where(generator.random(shape) < 0.3, strange, ordinary))
 
     def _batch(self, rows: Array) -> Batch:
-        """Rows as state and parameters, those declared positive made so."""
-        parameters = rows[self.states :]
+        """Rows as state, parameters, inputs and time, those declared positive made so."""
+        state, parameters, *others = np.split(rows, self._ends)
         signs = np.array(self.positive, dtype=bool)[:, np.newaxis]
         positive = np.where(np.abs(parameters) > 0, np.abs(parameters), 1.0)
-        return Batch(rows[: self.states], np.where(signs, positive, parameters))
+        driving = dict(zip(self.driving, others, strict=True))
+        return Batch(state, np.where(signs, positive, parameters), driving)
+
+    @property
+    def _ends(self) -> list[int]:
+        """Where each array ends but the last."""
+        counts = [self.states, len(self.positive), *self.driving.values()]
+        return list(accumulate(counts))[:-1]
 
     def _random(self, generator: np.random.Generator, shape: tuple[int, int]) -> Array:
         """Normal numbers in one half of the members, six decades of magnitude in the other."""
@@ -143,24 +189,24 @@ def cancelling(evaluate: Evaluate, batch: Batch, seed: int) -> Batch:
     """
     generator = np.random.default_rng([SEED, seed, 7])
     members = np.arange(batch.state.shape[1])
-    outputs = evaluate(batch.state, batch.parameters).reshape(-1, members.size).shape[0]
+    outputs = evaluate(batch).reshape(-1, members.size).shape[0]
     row = generator.integers(outputs, size=members.size)
     column = generator.integers(batch.state.shape[0], size=members.size)
 
-    def moved(component: Array) -> Array:
+    def moved(component: Array) -> Batch:
         state = batch.state.copy()
         state[column, members] = component
-        return state
+        return replace(batch, state=state)
 
     def output(component: Array) -> Array:
-        values = evaluate(moved(component), batch.parameters).reshape(-1, members.size)
+        values = evaluate(moved(component)).reshape(-1, members.size)
         return np.asarray(values[row, members])
 
     start = batch.state[column, members]
     with np.errstate(all="ignore"):
         root = _secant(output, start, start * 1.001 + 1e-3)
         usable = np.isfinite(root) & (np.abs(root) < 1e3 * (1 + np.abs(start)))
-    return Batch(moved(np.where(usable, root, start)), batch.parameters)
+    return moved(np.where(usable, root, start))
 
 
 def _secant(f: Callable[[Array], Array], x0: Array, x1: Array, steps: int = 4) -> Array:
@@ -206,7 +252,7 @@ def safe_exponent(programs: Mapping[str, Program], elementary: bool) -> int:
 
 def _degrees(program: Program) -> Iterator[int]:
     """Degrees of the outputs; what an output is made of has no larger one."""
-    inputs = {name: _Degree(1) for name in (*program.state, *program.parameters)}
+    inputs = {name: _Degree(1) for name in program.names}
     outputs = run(program, inputs, _constant, lambda function, argument: argument)
     return (output.degree for output in outputs)
 

@@ -25,6 +25,11 @@ _ZEROS = re.compile(
     r"for \(size_t _n = 0; _n < count; \+\+_n\)\s*"
     r"out\[_zeros\[_z\] \* out_stride \+ _n\] = 0\.0;"
 )
+#: How far apart rows and members of inputs and time are: 1 and 0 where members share them.
+_STEPS = re.compile(
+    r"const size_t _(inputs|time)_row = \1_stride \? \1_stride : 1;\s*"
+    r"const size_t _\1_member = \1_stride != 0;"
+)
 _LOOP = "for (size_t _n = 0; _n < count; ++_n) {"
 
 
@@ -34,7 +39,7 @@ def read_c(text: str, name: str) -> list[Body]:
     if not found:
         raise failure(f"kernel.c has no function {name!r}", name)
     body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", found[1], flags=re.DOTALL)
-    zeros, body = _take_zeros(body)
+    zeros, body = _take_zeros(_STEPS.sub("", body))
     branches = re.fullmatch(
         r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
         body,
@@ -80,12 +85,17 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
     line = line.replace("COADJOINT_INDEPENDENT", "").strip()
     state = re.fullmatch(r"const double (\w+) = state\[(\d+) \* state_stride \+ _n\]", line)
     given = re.fullmatch(rf"const double (\w+) = parameters\[(\d+){re.escape(member)}\]", line)
+    driving = re.fullmatch(
+        r"const double (\w+) = (inputs|time)\[(\d+) \* _\2_row \+ _n \* _\2_member\]", line
+    )
     assigned = re.fullmatch(r"const double (\w+) = ([^\[]*)", line)
     output = re.fullmatch(r"out\[(\d+) \* out_stride \+ _n\] = ([^\[]*)", line)
     if state:
         body.inputs[state[1]] = ("state", int(state[2]))
     elif given:
         body.inputs[given[1]] = ("parameters", int(given[2]))
+    elif driving:
+        body.inputs[driving[1]] = (driving[2], int(driving[3]))
     elif assigned:
         body.statements.append((assigned[1], read_expression(assigned[2], name)))
     elif output:

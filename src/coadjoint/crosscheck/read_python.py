@@ -15,8 +15,14 @@ from coadjoint.crosscheck.body import Body, failure, joined
 from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
 
 
-def read_python(text: str, name: str) -> Body:
-    """The function ``_name`` of a ``kernel.py``; other forms than our template's fail."""
+def read_python(text: str, name: str, arrays: Sequence[str] = ("state", "parameters")) -> Body:
+    """The function ``_name`` of a ``kernel.py``; other forms than our template's fail.
+
+    Args:
+        text: Of the file.
+        name: Of the function.
+        arrays: The arrays that it takes, in order.
+    """
     try:
         module = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
@@ -25,7 +31,7 @@ def read_python(text: str, name: str) -> Body:
     for wanted in (name, f"_{name}"):
         if wanted not in functions:
             raise failure(f"kernel.py has no function {wanted!r}", name)
-    _check_calls(functions[name], name)
+    _check_calls(functions, name, arrays)
     body = Body()
     for line in functions[f"_{name}"].body:
         if not isinstance(line, ast.Assign) or len(line.targets) != 1:
@@ -59,13 +65,16 @@ def _functions(module: ast.Module, name: str) -> dict[str, ast.FunctionDef]:
     return functions
 
 
-def _check_calls(function: ast.FunctionDef, name: str) -> None:
-    """The public function hands its own private twin to the loop over members."""
-    match function.body:
+def _check_calls(functions: dict[str, ast.FunctionDef], name: str, arrays: Sequence[str]) -> None:
+    """The public function hands its private twin and all arrays to the loop over members."""
+    twin = functions[f"_{name}"].args
+    match functions[name].body:
         case [ast.Expr(), ast.Return(value=ast.Call(ast.Name("_over_members"), args, rows))]:
             given = [ast.unparse(argument) for argument in args]
             only_rows = [each.arg for each in rows] in ([], ["n"])
-            if only_rows and given[:1] + given[2:] == [f"_{name}", "state", "parameters", "out"]:
+            taken = [each.arg for each in (*twin.posonlyargs, *twin.args, *twin.kwonlyargs)]
+            wanted = [*arrays, "out"]
+            if only_rows and given[:1] + given[2:] == [f"_{name}", *wanted] and taken == wanted:
                 return
     raise failure(f"kernel.py: {name} does not evaluate _{name}", name)
 

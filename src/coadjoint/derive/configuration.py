@@ -1,8 +1,7 @@
 r"""Configuration spaces: what the routes on coordinates q and velocities v share.
 
 A Lagrangian l(q, v) has momenta :math:`p = \partial l / \partial v`, a mass matrix
-:math:`M = \partial^2 l / \partial v^2` and the energy :math:`E = p \cdot v - l`. Time does not
-occur in a spec, so nothing here depends on it explicitly.
+:math:`M = \partial^2 l / \partial v^2` and the energy :math:`E = p \cdot v - l`.
 Comes in: a Setting without an algebra. Goes out: these pieces, and inverses block by block. No
 route's result is used here.
 Read next: `coadjoint.derive.euler_lagrange`.

@@ -30,7 +30,7 @@ class Bound:
         kind: ``condition``, ``acceleration`` or ``reaction``.
         element: The value.
         strict: Whether it may not be zero.
-        inputs: Components of state and parameters that it depends on.
+        inputs: Components of state, parameters, inputs and time that it depends on.
     """
 
     name: str
@@ -113,10 +113,11 @@ def _pivots(equations: Equations) -> list[Bound]:
 
 
 def _inputs(equations: Equations, element: Element) -> tuple[str, ...]:
-    """Components of state and parameters that a value depends on, through the definitions too."""
+    """Components that a value depends on, through the definitions too: see `Bound.inputs`."""
     field, setting = equations.setting.field, equations.setting
+    names = (*setting.state, *setting.parameters, *setting.driving)
     reached = set(field.reach(element))
     for name, value in reversed(equations.exact.definitions):
         if name in reached:
             reached |= field.reach(value)
-    return tuple(name for name in (*setting.state, *setting.parameters) if name in reached)
+    return tuple(name for name in names if name in reached)

@@ -249,6 +249,16 @@ class Equations:
             return None
         return sympy.ImmutableMatrix([[self._sympy(entry) for entry in row] for row in tensor])
 
+    @cached_property
+    def derivatives(self) -> dict[str, tuple[str, ...]]:
+        """The functions that are derivatives of the rates: by which names each of them is.
+
+        By inputs and parameters only where there are some.
+        """
+        setting = self.setting
+        by = {"input_jacobian": setting.inputs, "parameter_jacobian": setting.parameters}
+        return {"jacobian": setting.state} | {name: names for name, names in by.items() if names}
+
     def closed(self, element: Element) -> Element:
         """An element with the definitions substituted: in state and parameters alone.
 
@@ -328,8 +338,8 @@ class Equations:
 
     @cached_property
     def moving(self) -> frozenset[str]:
-        """Names whose values depend on the member: the state, and definitions that rest on it."""
-        names = {*self.setting.state, *self.setting.velocities}
+        """Names whose values depend on the member: state, inputs, time, and what rests on them."""
+        names = {*self.setting.state, *self.setting.velocities, *self.setting.driving}
         names |= {name for each in self.spec.reconstruction for name in each.components}
         for name, value in self.exact.definitions:
             if self.setting.field.reach(value) & names:

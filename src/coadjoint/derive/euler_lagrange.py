@@ -11,7 +11,8 @@ With momenta p in the state these are rates of p. Without them the left side is 
     \qquad M = \frac{\partial^2 l}{\partial v^2},
 
 which for a kinetic energy alone is the geodesic equation :math:`\dot v^c = -\Gamma^c_{ab} v^a v^b`
-(section 2.2.4). A Lagrangian that depends on time explicitly cannot be written in a spec.
+(section 2.2.4). Where l depends on time explicitly, :math:`-\partial^2 l/\partial v\,\partial t`
+stands on the right side, too.
 Comes in: a Setting with a Lagrangian and no algebra. Goes out: Equations.
 Read next: `coadjoint.derive.canonical`, the other road.
 """
@@ -21,6 +22,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from coadjoint.derive.configuration import Mechanics, applied, in_state_order, mechanics
+from coadjoint.derive.driving import explicit_rate
 from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
@@ -52,7 +54,8 @@ def _in_velocities(known: Mechanics) -> Equations:
     setting, field = known.setting, known.setting.field
     v = setting.elements(setting.velocities)
     carried = applied(field, known.mixed, v)
-    forces = [slope - c for slope, c in zip(known.slopes, carried, strict=True)]
+    own = [explicit_rate(setting, p, "a momentum dl/dv") for p in known.momenta]
+    forces = [slope - c - e for slope, c, e in zip(known.slopes, carried, own, strict=True)]
     moved = applied(field, known.inverse_mass, forces)
     named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
     rates = in_state_order(setting, named)

@@ -8,7 +8,8 @@ the Lagrangian with the constraints put in. The motion is not that of :math:`l_c
     \frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} - D_k\, l_c
         = \Big\langle \frac{\partial l}{\partial \xi}, [\xi, D_k] \Big\rangle + B_k \cdot f,
 
-where the brackets of the fields leave the distribution unless the constraints are integrable, so
+where :math:`[\xi, D_k]` gains :math:`\partial D_k/\partial t` if the constraints move, and
+the brackets of the fields leave the distribution unless the constraints are integrable, so
 that the momentum on the right is that of the whole Lagrangian.
 Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
 Read next: `coadjoint.derive.nonholonomic`, the road by projection.
@@ -18,6 +19,7 @@ from __future__ import annotations
 
 from coadjoint.derive.constrained import ConstrainedMotion, emission
 from coadjoint.derive.distribution import Row, distribution
+from coadjoint.derive.driving import explicit_rate
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.equations import Equations, Step, component, partial, symbol
 from coadjoint.derive.external import external_forces
@@ -59,10 +61,12 @@ def _known(
     known = []
     for k, momentum in enumerate(momenta):
         D = [row[k] for row in found.B]
-        turned = frame.bracket(found.xi, D)
+        own = (explicit_rate(frame.setting, d, "a constraint") for d in D)
+        turned = [a + b for a, b in zip(frame.bracket(found.xi, D), own, strict=True)]
         gyroscopic = field.sum(a * b for a, b in zip(p, turned, strict=True) if a and b)
         driven = field.sum(b * f for b, f in zip(D, forces, strict=True) if b and f)
         carried = frame.along(found.xi, momentum)
+        carried += explicit_rate(frame.setting, momentum, "a momentum")
         known.append(frame.along(D, constrained) + gyroscopic + driven - carried)
     return tuple(known)
 

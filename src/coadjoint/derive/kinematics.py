@@ -16,6 +16,7 @@ from functools import cached_property
 
 from coadjoint.derive.decided import Decided
 from coadjoint.derive.distribution import Distribution, Row, distribution
+from coadjoint.derive.driving import explicit_rate
 from coadjoint.derive.frames import Frame
 from coadjoint.derive.setting import make_setting
 from coadjoint.derive.solver import Definition, solver_names
@@ -64,7 +65,8 @@ def symbols(spec: Spec) -> tuple[str, ...]:
 
 def _moving_entries(found: Distribution) -> list[Element]:
     """Entries of B, beta and A that move and are no symbols, each up to its sign."""
-    field, moving = found.setting.field, set(found.frame.positions)
+    field = found.setting.field
+    moving = {*found.frame.positions, *found.setting.own_rates}
     kept = [e for row in kept_rows(found) for e in row]
     places = [n for n, name in enumerate(found.frame.velocities) if name in found.solved]
     given = [e for n in places for e in (*found.B[n], found.beta[n])]
@@ -106,7 +108,8 @@ def kept_rows(found: Distribution) -> list[Row]:
 def is_symbol(found: Distribution, entry: Element) -> bool:
     """Whether an element is a name or minus a name, which needs no other."""
     field = found.setting.field
-    return any(entry in (field[name], -field[name]) for name in found.frame.positions)
+    names = (*found.frame.positions, *found.setting.own_rates)
+    return any(entry in (field[name], -field[name]) for name in names)
 
 
 @dataclass(frozen=True)
@@ -150,11 +153,13 @@ class Kinematics:
         return self.moved(entry)
 
     def moved(self, function: Element, name: str = "") -> Element:
-        """``dz/dt . df/dz`` of a function of positions, with the rates by their names.
+        """``dz/dt . df/dz + df/dt`` of a function of positions, with the rates by their names.
 
         A square root h moves by its rate: ``N/h`` by ``(N' - (N/h) h')/h``, with the name of N/h.
         """
-        field, rates = self.frame.setting.field, self.position_rates
+        setting = self.frame.setting
+        field, rates = setting.field, {**self.position_rates, **setting.own_rates}
+        explicit_rate(setting, function, "a constraint or a momentum")
         slopes = dict(zip(rates, field.gradient(function, rates), strict=True))
         parts = []
         for n, root in enumerate(self.roots):

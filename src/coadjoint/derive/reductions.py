@@ -43,7 +43,7 @@ class Restriction:
     def __call__(self, function: Element) -> Element:
         """A function of the whole state."""
         field, own = self.setting.field, self.whole.setting
-        values = {name: field[name] for name in (*own.state, *own.parameters)}
+        values = {name: field[name] for name in (*own.state, *own.parameters, *own.driving)}
         return own.field.evaluate(self.whole.closed(function), values, field.number, field.call)
 
     @cached_property

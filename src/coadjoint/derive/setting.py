@@ -23,13 +23,16 @@ from coadjoint.exact import Condition, Element, Field, Region
 from coadjoint.spec import Formula, Spec, tree
 from coadjoint.spec.components import FORMS
 from coadjoint.spec.constrained import Condition as Inequality
-from coadjoint.spec.model import Parameter, Shape, Variable, unpacked
+from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
 from coadjoint.spec.poisson import pairing_weights
 from coadjoint.spec.shapes import ELEMENTARY
+from coadjoint.spec.uses import formulas
 
 if TYPE_CHECKING:
     from coadjoint.derive.integrals import Integrals
 
+#: What has a name in formulas.
+Declared = Variable | Parameter | Input | Time
 #: The functions for which the field needs room; the others are sums and products.
 _ADJOINED = (*ELEMENTARY, "norm")
 
@@ -40,8 +43,8 @@ class Setting:
 
     Attributes:
         spec: What was declared.
-        field: Rational functions of state, velocities and parameters, with the elementary
-            functions that the spec's formulas call.
+        field: Rational functions of state, velocities, parameters, inputs and time, with the
+            elementary functions that the spec's formulas call.
         values: Every declared name, whole quantity or component, as field elements.
     """
 
@@ -60,6 +63,32 @@ class Setting:
     def parameters(self) -> tuple[str, ...]:
         """Component names of the parameters."""
         return tuple(name for parameter in self.spec.parameters for name in parameter.components)
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """Component names of the inputs."""
+        return tuple(name for each in self.spec.inputs for name in each.components)
+
+    @cached_property
+    def time(self) -> tuple[str, ...]:
+        """The name of the time; empty where no formula names it."""
+        return () if self.spec.time is None else self.spec.time.components
+
+    @cached_property
+    def own_rates(self) -> Mapping[str, Element]:
+        """The time derivatives of what moves by itself: of time, and of inputs with known rates."""
+        rates = dict.fromkeys(self.time, self.field.one)
+        inputs = {each.name: each for each in self.spec.inputs}
+        for each in self.spec.inputs:
+            if each.rate:
+                named = self.elements(inputs[each.rate].components)
+                rates |= zip(each.components, named, strict=True)
+        return rates
+
+    @property
+    def driving(self) -> tuple[str, ...]:
+        """What moves by itself: the inputs and the time."""
+        return (*self.inputs, *self.time)
 
     @cached_property
     def velocities(self) -> tuple[str, ...]:
@@ -231,10 +260,11 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         spec: What was declared.
         symbols: Names that the routes need beyond those of the spec.
     """
-    quantities: list[Variable | Parameter] = [
+    quantities: list[Declared] = [
         *spec.state,
         *spec.defined,
         *spec.parameters,
+        *spec.driving,
     ]
     names = [name for quantity in quantities for name in quantity.components]
     names += [name for each in spec.reconstruction for name in each.components]
@@ -284,7 +314,7 @@ def _conditions(setting: Setting) -> tuple[Condition, ...]:
     return tuple(found)
 
 
-def _defaults(quantities: Sequence[Variable | Parameter]) -> dict[str, Fraction]:
+def _defaults(quantities: Sequence[Declared]) -> dict[str, Fraction]:
     """The default of each component that has one."""
     return {
         name: value
@@ -302,42 +332,13 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     names = [name for variable in kept for name in variable.components]
     field = Field(names, _function_calls(spec))
     values: dict[str, Quantity] = {name: field[name] for name in names}
-    quantities: tuple[Variable | Parameter, ...] = (*spec.variables, *spec.parameters)
+    quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
     for quantity in quantities:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))
             values.setdefault(name, field.number(number))
         values[quantity.name] = whole(quantity, values)
     return Setting(spec, field, values)
-
-
-def formulas(spec: Spec) -> tuple[Formula, ...]:
-    """Every formula of a spec."""
-    stated = [formula for formula in (spec.lagrangian, spec.hamiltonian) if formula is not None]
-    if spec.poisson is not None:
-        stated += [*spec.poisson.functions, *(formula for *_, formula in spec.poisson.entries)]
-    if spec.lax is not None:
-        stated += [spec.lax.L, spec.lax.M]
-    if spec.reduction is not None:
-        stated += spec.reduction.section.values()
-    stated += [formula for law in spec.newton for formula in (law.mass, law.force)]
-    stated += [side for each in spec.constraints for side in (each.left, each.right)]
-    stated += [*spec.forces.values(), *([spec.dissipation] if spec.dissipation else ())]
-    if spec.relaxation is not None:
-        stated += [f for f in (spec.relaxation.G, spec.relaxation.S) if f is not None]
-    stated += [side for each in spec.domain for side in (each.left, each.right)]
-    stated += [spec.rolling.arm] if spec.rolling is not None else []
-    stated += [each.rate for each in spec.reconstruction if each.rate is not None]
-    stated += [formula for each in spec.sections for formula in each.section.values()]
-    declared = [observable.formula for observable in spec.observables]
-    claimed = [f for claim in spec.conserved for f in (claim.formula, *claim.where)]
-    for symmetry in spec.symmetries:
-        claimed += [f for f in (symmetry.time, symmetry.map) if f is not None]
-        claimed += symmetry.generators.values()
-    for transformation in spec.transformations:
-        claimed += [*transformation.map.values(), *transformation.exchanges.values()]
-    claimed += [f for each in spec.brackets for f in (each.left, each.right, each.value)]
-    return (*stated, *declared, *spec.casimirs, *claimed)
 
 
 def _function_calls(spec: Spec) -> int:
@@ -355,13 +356,13 @@ def _calls_parameters(spec: Spec) -> bool:
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 
 
-def whole(quantity: Variable | Parameter, values: Mapping[str, Quantity]) -> Quantity:
+def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:
         return weighted(parts, quantity.elements)
-    whole = quantity.form in FORMS
-    return unpacked(parts, quantity.form) if whole else shaped(parts, quantity.shape)
+    form = quantity.form if isinstance(quantity, Variable | Parameter) else ""
+    return unpacked(parts, form) if form in FORMS else shaped(parts, quantity.shape)
 
 
 def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:

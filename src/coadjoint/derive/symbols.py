@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from itertools import count
 
 from coadjoint.spec import Parameter, Spec, Variable
+from coadjoint.spec.model import Input, Time
 
 
 def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
@@ -21,7 +22,11 @@ def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     >>> fresh(spec, ["Q1", "Q2"]), fresh(spec, ["I0", "I1"])
     (('Q1', 'Q2'), ('I0_0', 'I1_0'))
     """
-    quantities: list[Variable | Parameter] = [*spec.variables, *spec.parameters]
+    quantities: list[Variable | Parameter | Input | Time] = [
+        *spec.variables,
+        *spec.parameters,
+        *spec.driving,
+    ]
     taken = {name for each in quantities for name in (each.name, *each.components)}
     if not taken & set(names):
         return tuple(names)

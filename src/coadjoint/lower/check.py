@@ -38,11 +38,9 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
     match name:
         case "rhs":
             return [equations.closed(rate) for rate in exact.rates]
-        case "jacobian":
-            rates = expected_outputs(equations, "rhs")
-            return [
-                slope for rate in rates for slope in setting.field.gradient(rate, setting.state)
-            ]
+        case "jacobian" | "input_jacobian" | "parameter_jacobian":
+            rates, by = expected_outputs(equations, "rhs"), equations.derivatives[name]
+            return [slope for rate in rates for slope in setting.field.gradient(rate, by)]
         case "energy" if exact.energy is not None:
             return [equations.closed(exact.energy)]
         case "observables":
@@ -111,7 +109,7 @@ def check_inverse(equations: Equations, program: Program) -> None:
 def _differing_elements(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say, as elements."""
     field = equations.setting.field
-    inputs = {name: field[name] for name in (*program.state, *program.parameters)}
+    inputs = {name: field[name] for name in program.names}
     found = run(program, inputs, field.number, field.call)
     expected = expected_outputs(equations, program.name)
     assert len(found) == len(expected) > 0, (program.name, len(found), len(expected))
@@ -122,8 +120,8 @@ def _differing_elements(equations: Equations, program: Program) -> Iterator[_Pai
 
 def _differing_residues(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say at some points modulo a prime."""
-    source, reference = random.Random(1), Reference(equations)  # noqa: S311 (not for secrets)
-    names, reached = (*program.state, *program.parameters), 0
+    source, reference = random.Random(1), Reference(equations, implicit=False)  # noqa: S311
+    names, reached = program.names, 0
     for prime in islice(primes(), TRIES):
         number, call = partial(residue, prime=prime), partial(_call, prime=prime)
         inputs = {name: Residue(source.randrange(1, prime), prime) for name in names}

@@ -1,16 +1,17 @@
-"""Lowering, Jacobian: the derivative of the rates by forward accumulation.
+"""Lowering, Jacobians: derivatives of the rates by forward accumulation.
 
-Comes in: the Program ``rhs``. Goes out: the Program ``jacobian``, which shares the definitions and
-is as cheap as they make it. Where the kernel solves ``A x = b``, the derivative of x solves
-``A x' = b' - A' x`` with the same factors: differentiating the factors themselves took twice
-the operations for two coupled bodies, and compilers more than a minute.
+Comes in: the Program ``rhs``. Goes out: the Program ``jacobian``, by the state, or that by inputs
+or parameters, which shares the definitions and is as cheap as they make it. Where the kernel solves
+``A x = b``, the derivative of x solves ``A x' = b' - A' x`` with the same factors: differentiating
+the factors themselves took twice the operations for two coupled bodies, and compilers more than a
+minute.
 Read next: `coadjoint.lower.check`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from coadjoint.derive import Equations
 from coadjoint.derive.solver import Solve, factors
@@ -20,7 +21,7 @@ from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
 from coadjoint.lower.vanishing import hidden_zeros
 
-#: Derivatives of one value by components of the state, zeros left out.
+#: Derivatives of one value by state, inputs or parameters, zeros left out.
 Slopes = dict[str, int]
 
 
@@ -30,7 +31,7 @@ class ResidualSlope:
 
     Attributes:
         row: Of the residual, counted through all solves.
-        by: A component of the state, or a definition through which the residual depends on it.
+        by: A variable, or a definition through which the residual depends on it.
         slope: The partial derivative.
     """
 
@@ -39,7 +40,7 @@ class ResidualSlope:
     slope: Element
 
 
-def residual_slopes(equations: Equations) -> list[ResidualSlope]:
+def residual_slopes(equations: Equations, variables: Sequence[str]) -> list[ResidualSlope]:
     """The derivatives of ``b - A x`` of all solves by what they name, zeros left out."""
     field, found, row = equations.setting.field, list[ResidualSlope](), 0
     solved = {name for solve in equations.exact.solves for name in solve.names}
@@ -50,7 +51,7 @@ def residual_slopes(equations: Equations) -> list[ResidualSlope]:
             unknowns = (field[unknown] for unknown in solve.names)
             products = (entry * x for entry, x in zip(entries, unknowns, strict=True))
             residual = known - field.sum(products)
-            names = [*equations.setting.state, *sorted(inner & field.reach(residual))]
+            names = [*variables, *sorted(inner & field.reach(residual))]
             slopes = zip(names, field.gradient(residual, names), strict=True)
             found += [ResidualSlope(row, name, slope) for name, slope in slopes if slope != 0]
             row += 1
@@ -63,21 +64,24 @@ def factors_of_solves(equations: Equations) -> list[dict[tuple[int, int], Elemen
     return [factors(field, solve, definitions) for solve in equations.exact.solves]
 
 
-def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlope]) -> Program:
+def jacobian(
+    name: str, rhs: Program, equations: Equations, residuals: Sequence[ResidualSlope]
+) -> Program:
     """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program.
 
     Definitions keep their names; temporaries are found anew where they are still shared.
 
     Args:
+        name: One of `Equations.derivatives`, which has the variables x.
         rhs: Its outputs are the rates, behind them the slopes of the residuals, and then the
             factors of the solves.
         equations: What it was lowered from.
         residuals: What these are the slopes of.
     """
-    graph, n = Graph(), len(rhs.state)
+    graph, n, variables = Graph(), len(rhs.state), equations.derivatives[name]
     definitions, values = _inserted(graph, rhs, {name for name, _ in equations.exact.definitions})
-    slopes: dict[int, Slopes] = {graph.symbol(name): {name: graph.number(1)} for name in rhs.state}
-    slopes |= {graph.symbol(name): {} for name in rhs.parameters}
+    slopes: dict[int, Slopes] = {graph.symbol(x): {} for x in rhs.names}
+    slopes |= {graph.symbol(x): {x: graph.number(1)} for x in variables}
     rows: dict[int, dict[str, int]] = {}
     for residual, node in zip(residuals, values[n:], strict=False):
         rows.setdefault(residual.row, {})[residual.by] = node
@@ -85,28 +89,27 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
     # By the unknowns first, and by the state through them at the very end: carrying the derivatives
     # of all unknowns by all of the state through the rates took twice the operations.
     unknowns = {name for solve in equations.exact.solves for name in solve.names}
-    for name, value in definitions.items():
-        if name in unknowns:
-            slopes[graph.symbol(name)] = {name: graph.number(1)}
-        elif name not in equations.intermediates:
-            slopes[graph.symbol(name)] = graph.derivative(value, slopes)
+    for defined, value in definitions.items():
+        if defined in unknowns:
+            slopes[graph.symbol(defined)] = {defined: graph.number(1)}
+        elif defined not in equations.intermediates:
+            slopes[graph.symbol(defined)] = graph.derivative(value, slopes)
     first, factors_of = 0, iter(values[n + len(residuals) :])
     for solve, places in zip(equations.exact.solves, factors_of_solves(equations), strict=True):
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
-        columns = [_through(graph, row, slopes, rhs.state) for row in own]
+        columns = [_through(graph, row, slopes, variables) for row in own]
         own_factors = {place: next(factors_of) for place in places}
-        solved |= _solved(graph, solve, rhs.state, columns, own_factors)
+        solved |= _solved(graph, solve, variables, columns, own_factors)
         first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
         slope = graph.derivative(value, slopes)
-        outputs += [
-            (f"d({output.label})/d{name}", _total(graph, slope, solved, name)) for name in rhs.state
-        ]
+        outputs += [(f"d({output.label})/d{x}", _total(graph, slope, solved, x)) for x in variables]
 
     def program() -> Program:
-        named = Naming(graph, list(definitions.items()), outputs, rhs.parameters)
-        return named.program("jacobian", rhs.state, rhs.parameters, (n, n))
+        naming = Naming(graph, list(definitions.items()), outputs, rhs.parameters)
+        found = naming.program(name, rhs.state, rhs.parameters, (n, len(variables)))
+        return replace(found, inputs=rhs.inputs, time=rhs.time)
 
     computed = program()
     zeros = hidden_zeros(computed, equations)
@@ -116,14 +119,14 @@ def jacobian(rhs: Program, equations: Equations, residuals: Sequence[ResidualSlo
 
 
 def _through(
-    graph: Graph, row: Mapping[str, int], slopes: Mapping[int, Slopes], state: Sequence[str]
+    graph: Graph, row: Mapping[str, int], slopes: Mapping[int, Slopes], variables: Sequence[str]
 ) -> list[int]:
-    """Derivatives of a residual by each component of the state, through definitions too."""
+    """Derivatives of a residual by each variable, through definitions too."""
     columns = []
-    for name in state:
+    for name in variables:
         addends = [row[name]] if name in row else []
         for by, slope in row.items():
-            inner = {} if by in state else slopes[graph.symbol(by)]
+            inner = {} if by in variables else slopes[graph.symbol(by)]
             if name in inner:
                 addends.append(graph.multiply(slope, inner[name]))
         columns.append(graph.sum(addends))
@@ -131,7 +134,7 @@ def _through(
 
 
 def _total(graph: Graph, slope: Slopes, solved: Mapping[str, Slopes], name: str) -> int:
-    """The derivative by a component of the state, through the unknowns that depend on it."""
+    """The derivative by a variable, through the unknowns that depend on it."""
     through = [
         graph.multiply(slope[unknown], inner[name])
         for unknown, inner in solved.items()
@@ -154,17 +157,17 @@ def _inserted(graph: Graph, rhs: Program, defined: set[str]) -> tuple[dict[str, 
 def _solved(
     graph: Graph,
     solve: Solve,
-    state: Sequence[str],
+    variables: Sequence[str],
     residuals: Sequence[Sequence[int]],
     factors: Mapping[tuple[int, int], int],
 ) -> dict[str, Slopes]:
-    """``x' = A^-1 r`` by L and D for each component of the state: slopes by unknown.
+    """``x' = A^-1 r`` by L and D for each variable: slopes by unknown.
 
     Args:
         graph: Where L and D are.
         solve: What is solved.
-        state: Names of the components.
-        residuals: r, a row for each unknown, a column for each component of the state.
+        variables: Their names.
+        residuals: r, a row for each unknown, a column for each variable.
         factors: L below the diagonal, zeros left out, and one over D on it.
     """
     size = range(len(solve.names))
@@ -174,7 +177,7 @@ def _solved(
         return graph.sum([start, *(p for p in products if not graph.is_zero(p))])
 
     slopes: dict[str, Slopes] = {name: {} for name in solve.names}
-    for column, component in enumerate(state):
+    for column, component in enumerate(variables):
         y: list[int] = []
         for i in size:
             before = [(factors[i, k], y[k]) for k in size[:i] if (i, k) in factors]

@@ -1,10 +1,10 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
 Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``energy``, ``observables``, ``poisson_tensor``, ``constraint_residual``, ``projection``,
-``reconstruction`` and ``domain``. An element is a sum of products in the order of the field; what
-depends on parameters alone is gathered into the coefficients, equal coefficients are factored out,
-and pairs of factors that recur are shared.
+them, ``input_jacobian``, ``parameter_jacobian``, ``energy``, ``observables``, ``poisson_tensor``,
+``constraint_residual``, ``projection``, ``reconstruction`` and ``domain``. An element is a sum of
+products in the order of the field; what depends on parameters alone is gathered into the
+coefficients, equal coefficients are factored out, and pairs of factors that recur are shared.
 Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -45,6 +45,8 @@ class Ratio:
 
 #: An element as a sum of quotients, one for each denominator that moves with the member.
 Form = tuple[Ratio, ...]
+#: Names with their values: definitions or outputs.
+_Lines = list[tuple[str, Element]]
 #: What to compute before it is shared: coefficients by product, for each such denominator.
 _Sums = dict[Any, tuple[list[tuple[Element, int]], dict[Product, Element]]]
 
@@ -259,25 +261,15 @@ def _mark(element: Element) -> Any:
 def lower(equations: Equations) -> dict[str, Program]:
     """The Programs of all functions of a system's kernels, by name.
 
-    The Jacobian is the derivative of the ``rhs`` Program by forward accumulation, so it shares the
-    definitions and is as cheap as they make it.
+    Jacobians are derivatives of the ``rhs`` Program by forward accumulation, so they share the
+    definitions and are as cheap as these make them.
     """
     setting, exact = equations.setting, equations.exact
     n = len(setting.state)
     rates = [(f"d{x}/dt", rate) for x, rate in zip(setting.state, exact.rates, strict=True)]
     rhs = _program(equations, "rhs", rates)
-    slopes = residual_slopes(equations)
-    labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
-    labelled += [
-        (f"factor {i} {k}", value)
-        for found in factors_of_solves(equations)
-        for (i, k), value in found.items()
-    ]
-    # what the residuals name has a derivative, whether or not the rates need it
-    inner = dict.fromkeys(each.by for each in slopes if each.by not in setting.state)
-    labelled += [(name, setting.field[name]) for name in inner]
-    wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
-    programs = {"rhs": rhs, "jacobian": jacobian(wide, equations, slopes)}
+    programs = {"rhs": rhs}
+    programs |= {name: _jacobian(name, equations, rates, rhs) for name in equations.derivatives}
     if exact.energy is not None:
         programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
     if exact.observables:
@@ -309,6 +301,23 @@ def lower(equations: Equations) -> dict[str, Program]:
     return programs
 
 
+def _jacobian(name: str, equations: Equations, rates: _Lines, rhs: Program) -> Program:
+    """A derivative of the rates: by the state, the inputs or the parameters."""
+    variables, field = equations.derivatives[name], equations.setting.field
+    slopes = residual_slopes(equations, variables)
+    labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
+    labelled += [
+        (f"factor {i} {k}", value)
+        for found in factors_of_solves(equations)
+        for (i, k), value in found.items()
+    ]
+    # what the residuals name has a derivative, whether or not the rates need it
+    inner = dict.fromkeys(each.by for each in slopes if each.by not in variables)
+    labelled += [(by, field[by]) for by in inner]
+    wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
+    return jacobian(name, wide, equations, slopes)
+
+
 def _program(
     equations: Equations,
     name: str,
@@ -326,11 +335,8 @@ def _program(
     naming = Naming(lowering.graph, named, results, setting.parameters)
     size = (len(outputs),) if shape is None else shape
     read = setting.state if inputs is None else inputs
-    return naming.program(name, read, setting.parameters, size)
-
-
-#: Names with their values: definitions or outputs.
-_Lines = list[tuple[str, Element]]
+    program = naming.program(name, read, setting.parameters, size)
+    return replace(program, inputs=setting.inputs, time=setting.time)
 
 
 def _without_single_uses(equations: Equations, outputs: _Lines) -> tuple[_Lines, _Lines]:

@@ -114,13 +114,16 @@ class Program:
     """One function of a kernel.
 
     Attributes:
-        name: ``rhs``, ``jacobian``, ``energy``, ``observables``, ``poisson_tensor``,
-            ``constraint_residual``, ``projection``, ``reconstruction`` or ``domain``.
+        name: ``rhs``, ``jacobian``, ``input_jacobian``, ``parameter_jacobian``, ``energy``,
+            ``observables``, ``poisson_tensor``, ``constraint_residual``, ``projection``,
+            ``reconstruction`` or ``domain``.
         state: Component names of the state, in order, and of what else it takes beside it.
         parameters: Component names of the parameters, in order.
         statements: In the order of evaluation, those of level ``parameters`` first.
         outputs: One per row of the result, row by row.
         shape: Shape of the result for one member, e.g. ``(6,)``, ``(6, 6)``, ``()``.
+        inputs: Component names of the inputs, in order; empty where the spec declares none.
+        time: The name of the time; empty where the spec declares none.
     """
 
     name: str
@@ -129,6 +132,23 @@ class Program:
     statements: tuple[Statement, ...]
     outputs: tuple[Output, ...]
     shape: tuple[int, ...]
+    inputs: tuple[str, ...] = ()
+    time: tuple[str, ...] = ()
+
+    @property
+    def arrays(self) -> dict[str, tuple[str, ...]]:
+        """The arrays that the function takes, each with the names of its rows.
+
+        Those of inputs and time are there only where the spec declares some.
+        """
+        driving = {"inputs": self.inputs, "time": self.time}
+        given = {"state": self.state, "parameters": self.parameters}
+        return given | {name: rows for name, rows in driving.items() if rows}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all rows of all arrays."""
+        return tuple(name for rows in self.arrays.values() for name in rows)
 
     def at_level(self, level: str) -> tuple[Statement, ...]:
         """The statements of one level."""

@@ -28,6 +28,7 @@ import mpmath
 from coadjoint.derive import Equations
 from coadjoint.derive.almost_poisson import Tensor, brackets, momenta_along
 from coadjoint.derive.distribution import Row
+from coadjoint.derive.driving import explicit
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.external import external_forces
 from coadjoint.derive.interpret import inverse
@@ -115,13 +116,21 @@ class ReducedBracket:
         ]
 
     def motion_defects(self, motion: ConstrainedRates) -> list[Element]:
-        """Rates of momenta and positions minus ``J grad H`` and the forces along the fields."""
-        forces = [
-            self.basis.closed(f)
-            for f in external_forces(self.found.setting, self.found.frame.velocities)
-        ]
+        """Rates of momenta and positions minus ``J grad H`` and the forces along the fields.
+
+        Fields that move themselves, ``dD/dt``, add ``<p, dD/dt>``.
+        """
+        setting, velocities = self.found.setting, self.found.frame.velocities
+        forces = [self.basis.closed(f) for f in external_forces(setting, velocities)]
+        slopes = self.field.gradient(self.lagrangian, velocities)
+        p = [self.basis.closed(slope) for slope in slopes]
         driven = {
-            name: self.field.sum(a * f for a, f in zip(along, forces, strict=True) if a and f)
+            name: self.field.sum(
+                [
+                    *(a * f for a, f in zip(along, forces, strict=True) if a and f),
+                    *(explicit(setting, a) * x for a, x in zip(along, p, strict=True)),
+                ]
+            )
             for name, along in self.basis.fields.items()
         }
         return [

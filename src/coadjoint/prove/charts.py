@@ -23,6 +23,7 @@ from typing import Any
 
 from coadjoint.algebra.linear import nullspace, rank_modulo
 from coadjoint.derive import Equations, Relation
+from coadjoint.derive.driving import explicit
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
 from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
@@ -67,9 +68,10 @@ class ChartMap:
 
     def carried(self, function: Element) -> Element:
         """The time derivative of a function of the chart's variables along the route."""
+        own = explicit(self.first.setting, function)
         slopes = self.field.gradient(function, self.chart.variables)
         pairs = zip(slopes, self.other.exact.rates, strict=True)
-        return self.field.sum(slope * rate for slope, rate in pairs if slope and rate)
+        return own + self.field.sum(slope * rate for slope, rate in pairs if slope and rate)
 
     def related(self) -> Decision:
         """Whether ``D phi . Y = X o phi``.

@@ -30,12 +30,14 @@ from coadjoint.prove.certificate import LEAVES, Certificate, Claim, Finding, Ver
 from coadjoint.prove.charts import ChartMap, reach
 from coadjoint.prove.completeness import bracket_of, completeness, described
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
+from coadjoint.prove.driven import has_moving_momenta, motion_defects, while_constant
 from coadjoint.prove.duality import about_duality
-from coadjoint.prove.energy import Balance
+from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.equivalence import LegendreMap, in_velocities
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import (
+    Tensor,
     antisymmetry_defects,
     casimir_defects,
     drift,
@@ -155,9 +157,10 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
         yield from about_projection(first)
         yield from about_rolling(motion)
         for place, claim in enumerate(first.spec.conserved):
-            if _statement(claim) != "energy is conserved" or not first.keeps_energy:
+            if _statement(claim) != "energy is conserved" or not keeps_energy(first):
                 examine = partial(_constrained_integral, motion, claim)
-                claimed = [(_statement(claim), "conserved", examine)]
+                statement = _statement(claim) + _held(first, claim)
+                claimed = [(statement, "conserved", examine)]
                 yield from claimed_by(
                     first.spec, ("claims", "conserved", place), claimed, motion.field
                 )
@@ -177,7 +180,12 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 
 def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iterator[Examined]:
-    """What is found out about a constrained motion, each search with a budget of its own."""
+    """What is found out about a constrained motion, each search with a budget of its own.
+
+    Of a driven one only its constraints are examined, if they are the same at all times: the
+    unknown coefficients of other searches would count time and inputs among the constants.
+    """
+    driving = {*motion.equations.setting.driving}
     searches: dict[tuple[str, str], Iterator[Examined]] = {
         ("integrability", "the growth vector"): about_integrability(motion.equations),
         ("jacobi", "the Jacobi identity of the reduced bracket"): about_reduced_jacobi(motion),
@@ -185,6 +193,11 @@ def _searched(motion: ConstrainedRates, emitted: Mapping[str, Quantity]) -> Iter
         ("integrals", "integrals"): _integrals(motion, emitted),
         ("measure", "invariant measures"): about_measure(motion),
     }
+    if driving:
+        residuals = (equation.residual for equation in motion.distribution.equations)
+        moving = frozenset[str]().union(*map(motion.field.reach, residuals)) & driving
+        kept = () if moving else ("integrability",)
+        searches = {key: found for key, found in searches.items() if key[0] in kept}
     for (kind, subject), examined in searches.items():
         yield from within_budget(motion.field, kind, subject, examined)
 
@@ -298,14 +311,16 @@ def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
     chart_map = ChartMap(first, other)
     relations = ", ".join(relation.text for relation in other.chart.relations)
     where = f", where {relations}" if relations else ""
-    through = f"through {other.chart.through}{where}"
+    elements = [relation.element for relation in other.chart.relations]
+    held = while_constant(other, [*elements, *other.chart.state])
+    through = f"through {other.chart.through}{where}{held}"
     yield (
         f"{first.route} and {other.route} give the same motion, {through}",
         "equivalence",
         chart_map.related,
     )
     if relations:
-        yield f"the route {other.route} keeps {relations}", "equivalence", chart_map.kept
+        yield f"the route {other.route} keeps {relations}{held}", "equivalence", chart_map.kept
     statement, decision = reach(chart_map)
     yield statement, "equivalence", lambda: decision
 
@@ -323,7 +338,7 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         yield (
             f"the motion by {first.route} is {{x, h}}{_beside(first)}",
             "equivalence",
-            partial(hamiltonian_defects, first, energy, tensor),
+            partial(_bracket_defects, first, energy, tensor),
         )
     if energy is not None:
         yield Balance(first).statement, "conserved", partial(_energy_defects, first, energy)
@@ -340,7 +355,8 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
         searched = _about_completeness(first, proved)
         yield from within_budget(field, "casimir", "Casimirs", searched)
     for place, claim in enumerate(spec.conserved):
-        claimed = [(_statement(claim), "conserved", partial(_integral, first, claim))]
+        statement = _statement(claim) + _held(first, claim)
+        claimed = [(statement, "conserved", partial(_integral, first, claim))]
         yield from claimed_by(spec, ("claims", "conserved", place), claimed, field)
     yield from claimed_by(spec, ("claims", "galilean"), about_galilean(first), field)
     yield from about_symmetries(first, _emitted(first))
@@ -351,9 +367,16 @@ def _about_motion(first: Equations) -> Iterator[Examined]:
 
 def _beside(first: Equations) -> str:
     """What acts beside the energy, as the end of a statement."""
-    relaxation = first.spec.relaxation
-    parts = [" and the forces"] * first.spec.is_forced
+    spec, relaxation = first.spec, first.spec.relaxation
+    parts = [" + dx/dt at fixed momenta"] * has_moving_momenta(first)
+    parts += [" and the forces"] * spec.is_forced
     return "".join([*parts, *([f" and {relaxation.added}"] if relaxation else [])])
+
+
+def _bracket_defects(first: Equations, energy: Element, tensor: Tensor) -> list[Element]:
+    """The rates minus the brackets with the energy, and minus what time adds to velocities."""
+    defects = hamiltonian_defects(first, energy, tensor)
+    return motion_defects(first, defects) if has_moving_momenta(first) else defects
 
 
 def _energy_defects(first: Equations, energy: Element) -> list[Element]:
@@ -372,6 +395,12 @@ def _about_survival(first: Equations, casimir: Formula) -> Iterator[Examined]:
     if all(first.setting.field.is_zero(first.work(part)) for part in parts):
         statement = f"{casimir.in_one_line} is conserved: nothing that acts changes it"
         yield statement, "conserved", lambda: _drifts(first, parts)
+
+
+def _held(first: Equations, claim: Integral) -> str:
+    """The condition on the inputs under which a claim holds."""
+    formulas, names = (claim.formula, *claim.where), _emitted(first)
+    return while_constant(first, (g for f in formulas for g in first.setting.components(f, names)))
 
 
 def _seen_from_space(first: Equations, seen: SpatialMomentum) -> Decision:

@@ -19,6 +19,7 @@ from functools import cached_property, partial
 from coadjoint.derive import Equations
 from coadjoint.derive.constrained import section_components
 from coadjoint.derive.distribution import Distribution, Row
+from coadjoint.derive.driving import explicit
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.kinematics import kept_rows, rate_name
 from coadjoint.derive.legendre import LARGEST_BLOCK
@@ -74,10 +75,11 @@ class ConstrainedRates:
         return self.value(self._carried(self.in_state(function)))
 
     def _carried(self, function: Element) -> Element:
-        """The time derivative of a function of the state, in accelerations."""
+        """The time derivative of a function of state and time, in accelerations."""
+        own = explicit(self.equations.setting, function)
         names = self.equations.setting.state
         slopes = zip(self.field.gradient(function, names), names, strict=True)
-        return self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
+        return own + self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
     def in_state(self, function: Element) -> Element:
         """A function of the state alone, also where it names reactions."""

@@ -18,6 +18,18 @@ from functools import cached_property
 from coadjoint.derive import Equations
 from coadjoint.derive.distribution import Distribution
 from coadjoint.exact import Element, Field
+from coadjoint.prove.driven import (
+    OWN_CHANGE,
+    changes_by_time,
+    law_of_change,
+    own_change,
+    while_constant,
+)
+
+
+def keeps_energy(equations: Equations) -> bool:
+    """Whether nothing changes the energy: no force, no moving constraint, and not time."""
+    return equations.keeps_energy and not changes_by_time(equations)
 
 
 class Balance:
@@ -35,6 +47,9 @@ class Balance:
     @property
     def statement(self) -> str:
         """The law in words."""
+        held = while_constant(self.equations, [self._energy])
+        if keeps_energy(self.equations):
+            return f"the energy is conserved{held}"
         terms = ["the power of the forces"] if self.spec.forces else []
         if self.spec.dissipation is not None:
             terms.append("-2 R" if self._is_quadratic else "-<dR/dxi, xi>")
@@ -42,15 +57,28 @@ class Balance:
             terms.append("-<P dh, G P dh>")
         if self._moving:
             terms.append("the work of the moving constraints")
-        if not terms:
-            return "the energy is conserved"
+        if changes_by_time(self.equations):
+            alone = not terms and self._distribution is None
+            terms.append(OWN_CHANGE + f": {law_of_change(self.equations)}" * alone)
         *others, last = terms
-        return f"the energy changes by {', '.join(others)}{' and ' * bool(others)}{last}"
+        return f"the energy changes by {', '.join(others)}{' and ' * bool(others)}{last}{held}"
+
+    @property
+    def _energy(self) -> Element:
+        energy = self.equations.exact.energy
+        assert energy is not None, "only an energy has a balance"
+        return energy
 
     @property
     def power(self) -> Element:
         """What is gained: a function of velocities and state, and of reactions."""
-        return self.field.sum([*self._work_along_velocities(), *self._work_of_constraints()])
+        return self.field.sum(
+            [
+                *self._work_along_velocities(),
+                *self._work_of_constraints(),
+                own_change(self.equations),
+            ]
+        )
 
     def work_along_state(self, slopes: dict[str, Element]) -> Element:
         """The power of forces along momenta and coordinates.

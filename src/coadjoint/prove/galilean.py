@@ -21,7 +21,7 @@ from functools import partial
 from coadjoint.derive import Equations, Setting
 from coadjoint.derive.forces import accelerations
 from coadjoint.derive.interpret import Quantity
-from coadjoint.derive.setting import whole
+from coadjoint.derive.setting import Declared, whole
 from coadjoint.exact import Element
 from coadjoint.groups.galilean import (
     Galilean,
@@ -31,7 +31,9 @@ from coadjoint.groups.galilean import (
     transformation_defects,
 )
 from coadjoint.prove.zero import Decision, Examined, decide_zero
-from coadjoint.spec.model import Parameter, Variable
+
+#: The subgroup that moves time.
+SHIFT = "time shift"
 
 
 def about_galilean(first: Equations) -> Iterator[Examined]:
@@ -41,11 +43,12 @@ def about_galilean(first: Equations) -> Iterator[Examined]:
     system, names = _particles(first.setting)
     moved = accelerations(_with_names(first.setting, system, names))
     laws = [moved[n : n + 3] for n in range(0, len(moved), 3)]
+    driven = _changes(first.setting, system, laws, names)
     for name, g in subgroups(system).items():
         yield (
             f"Newton's law is the same after a {name} of space and time",
             "galilean",
-            partial(_decision, system, laws, g, names),
+            partial(_decision, system, laws, g, names, driven if name == SHIFT else ()),
         )
 
 
@@ -54,17 +57,27 @@ def _decision(
     laws: Sequence[Sequence[Element]],
     g: Galilean,
     names: Mapping[str, str],
+    changes: Sequence[Element],
 ) -> Decision:
     """Whether accelerations are carried along; a counter-example has the names of the spec."""
-    found = decide_zero(transformation_defects(system, laws, g), system.field)
+    found = decide_zero([*transformation_defects(system, laws, g), *changes], system.field)
     spoken = {inner: name for name, inner in names.items()}
     return replace(found, point={spoken.get(n, n): value for n, value in found.point.items()})
+
+
+def _changes(
+    setting: Setting, system: Particles, laws: Sequence[Sequence[Element]], names: Mapping[str, str]
+) -> list[Element]:
+    """How laws depend on time and on inputs, which are not the same after a shift of time."""
+    moving = [names[each] for each in setting.driving]
+    return [x for law in laws for part in law for x in system.field.gradient(part, moving)]
 
 
 def _particles(setting: Setting) -> tuple[Particles, dict[str, str]]:
     """Particles for the rows of all coordinates, and what the names of the spec are there."""
     positions, velocities = setting.positions, setting.velocities
-    inner = {name: f"{name} of the spec" for name in setting.parameters}
+    constants = (*setting.parameters, *setting.driving)
+    inner = {name: f"{name} of the spec" for name in constants}
     system = particles(len(positions) // 3, tuple(inner.values()), len(setting.field.adjoined))
     for letter, given in (("r", positions), ("v", velocities)):
         inner |= {name: f"{letter}{n // 3 + 1}_{n % 3 + 1}" for n, name in enumerate(given)}
@@ -74,7 +87,8 @@ def _particles(setting: Setting) -> tuple[Particles, dict[str, str]]:
 def _with_names(setting: Setting, system: Particles, names: Mapping[str, str]) -> Setting:
     """The Setting with the symbols of the particles in the place of its own."""
     values: dict[str, Quantity] = {name: system.field[inner] for name, inner in names.items()}
-    quantities: list[Variable | Parameter] = [*setting.spec.state, *setting.spec.parameters]
+    spec = setting.spec
+    quantities: list[Declared] = [*spec.state, *spec.parameters, *spec.driving]
     for quantity in quantities:
         values[quantity.name] = whole(quantity, values)
     return Setting(setting.spec, system.field, values)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.derive import Equations
+from coadjoint.derive.driving import explicit
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.prove.equivalence import in_velocities, kept_velocities
@@ -40,9 +41,16 @@ def casimir_defects(
 
 
 def drift(equations: Equations, function: Element) -> list[Element]:
-    """Time derivative of a function of the state along the motion."""
+    """Time derivative of a function of state and time along the motion, inputs held constant."""
     rates = in_velocities(equations, equations.exact.rates)
-    return [_dot(equations.setting.field, gradient(equations, function), rates)]
+    carried = _dot(equations.setting.field, gradient(equations, function), rates)
+    return [carried + own_rate(equations, function)]
+
+
+def own_rate(equations: Equations, function: Element) -> Element:
+    """The explicit part of that, at fixed state."""
+    own = explicit(equations.setting, equations.closed(function))
+    return in_velocities(equations, [own])[0]
 
 
 def hamiltonian_defects(equations: Equations, energy: Element, tensor: Tensor) -> list[Element]:

@@ -21,6 +21,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.constrained import section_momenta, section_vector
+from coadjoint.derive.driving import explicit
 from coadjoint.derive.emission import lagrangian_of
 from coadjoint.derive.external import external_forces
 from coadjoint.exact import Element, element_text
@@ -55,6 +56,7 @@ def momentum_law(equations: Equations, section: Section) -> Element:
         [
             frame.along(along, lagrangian),
             *(p * x for p, x in zip(momenta, turned, strict=True)),
+            *(p * explicit(setting, x) for p, x in zip(momenta, along, strict=True)),
             *(f * x for f, x in zip(forces, along, strict=True)),
             *(r * w for r, w in zip(reactions, worked, strict=True) if w != 0),
         ]

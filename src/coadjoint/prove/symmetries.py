@@ -15,12 +15,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.driving import explicit
 from coadjoint.derive.interpret import Quantity, entries
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import MomentumMap
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import drift
 from coadjoint.prove.zero import Examined, claimed_by, decide_zero
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
@@ -95,16 +97,16 @@ def _noether(
     first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element
 ) -> Iterator[Examined]:
     """What is conserved since h is invariant: nothing is claimed of the other components."""
-    rates, field = J.rates(h), first.setting.field
-    invariant = [
-        n for n, rate in enumerate(rates) if rate == 0 and field.is_zero(first.work(J.values[n]))
-    ]
+    rates, setting = J.rates(h), first.setting
+    own = [explicit(setting, first.closed(value)) + first.work(value) for value in J.values]
+    invariant = [n for n, rate in enumerate(rates) if rate == 0 and setting.field.is_zero(own[n])]
     if invariant:
         names = [symmetry.components[n] for n in invariant]
         subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
         idle = " and nothing that acts changes it" * first.spec.is_driven
         yield (
-            f"{subject} is conserved by Noether's theorem, since its flow keeps h{idle}",
+            f"{subject} is conserved by Noether's theorem, since its flow keeps h{idle}"
+            f"{while_constant(first, [J.values[n] for n in invariant])}",
             "symmetry",
             lambda: [defect for n in invariant for defect in drift(first, J.values[n])],
         )
@@ -128,6 +130,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
         statement = (
             f"the flow of {claim.formula.in_one_line} takes motions to motions"
             f"{_kind_of(first, flows)}"
+            f"{while_constant(first, first.setting.components(claim.formula, known))}"
         )
         follows = [(statement, "symmetry", partial(_commutators, first, flows))]
         key = ("claims", "conserved", place)  # it follows from the claim there
@@ -169,11 +172,15 @@ def _kind_of(first: Equations, flows: Sequence[VectorField]) -> str:
 
 
 def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element]:
-    """``[X_h, X_F]`` with the emitted rates as X_h."""
+    """``[X_h, X_F] + dX_F/dt`` with the emitted rates as X_h."""
     setting = first.setting
     rates = tuple(map(first.closed, first.exact.rates))
     motion = VectorField(setting.field, setting.state, rates)
-    return [part for X in flows for part in lie_derivative(motion, X).components]
+    return [
+        part + explicit(setting, own)
+        for X in flows
+        for part, own in zip(lie_derivative(motion, X).components, X.components, strict=True)
+    ]
 
 
 # -- brackets and transformations -----------------------------------------------------------------
@@ -221,14 +228,34 @@ def _map(first: Equations, transformation: Transformation) -> dict[str, Element]
     return found | moved_components(setting, transformation.map)
 
 
+def _time_after(first: Equations, transformation: Transformation) -> dict[str, Element]:
+    """Time and rates of inputs after a map: where it reverses time, minus what they are before.
+
+    The rate of a rate keeps its value.
+    """
+    setting = first.setting
+    inputs = {each.name: each for each in setting.spec.inputs}
+    first_ones = inputs.keys() - {each.rate for each in inputs.values()}
+    turned = list(setting.time)
+    for name in sorted(first_ones):
+        chain = [name]
+        while inputs[chain[-1]].rate:
+            chain.append(inputs[chain[-1]].rate)
+        turned += [component for rate in chain[1::2] for component in inputs[rate].components]
+    return {t: -setting.field[t] for t in turned if transformation.reverses_time}
+
+
 def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:
-    """``D phi . X -+ X o phi``."""
-    field, phi = first.setting.field, _map(first, transformation)
+    """``D phi . X + dphi/dt -+ X o phi``."""
+    setting, phi = first.setting, _map(first, transformation)
+    field, moved = setting.field, phi | _time_after(first, transformation)
     rates = tuple(map(first.closed, first.exact.rates))
     motion = VectorField(field, first.setting.state, rates)
     sign = -1 if transformation.reverses_time else 1
     return [
-        motion.derivative(phi[name]) - sign * field.substitute(rate, phi)
+        motion.derivative(phi[name])
+        + explicit(setting, phi[name])
+        - sign * field.substitute(rate, moved)
         for name, rate in zip(first.setting.state, rates, strict=True)
     ]
 
@@ -241,7 +268,8 @@ def _exchange_defects(
     known: Mapping[str, Quantity],
 ) -> list[Element]:
     """``F o phi`` minus what it should be."""
-    field, phi = first.setting.field, _map(first, transformation)
+    field = first.setting.field
+    phi = _map(first, transformation) | _time_after(first, transformation)
     moved = [field.substitute(first.closed(part), phi) for part in entries(known[observable])]
     expected = [first.closed(part) for part in first.setting.components(formula, known)]
     return [a - b for a, b in zip(moved, expected, strict=True)]

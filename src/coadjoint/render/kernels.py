@@ -30,6 +30,8 @@ TEMPLATES: Final = {
 SUMMARIES: Final = {
     "rhs": "Time derivative of the state",
     "jacobian": "Derivative of rhs by the state, one row for each rate",
+    "input_jacobian": "Derivative of rhs by the inputs, one row for each rate",
+    "parameter_jacobian": "Derivative of rhs by the parameters, one row for each rate",
     "energy": "Energy",
     "observables": "Observables, one row for each component",
     "poisson_tensor": "Poisson tensor, brackets of the components of the state",
@@ -58,6 +60,7 @@ class Quantity:
         default: One value per component, or None.
         positive: Whether every component must be positive.
         conserved: Whether the motion conserves it.
+        while_constant: Whether it does so only while the inputs are constant.
         upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
     """
 
@@ -68,6 +71,7 @@ class Quantity:
     default: tuple[float, ...] | None = None
     positive: bool = False
     conserved: bool = False
+    while_constant: bool = False
     upright: str = ""
 
     def arguments(self) -> list[str]:
@@ -78,6 +82,7 @@ class Quantity:
         if self.default is not None:
             given += [f"default={tuple_text(map(repr, self.default))}"]
         given += ["positive=True"] * self.positive + ["conserved=True"] * self.conserved
+        given += ["while_constant=True"] * self.while_constant
         given += [f"upright={quoted(self.upright)}"] * bool(self.upright)
         return given
 
@@ -123,6 +128,8 @@ class KernelContext:
         domain: What the rows of the function ``domain`` are; empty where there is none.
         reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
             where there is none.
+        inputs: Quantities of the inputs, in order; empty where there are none.
+        time: The time, if the functions take it.
     """
 
     name: str
@@ -138,6 +145,8 @@ class KernelContext:
     supported: int = 0
     domain: tuple[Bound, ...] = ()
     reconstructed: tuple[Quantity, ...] = ()
+    inputs: tuple[Quantity, ...] = ()
+    time: tuple[Quantity, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -161,6 +170,7 @@ class Function:
         rows: How many rows its first argument has, the state and what may follow.
         state: Components of the state that it reads.
         parameters: Components of the parameters that it reads.
+        driving: Components of inputs and time that it reads, by array, as far as it takes them.
         python_inputs: The lines that take these from the arrays in Python.
         of_parameters: Statements that depend on parameters alone.
         of_member: The other statements.
@@ -176,6 +186,7 @@ class Function:
     rows: int
     state: tuple[Row, ...]
     parameters: tuple[Row, ...]
+    driving: dict[str, tuple[Row, ...]]
     python_inputs: tuple[str, ...]
     of_parameters: tuple[Statement, ...]
     of_member: tuple[Statement, ...]
@@ -234,6 +245,11 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "state": _rows(context.state),
             "reconstructed": _rows(context.reconstructed, len(_rows(context.state))),
             "parameters": _rows(context.parameters),
+            "driving": {
+                array: _rows(quantities)
+                for array, quantities in (("inputs", context.inputs), ("time", context.time))
+                if quantities
+            },
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
             ],
@@ -261,8 +277,9 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     """The arguments of the System that a generated package makes."""
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
     domain = ["DOMAIN"] * bool(context.domain)
-    followed = ["reconstructed=RECONSTRUCTED"] * bool(context.reconstructed)
-    return [quoted(context.name), *tables, quoted(identity), *domain, *followed]
+    others = ("RECONSTRUCTED", "INPUTS", "TIME")
+    present = [f"{name.lower()}={name}" for name in others if name in _tables(context)]
+    return [quoted(context.name), *tables, quoted(identity), *domain, *present]
 
 
 def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
@@ -272,7 +289,12 @@ def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
         "PARAMETERS": context.parameters,
         "OBSERVABLES": context.observables,
     }
-    return tables | ({"RECONSTRUCTED": context.reconstructed} if context.reconstructed else {})
+    others = {
+        "RECONSTRUCTED": context.reconstructed,
+        "INPUTS": context.inputs,
+        "TIME": context.time,
+    }
+    return tables | {name: quantities for name, quantities in others.items() if quantities}
 
 
 def _licence(expression: str) -> str:
@@ -312,9 +334,15 @@ def _function(program: Program, summary: str) -> Function:
         rows=len(program.state),
         state=_read(program.state, used),
         parameters=_read(program.parameters, used),
-        python_inputs=(
-            *_unpacked(program.state, used, "state"),
-            *_unpacked(program.parameters, used, "parameters"),
+        driving={
+            array: _read(names, used)
+            for array, names in program.arrays.items()
+            if array in ("inputs", "time")
+        },
+        python_inputs=tuple(
+            line
+            for array, names in program.arrays.items()
+            for line in _unpacked(names, used, array)
         ),
         of_parameters=program.at_level("parameters"),
         of_member=program.at_level("member"),

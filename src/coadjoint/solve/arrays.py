@@ -31,12 +31,15 @@ class Call:
         function: Name of the function.
         state: State as `System.rhs` takes it.
         parameters: Parameters as `System.rhs` takes them.
+        inputs: Inputs as `System.rhs` takes them.
+        time: Time as `System.rhs` takes it.
         out: Result array, or None for a new one.
         bound: Whether ``state`` and ``out`` must be used in place.
 
     Attributes:
         state: ``(n, members)``.
         parameters: ``(k,)`` shared or ``(k, members)``.
+        driving: Inputs and time, as far as the system has them, in the same form.
         block: The result as its shape for one member followed by ``members``, a view of `result`.
         result: The result in its full shape.
         members: Number of members.
@@ -52,8 +55,10 @@ class Call:
         function: str,
         state: ArrayLike | Mapping[str, ArrayLike],
         parameters: ArrayLike | Mapping[str, ArrayLike] | None,
-        out: Array | None,
+        inputs: ArrayLike | Mapping[str, ArrayLike] | None,
         *,
+        time: ArrayLike | None = None,
+        out: Array | None = None,
         bound: bool = False,
     ) -> None:
         if function not in system.functions:
@@ -62,34 +67,38 @@ class Call:
                 f"{', '.join(system.functions)}.",
                 found=function,
             )
-        inputs = system.inputs(function)
-        packed = as_float64(state, "state") if bound else pack(state, inputs, "state")
+        rows = system.rows(function)
+        packed = as_float64(state, "state") if bound else pack(state, rows, "state")
         if bound and packed is not state:
             raise KernelArgumentError(
                 "bind reads the state in place; expected a C-contiguous float64 array.",
                 found=str(type(state).__name__),
             )
-        _check_rows(packed, inputs, "state", system.name)
+        _check_rows(packed, rows, "state", system.name)
         batch = packed.shape[1:]
         values = pack_parameters(system, parameters)
-        if values.shape[1:] not in ((), batch):
-            raise KernelArgumentError(
-                f"parameters have the batch shape {values.shape[1:]}, the state {batch}; expected "
-                "the same, or parameters shared by all members.",
-                found=list(values.shape[1:]),
-                expected=list(batch),
-            )
+        driving = [*_inputs(system, inputs), *_time(system, time)]
+        for name, array in (("parameters", values), *driving):
+            if array.shape[1:] not in ((), batch):
+                raise KernelArgumentError(
+                    f"{name} {'has' if name == 'time' else 'have'} the batch shape "
+                    f"{array.shape[1:]}, the state {batch}; expected the same, or {name} shared "
+                    "by all members.",
+                    found=list(array.shape[1:]),
+                    expected=list(batch),
+                )
         shape = system.functions[function] + batch
         self.members = math.prod(batch)
-        self.state = packed.reshape(inputs.size, self.members)
-        shared = values.ndim == 1
-        self.parameters = values if shared else values.reshape(values.shape[0], self.members)
+        self.state = packed.reshape(rows.size, self.members)
+        self.parameters = self._by_member(values)
+        self.driving = {name: self._by_member(array) for name, array in driving}
         if bound and out is None:
             raise KernelArgumentError(
                 f"bind writes into out; expected an array of shape {shape}.", expected=list(shape)
             )
         self.result = np.empty(shape) if out is None else _check_out(out, shape)
-        for name, array in (("state", self.state), ("parameters", self.parameters)):
+        given = {"state": self.state, "parameters": self.parameters, **self.driving}
+        for name, array in given.items():
             if out is not None and np.shares_memory(out, array):
                 raise KernelArgumentError(
                     f"out shares memory with {name}; the kernel would read what it has written. "
@@ -97,6 +106,10 @@ class Call:
                     found=name,
                 )
         self.block = self.result.reshape(*system.functions[function], self.members)
+
+    def _by_member(self, values: Array) -> Array:
+        """Values shared by all members, or with one axis of members."""
+        return values if values.ndim == 1 else values.reshape(values.shape[0], self.members)
 
 
 def as_float64(value: Any, name: str) -> Array:
@@ -174,13 +187,7 @@ def pack_parameters(system: System, parameters: Any) -> Array:
     """
     quantities = system.PARAMETERS
     if parameters is None or isinstance(parameters, Mapping):
-        defaults = {
-            component: value
-            for quantity in quantities.values()
-            if quantity.default is not None
-            for component, value in zip(quantity.components, quantity.default, strict=True)
-        }
-        packed = _assemble(defaults, parameters or {}, quantities, "parameters")
+        packed = _assemble(_defaults(quantities), parameters or {}, quantities, "parameters")
     else:
         packed = as_float64(parameters, "parameters")
         _check_rows(packed, quantities, "parameters", system.name)
@@ -195,6 +202,73 @@ def pack_parameters(system: System, parameters: Any) -> Array:
             component=component,
         )
     return packed
+
+
+def pack_inputs(system: System, inputs: Any) -> Array:
+    """Inputs as ``(m,)`` or ``(m, *batch)``, defaults filled in.
+
+    Raises:
+        KernelArgumentError: As for `pack`, or the system has no inputs.
+    """
+    quantities = system.INPUTS
+    if inputs is not None and (not quantities or isinstance(inputs, str)):
+        has = f"has the inputs {', '.join(quantities)}" if quantities else "has no inputs"
+        expected = "an array, or values by name" if quantities else "None"
+        raise KernelArgumentError(
+            f"{system.name} {has}, and found {_short(inputs)} in their place; expected {expected}. "
+            'Where target or out was meant, write target="c", out=out.',
+            found=_short(inputs),
+        )
+    if inputs is None or isinstance(inputs, Mapping):
+        return _assemble(_defaults(quantities), inputs or {}, quantities, "inputs")
+    packed = as_float64(inputs, "inputs")
+    _check_rows(packed, quantities, "inputs", system.name)
+    return packed
+
+
+def _inputs(system: System, inputs: Any) -> list[tuple[str, Array]]:
+    """The array of inputs, where a system has some."""
+    if not system.INPUTS and inputs is None:
+        return []
+    return [("inputs", pack_inputs(system, inputs))]
+
+
+def _time(system: System, time: Any) -> list[tuple[str, Array]]:
+    """The time as an array of one row, where the functions of a system take it.
+
+    Raises:
+        KernelArgumentError: It is missing, or there is nothing that depends on it.
+    """
+    if not system.TIME:
+        if time is None:
+            return []
+        raise KernelArgumentError(
+            f"{system.name} does not depend on time, and found time = {_short(time)}. "
+            "Leave it out.",
+            found=_short(time),
+        )
+    if time is None:
+        raise KernelArgumentError(
+            f"{system.name} depends on time, and none is given; expected a number, or one for "
+            "each member. Write time=0.0.",
+            found=None,
+        )
+    return [("time", as_float64(time, "time")[np.newaxis])]
+
+
+def _short(value: Any) -> str:
+    """A value in a message."""
+    return f"an array of shape {value.shape}" if isinstance(value, np.ndarray) else repr(value)[:80]
+
+
+def _defaults(quantities: Quantities) -> dict[str, float]:
+    """The default of each component that has one."""
+    return {
+        component: value
+        for quantity in quantities.values()
+        if quantity.default is not None
+        for component, value in zip(quantity.components, quantity.default, strict=True)
+    }
 
 
 def _assemble(

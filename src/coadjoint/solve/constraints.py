@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -38,20 +39,30 @@ class Constraints:
         system: The System.
         parameters: Packed parameters, ``(k,)``.
         target: Kernel that computes residuals and projections.
+        driving: Inputs and time.
     """
 
-    def __init__(self, system: System, parameters: Array, target: Any) -> None:
+    def __init__(self, system: System, parameters: Array, target: Any, driving: Driving) -> None:
         self.system, self.parameters, self.target = system, parameters, target
+        self.driving = driving
         self.any = "projection" in system.functions
         self._state, self._nearest = np.empty((2, system.STATE.size))
         if self.any:
-            shared = (self._state, parameters, self._nearest, target)
-            self._project = system.bind("projection", *shared)
+            self._project = system.bind(
+                "projection",
+                self._state,
+                parameters,
+                out=self._nearest,
+                target=target,
+                **driving.now,
+            )
 
     # -- along the way ------------------------------------------------------------------
 
-    def onto(self, state: Array) -> Array:
-        """New states on the constraints, ``(n, ...)``; what is reconstructed may follow, and stays.
+    def onto(self, time: Any, state: Array) -> Array:
+        """New states on the constraints, ``(n, ...)``, at a time or at one for each of them.
+
+        What is reconstructed may follow, and stays.
 
         Where constraints come to depend on each other there is no nearest state, and the given one
         is returned.
@@ -60,8 +71,10 @@ class Constraints:
             return state.copy()
         moved, own = state.copy(), state[: self._state.size]
         if state.ndim > 1:
-            nearest = self.system.evaluate("projection", own, self.parameters, self.target)
+            driving = self.driving.over(time)
+            nearest = self.system.projection(own, self.parameters, target=self.target, **driving)
         else:  # at each step: without the checks, which take as long as five evaluations
+            self.driving.at(time)
             self._state[:], nearest = own, self._nearest
             self._project()
         moved[: len(own)] = np.where(np.isfinite(nearest).all(axis=0), nearest, own)
@@ -69,7 +82,7 @@ class Constraints:
 
     def put_back(self, solver: scipy.integrate.OdeSolver) -> Array:
         """The state after a step, on the constraints; a one-step method goes on from there."""
-        state = self.onto(solver.y)
+        state = self.onto(solver.t, solver.y)
         if self.any and isinstance(solver, ONE_STEP):
             solver.y, solver.f = state, solver.fun(solver.t, state)
         return state
@@ -77,14 +90,15 @@ class Constraints:
     def along(self, dense: Callable[[], Callable[[Any], Array]]) -> Callable[[Any], Array]:
         """The interpolant of a step, its states on the constraints."""
         path = dense()
-        return lambda t: self.onto(path(t))
+        return lambda t: self.onto(t, path(t))
 
     # -- the start ----------------------------------------------------------------------
 
-    def beginning(self, state: Array, atol: float) -> Array:
+    def beginning(self, time: float, state: Array, atol: float) -> Array:
         """A start on the constraints, from one that is off them by roundings at the most.
 
         Args:
+            time: When it is.
             state: The given start.
             atol: What the run takes for nothing.
 
@@ -98,11 +112,12 @@ class Constraints:
             off = np.abs(residuals) - self._roundings(state, residuals, atol)
         row = int(np.argmax(off))
         if off[row] > 0:
-            raise self._refusal(state, row, float(residuals[row]))
-        return self.onto(state)
+            raise self._refusal(time, state, row, float(residuals[row]))
+        return self.onto(time, state)
 
     def _residuals(self, states: Array) -> Array:
-        return self.system.evaluate("constraint_residual", states, self.parameters, self.target)
+        now = self.driving.now
+        return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
 
     def _roundings(self, state: Array, residuals: Array, atol: float) -> Array:
         """What residuals come to where each component is off by `TYPED` of those of its unit.
@@ -117,9 +132,9 @@ class Constraints:
         slopes = np.abs(columns - residuals[:, None]) / steps
         return np.asarray(slopes @ (TYPED * sizes + atol))
 
-    def _refusal(self, state: Array, row: int, residual: float) -> KernelArgumentError:
+    def _refusal(self, time: float, state: Array, row: int, residual: float) -> KernelArgumentError:
         """What is wrong with a start, and where it would be right."""
-        moved = zip(self.system.STATE.components, state, self.onto(state), strict=True)
+        moved = zip(self.system.STATE.components, state, self.onto(time, state), strict=True)
         told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
         listed = list(self.system.certificate.get("constraints", {}).items())
         constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"

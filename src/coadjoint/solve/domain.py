@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -52,33 +53,37 @@ class Domain:
         system: The System.
         parameters: Packed parameters, ``(k,)``.
         target: Kernel that computes the rows.
+        driving: Inputs and time.
     """
 
-    def __init__(self, system: System, parameters: Array, target: Any) -> None:
-        self.system, self.parameters = system, parameters
+    def __init__(self, system: System, parameters: Array, target: Any, driving: Driving) -> None:
+        self.system, self.parameters, self.driving = system, parameters, driving
         self.bounds = system.DOMAIN
         # The least double that a row may be: whatever is above 0, or 0 itself.
         self._least = np.array([np.nextafter(0.0, 1.0) * bound.strict for bound in self.bounds])
         self._state, self._rows = np.empty(system.STATE.size), np.empty(len(self.bounds))
         if self.bounds:
-            self._evaluate = system.bind("domain", self._state, parameters, self._rows, target)
+            self._evaluate = system.bind(
+                "domain", self._state, parameters, out=self._rows, target=target, **driving.now
+            )
 
-    def violated(self, state: Array) -> int | None:
+    def violated(self, time: float, state: Array) -> int | None:
         """The first row that is violated or not finite at a state; None inside the domain."""
         if not self.bounds:
             return None
+        self.driving.at(time)
         self._state[:] = state[: self._state.size]  # what is reconstructed may follow
         self._evaluate()
         held = (self._rows >= self._least) & (self._rows < np.inf)  # neither holds for a NaN
         return None if held.all() else int(np.argmin(held))
 
-    def check_start(self, state: Array) -> None:
+    def check_start(self, time: float, state: Array) -> None:
         """Refuse a state outside the domain.
 
         Raises:
             KernelArgumentError: A condition does not hold, or the motion is singular there.
         """
-        row = self.violated(state)
+        row = self.violated(time, state)
         if row is None:
             return
         bound, value = self.bounds[row], float(self._rows[row])
@@ -111,7 +116,7 @@ class Domain:
             return None
         start, inside = before[0], before
         for point in points:
-            row = self.violated(point[1])
+            row = self.violated(*point)
             if row is not None:
                 gap = RESOLUTION * (point[0] - start)
                 return self._bisected(path(), inside, point[0], row, gap)
@@ -133,7 +138,7 @@ class Domain:
             if not time < middle < outside:  # no double lies between
                 break
             found = path(middle)
-            beyond = self.violated(found)
+            beyond = self.violated(middle, found)
             if beyond is None:
                 time, state = middle, found
             else:
@@ -144,7 +149,7 @@ class Domain:
 
     def reason(self, exit_: Exit) -> str:
         """Why a trajectory ends at an exit."""
-        self.violated(exit_.state)
+        self.violated(exit_.time, exit_.state)
         value = float(self._rows[exit_.row])
         return (
             f"{self._problem(exit_.row)} after t = {exit_.time:.12g}, where "
@@ -152,9 +157,9 @@ class Domain:
             f"{self._values(exit_.row, exit_.state)}"
         )
 
-    def remark(self, state: Array) -> str:
+    def remark(self, time: float, state: Array) -> str:
         """How close to a bound a state is, for trajectories that end inside; "" without bounds."""
-        if self.violated(state) is not None or not self.bounds:
+        if self.violated(time, state) is not None or not self.bounds:
             return ""
         row = int(np.argmin(self._rows))
         value = float(self._rows[row])
@@ -179,8 +184,10 @@ class Domain:
 
     def _values(self, row: int, state: Array) -> str:
         """The inputs of a row with their values."""
-        names = (*self.system.STATE.components, *self.system.PARAMETERS.components)
-        values = (*state[: self._state.size].tolist(), *self.parameters.tolist())
+        system, now = self.system, [array.ravel() for array in self.driving.now.values()]
+        tables = (system.STATE, system.PARAMETERS, system.INPUTS, system.TIME)
+        names = [name for quantities in tables for name in quantities.components]
+        values = np.concatenate([state[: self._state.size], self.parameters, *now]).tolist()
         known = dict(zip(names, values, strict=True))
         inputs = self.bounds[row].inputs
         told = [f"{name} = {known[name]:.6g}" for name in inputs[:SHOWN]]

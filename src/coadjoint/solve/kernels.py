@@ -54,7 +54,7 @@ class Kernels:
     def run(self, function: str, call: Call, target: str) -> None:
         """Evaluate a call into its result."""
         if self._stand_in(target):
-            self._numpy_function(function)(call.state, call.parameters, call.block)
+            self._numpy_call(function, call)()
             return
         for piece in self._pieces(function, call, target):
             piece()
@@ -62,29 +62,35 @@ class Kernels:
     def bind(self, function: str, call: Call, target: str) -> Callable[[], None]:
         """The call as a function without arguments."""
         if self._stand_in(target):
-            return partial(self._numpy_function(function), call.state, call.parameters, call.block)
+            return self._numpy_call(function, call)
         pieces = list(self._pieces(function, call, target))
         return pieces[0] if len(pieces) == 1 else partial(_each, pieces)
+
+    def _numpy_call(self, function: str, call: Call) -> Callable[[], Any]:
+        """The call of a function of the NumPy kernel."""
+        given = [call.state, call.parameters]
+        given += [array for name, array in call.driving.items() if name != "time"]
+        named = {"time": call.driving["time"][0, ...]} if "time" in call.driving else {}
+        return partial(self._numpy_function(function), *given, out=call.block, **named)
 
     def _pieces(self, function: str, call: Call, target: str) -> Iterator[Callable[[], None]]:
         """C calls that together evaluate all members."""
         library: Library = self._library(target)
         item = call.state.itemsize
-        shared = call.parameters.ndim == 1
-        arrays = (call.state, call.parameters, call.block)
-        state, parameters, block = (array.ctypes.data for array in arrays)
+        arrays = (call.state, call.parameters, *call.driving.values(), call.block)
+        places = [(array.ctypes.data, array.ndim == 1) for array in arrays[:-1]]
+        places.append((call.block.ctypes.data, False))  # that of a scalar has one axis, too
         size = max(1, CHUNK // sum(math.prod(array.shape[:-1]) for array in arrays))
         stride = call.members
         for first in range(0, call.members, size):
             piece = library.bind(
                 function,
                 min(size, call.members - first),
-                state + first * item,
-                stride,
-                parameters if shared else parameters + first * item,
-                0 if shared else stride,
-                block + first * item,
-                stride,
+                *(
+                    number
+                    for at, shared in places
+                    for number in ((at, 0) if shared else (at + first * item, stride))
+                ),
             )
             piece.arrays = arrays  # type: ignore[attr-defined]  # they live as long as the call
             yield piece
@@ -142,7 +148,7 @@ class Kernels:
                     warnings.warn(
                         f"{error} The NumPy kernels are used instead. {advice}".rstrip(),
                         CompilerWarning,
-                        stacklevel=6,
+                        stacklevel=7,
                     )
         return self._loaded[target]
 
@@ -199,16 +205,19 @@ class Kernels:
             OutputError: The NumPy kernel does not run.
         """
         source = np.random.default_rng(0)
-        inputs = self.system.inputs
-        wide = source.uniform(0.5, 2.0, (inputs("reconstruction").size, PROBES))
-        own = source.uniform(0.5, 2.0, (self.system.PARAMETERS.size, PROBES))
+        rows, sizes = self.system.rows, [self.system.PARAMETERS.size]
+        sizes += [each.size for each in (self.system.INPUTS, self.system.TIME) if each]
+        wide = source.uniform(0.5, 2.0, (rows("reconstruction").size, PROBES))
+        own = [source.uniform(0.5, 2.0, (size, PROBES)) for size in sizes]
+        shared = [array[:, 0].copy() for array in own]
         exact = target == "c" and not self.system.elementary
         for function, shape in self.system.functions.items():
-            state = wide[: inputs(function).size]
-            for parameters, stride in ((own, PROBES), (own[:, 0].copy(), 0)):
-                expected = self._numpy_values(function, state, parameters, (*shape, PROBES))
+            state = wide[: rows(function).size]
+            for others, stride in ((own, PROBES), (shared, 0)):
+                expected = self._numpy_values(function, [state, *others], (*shape, PROBES))
                 found = np.full((*shape, PROBES), np.pi)
-                addresses = (state.ctypes.data, PROBES, parameters.ctypes.data, stride)
+                addresses = [state.ctypes.data, PROBES]
+                addresses += [n for array in others for n in (array.ctypes.data, stride)]
                 library.function(function)(PROBES, *addresses, found.ctypes.data, PROBES)
                 if not _agree(found, expected, exact=exact):
                     raise CrossCheckError(
@@ -222,7 +231,7 @@ class Kernels:
                     )
 
     def _numpy_values(
-        self, function: str, state: NDArray[Any], parameters: NDArray[Any], shape: tuple[int, ...]
+        self, function: str, arrays: Sequence[NDArray[Any]], shape: tuple[int, ...]
     ) -> NDArray[Any]:
         """What the NumPy kernel computes.
 
@@ -230,7 +239,10 @@ class Kernels:
             OutputError: It does not run, or its result has another shape.
         """
         try:
-            values = np.asarray(self._numpy_function(function)(state, parameters), dtype=np.float64)
+            given, named = list(arrays), {}
+            if self.system.TIME:
+                named = {"time": given.pop()[0]}
+            values = np.asarray(self._numpy_function(function)(*given, **named), dtype=np.float64)
         except OutputError:
             raise
         except Exception as error:

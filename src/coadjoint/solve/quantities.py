@@ -26,6 +26,7 @@ class Quantity:
         default: One value per row, or None.
         positive: Whether every value must be positive.
         conserved: Whether the motion conserves it.
+        while_constant: Whether it does so only while the inputs are constant.
         upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
     """
 
@@ -36,6 +37,7 @@ class Quantity:
     default: tuple[float, ...] | None = None
     positive: bool = False
     conserved: bool = False
+    while_constant: bool = False
     upright: str = ""
 
 

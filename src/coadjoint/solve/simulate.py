@@ -15,6 +15,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, pack, pack_parameters
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.domain import Domain, Exit
+from coadjoint.solve.driving import Driving
 from coadjoint.solve.reconstruct import beginning
 from coadjoint.solve.solution import Solution
 
@@ -38,6 +39,7 @@ def simulate(
     t: Any,
     parameters: Any,
     *,
+    inputs: Any,
     method: str,
     rtol: float,
     atol: float,
@@ -52,51 +54,83 @@ def simulate(
     times = _times(t, samples)
     name = _method(method)
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
-    domain = Domain(system, packed, target)
-    domain.check_start(initial)
-    constraints = Constraints(system, packed, target)
-    initial = constraints.beginning(initial, atol)
+    driving = Driving(system, inputs, float(times[0]), float(times[-1]))
+    domain = Domain(system, packed, target, driving)
+    domain.check_start(float(times[0]), initial)
+    constraints = Constraints(system, packed, target, driving)
+    initial = constraints.beginning(float(times[0]), initial, atol)
     followed = beginning(system, initial, reconstruct)
     initial = np.concatenate([initial, followed])
-    rates, latest = _rates(system, packed, target, followed.size)
+    rates, latest = _rates(system, packed, target, driving, followed.size)
     rates(times[0], initial)
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
         reason = f"the rates are not finite at t = {times[0]:g}"
-        return _solution(system, times[:1], initial[:, None], packed, "NONFINITE", reason)
+        found = times[:1], initial[:, None], "NONFINITE", reason
+        return _solution(system, packed, driving, found)
     with_slopes = name in IMPLICIT and not followed.size
-    options = {"jac": _slopes(system, packed, target)} if with_slopes else {}
+    options = {"jac": _slopes(system, packed, target, driving)} if with_slopes else {}
+
+    def begin(time: float, state: Array, end: float) -> scipy.integrate.OdeSolver:
+        driving.enter(time)
+        method: Callable[..., scipy.integrate.OdeSolver] = getattr(scipy.integrate, name)
+        return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
+
+    stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
     with np.errstate(all="ignore"):
-        solver = getattr(scipy.integrate, name)(
-            rates, times[0], initial, times[-1], rtol=rtol, atol=atol, **options
-        )
-        times, states, status, reason = _follow(
-            solver, times, max_steps, latest, domain, constraints
-        )
-    return _solution(system, times, states, packed, status, reason)
+        found = _follow(stretches, initial, times, max_steps, latest, domain, constraints)
+    return _solution(system, packed, driving, found)
 
 
-def _solution(
-    system: System, times: Array, states: Array, parameters: Array, status: str, reason: str
-) -> Solution:
+#: Times that were reached, states there, status and reason.
+_Found = tuple["Array", "Array", str, str]
+
+
+def _solution(system: System, parameters: Array, driving: Driving, found: _Found) -> Solution:
     """What was found, the state apart from what was reconstructed below it."""
+    times, states, status, reason = found
     n = system.STATE.size
     followed = states[n:] if len(states) > n else None
-    return Solution(system, times, states[:n], parameters, status, reason, followed)
+    inputs = driving.over(times).get("inputs")
+    return Solution(system, times, states[:n], parameters, status, reason, followed, inputs)
+
+
+class _Stretches:
+    """The stretches between jumps of the inputs: an integrator for each, so that no step crosses.
+
+    Args:
+        begin: Makes an integrator at a time and state, up to another time.
+        ends: The start, the jumps and the end.
+    """
+
+    def __init__(
+        self,
+        begin: Callable[[float, Array, float], scipy.integrate.OdeSolver],
+        ends: list[float],
+    ) -> None:
+        self._begin, self._ends = begin, ends
+
+    def next(self, state: Array) -> scipy.integrate.OdeSolver | None:
+        """The integrator of the next stretch; None after the last."""
+        start, *self._ends = self._ends
+        return self._begin(start, state, self._ends[0]) if self._ends else None
 
 
 def _follow(
-    solver: scipy.integrate.OdeSolver,
+    stretches: _Stretches,
+    initial: Array,
     times: Array,
     max_steps: int,
     latest: Array,
     domain: Domain,
     constraints: Constraints,
-) -> tuple[Array, Array, str, str]:
+) -> _Found:
     """The times that were reached, states there, status and reason.
 
     A loop of our own over SciPy's steps: its `solve_ivp` has no bound on their number, and keeps
     nothing of a trajectory that ends in an exception.
     """
+    solver = stretches.next(initial)
+    assert solver is not None, "a run has an end"
     states = np.empty((solver.n, times.size))
     states[:, 0] = solver.y
     reached, steps, reason = 1, 0, ""
@@ -116,9 +150,11 @@ def _follow(
             if end is not None:
                 return *_ended(times, states, end), "DOMAIN", domain.reason(end)
             reached, steps = after, steps + 1
+            if after < times.size and solver.status != "running":
+                solver = stretches.next(here[1]) or solver
     except FloatingPointError:  # from the Jacobian
         latest[:] = np.nan
-    place = f"near t = {solver.t:.6g}{domain.remark(solver.y)}"
+    place = f"near t = {solver.t:.6g}{domain.remark(solver.t, solver.y)}"
     came = (times[:reached], states[:, :reached])
     # An evaluation that is not finite spoils those after it in its step, the latest among them.
     if not (np.isfinite(solver.y).all() and np.isfinite(latest).all()):
@@ -140,22 +176,27 @@ def _ended(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
     return np.append(times[:reached], end.time), found
 
 
-def _rates(system: System, parameters: Array, target: Any, followed: int) -> tuple[Rates, Array]:
+def _rates(
+    system: System, parameters: Array, target: Any, driving: Driving, followed: int
+) -> tuple[Rates, Array]:
     """Rates for SciPy, all checks made once, and the array of the latest ones.
 
     Args:
         system: The System.
         parameters: ``(k,)``.
         target: Kernel that computes the rates.
+        driving: Inputs and time.
         followed: How many components are reconstructed, below the state.
     """
     n = system.STATE.size
     whole, latest = np.empty(n + followed), np.empty(n + followed)
-    calls = [system.bind("rhs", whole[:n], parameters, latest[:n], target)]
+    named = {"parameters": parameters, "target": target, **driving.now}
+    calls = [system.bind("rhs", whole[:n], out=latest[:n], **named)]
     if followed:
-        calls.append(system.bind("reconstruction", whole, parameters, latest[n:], target))
+        calls.append(system.bind("reconstruction", whole, out=latest[n:], **named))
 
-    def rates(_: float, y: Array) -> Array:
+    def rates(t: float, y: Array) -> Array:
+        driving.at(t)
         whole[:] = y
         for evaluate in calls:
             evaluate()
@@ -164,12 +205,13 @@ def _rates(system: System, parameters: Array, target: Any, followed: int) -> tup
     return rates, latest
 
 
-def _slopes(system: System, parameters: Array, target: Any) -> Rates:
+def _slopes(system: System, parameters: Array, target: Any, driving: Driving) -> Rates:
     """The Jacobian for SciPy."""
     state, slopes = np.empty(system.STATE.size), np.empty((system.STATE.size,) * 2)
-    evaluate = system.bind("jacobian", state, parameters, slopes, target)
+    evaluate = system.bind("jacobian", state, parameters, out=slopes, target=target, **driving.now)
 
-    def jacobian(_: float, y: Array) -> Array:
+    def jacobian(t: float, y: Array) -> Array:
+        driving.at(t)
         state[:] = y
         evaluate()
         if not np.isfinite(slopes).all():  # SciPy's solvers of linear systems do not take it

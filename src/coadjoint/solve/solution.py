@@ -37,6 +37,7 @@ class Solution:
             ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
         message: Where it stopped and why, empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
+        inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``; None if there are none.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class Solution:
         status: str,
         message: str,
         reconstructed: Array | None = None,
+        inputs: Array | None = None,
     ) -> None:
         self.system = system
         self.time = time
@@ -56,6 +58,7 @@ class Solution:
         self.status = status
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
+        self.inputs = inputs
 
     def __len__(self) -> int:
         return len(self.time)
@@ -99,7 +102,15 @@ class Solution:
             (self.system.STATE, self.state),
             *([] if followed is None else [(self.system.RECONSTRUCTED, followed)]),
             (self.system.OBSERVABLES, self.observables),
+            *([] if self.inputs is None else [(self.system.INPUTS, self._inputs_over_time)]),
         ]
+
+    @property
+    def _inputs_over_time(self) -> Array:
+        """The inputs at every sample, ``(m, T)``."""
+        assert self.inputs is not None, "asked for only where there are some"
+        whole = self.inputs[:, np.newaxis] if self.inputs.ndim == 1 else self.inputs
+        return np.broadcast_to(whole, (len(whole), len(self)))
 
     @cached_property
     def attitude_drift(self) -> dict[str, float]:
@@ -118,7 +129,8 @@ class Solution:
         """Observables along the trajectory, one row per component."""
         if "observables" not in self.system.functions:  # forces alone, and nothing declared
             return self.state[:0]
-        return self.system.observables(self.state, self.parameters)
+        time = self.time if self.system.TIME else None
+        return self.system.observables(self.state, self.parameters, self.inputs, time=time)
 
     @cached_property
     def drift(self) -> dict[str, float]:
@@ -130,9 +142,11 @@ class Solution:
 
     @property
     def conserved(self) -> tuple[str, ...]:
-        """Names of the observables that the motion conserves."""
+        """Names of the observables that the motion conserves; some only if inputs are constant."""
+        inputs = self.inputs
+        steady = inputs is None or inputs.ndim == 1 or bool((inputs == inputs[:, :1]).all())
         quantities = self.system.OBSERVABLES.values()
-        return tuple(quantity.name for quantity in quantities if quantity.conserved)
+        return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
 
     def change(self, name: str) -> Array:
         """``q(t) - q(0)`` of an observable or state component, ``(T,)``."""
@@ -151,6 +165,12 @@ class Solution:
         names = self.system.STATE.components
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
+    @property
+    def _last_inputs(self) -> dict[str, float]:
+        """The last inputs by component."""
+        names = self.system.INPUTS.components
+        return dict(zip(names, self._inputs_over_time[:, -1].tolist(), strict=True))
+
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values."""
         parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
@@ -163,6 +183,7 @@ class Solution:
             "parameters": dict(parameters),
             "final": self.final,
             "drift": self.drift,
+            **({} if self.inputs is None else {"inputs": self._last_inputs}),
         } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
 
     def to_xarray(self) -> Any:

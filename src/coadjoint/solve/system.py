@@ -16,15 +16,17 @@ from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from coadjoint.errors import OutputError
 from coadjoint.files import read_certificate
+from coadjoint.solve.functions import Functions, Target, by_name
 from coadjoint.solve.quantities import Bound, Quantities, Quantity
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
     from coadjoint.solve.solution import Solution
 
@@ -32,10 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Bound", "Quantities", "Quantity", "System", "load_folder"]
 
-Target = Literal["c", "numpy", "c-fast"]
 
-
-class System:
+class System(Functions):
     """A mechanical system with verified kernels.
 
     All functions are vectorised: a state has shape ``(n,)`` for one member or ``(n, *batch)``, and
@@ -52,6 +52,8 @@ class System:
         id: The id that all files of the folder carry.
         DOMAIN: What the rows of `domain` are; empty where the system is defined everywhere.
         RECONSTRUCTED: What follows from the motion without acting on it, in order.
+        INPUTS: Quantities of the inputs, in order; empty where the system has none.
+        TIME: The time, if the system depends on it.
     """
 
     def __init__(
@@ -66,6 +68,8 @@ class System:
         identity: str,
         domain: Sequence[Bound] = (),
         reconstructed: Quantities | None = None,
+        inputs: Quantities | None = None,
+        time: Quantities | None = None,
     ) -> None:
         self.name = name
         self.folder = Path(file).parent
@@ -77,167 +81,51 @@ class System:
         self.id = identity
         self.DOMAIN = tuple(domain)
         self.RECONSTRUCTED = Quantities() if reconstructed is None else reconstructed
+        self.INPUTS = Quantities() if inputs is None else inputs
+        self.TIME = Quantities() if time is None else time
 
     # -- functions --------------------------------------------------------------------------------
 
-    def rhs(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Time derivative of the state, shape ``(n, *batch)``.
-
-        Args:
-            state: ``(n,)`` or ``(n, *batch)``, or a mapping by name: ``{"Pi": [...], ...}``.
-            parameters: Packed, ``(k,)`` for all members or ``(k, *batch)``; or a mapping by name,
-                ``{"I": [1, 2, 3], "m": masses}``, that overrides defaults; None for the defaults.
-            target: ``"c"``, ``"numpy"``, or ``"c-fast"`` (fused operations: not the same bits).
-            out: Where to write the result: float64, C-contiguous, apart from the inputs.
-
-        Returns:
-            ``out``, or a new array.
-
-        Raises:
-            KernelArgumentError: A shape, name, sign or aliasing that cannot be right.
-            KernelTypeError: A type that cannot become float64 without loss.
-        """
-        return self.evaluate("rhs", state, parameters, target, out)
-
-    def jacobian(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Derivative of `rhs` by the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
-        return self.evaluate("jacobian", state, parameters, target, out)
-
-    def energy(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Energy, shape ``batch``; arguments as in `rhs`."""
-        return self.evaluate("energy", state, parameters, target, out)
-
-    def observables(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """All observables, one row for each component of ``OBSERVABLES``; arguments as in `rhs`."""
-        return self.evaluate("observables", state, parameters, target, out)
-
-    def poisson_tensor(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Brackets ``{x_i, x_j}`` of the state, shape ``(n, n, *batch)``; arguments as in `rhs`.
-
-        Of a constrained motion the velocities stand for their momenta, ``Omega_momentum``: with
-        those and the positions as coordinates, the motion is this matrix times the gradient of the
-        energy, which is the velocities and minus the slopes of the constrained Lagrangian. It is
-        antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.
-        """
-        return self.evaluate("poisson_tensor", state, parameters, target, out)
-
-    def constraint_residual(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Left minus right sides of the constraints, ``(c, *batch)``; arguments as in `rhs`.
-
-        Rows follow the declared constraints. What a constraint gives a velocity is put in, so
-        that its rows are 0; those of other constraints stay at the level of rounding along a
-        trajectory that `simulate` follows.
-        """
-        return self.evaluate("constraint_residual", state, parameters, target, out)
-
-    def projection(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """The nearest state on the constraints, shape ``(n, *batch)``; arguments as in `rhs`.
-
-        Positions stay. Velocities change by the d of least kinetic energy ``d . M d / 2`` with
-        which all constraints hold to rounding. Only systems have it that keep a constraint,
-        one that gives no velocity outright.
-        """
-        return self.evaluate("projection", state, parameters, target, out)
-
-    def domain(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """What is positive where the system is defined, ``(d, *batch)``; arguments as in `rhs`.
-
-        Rows are those of ``DOMAIN``: of a declared condition the side that is to be larger minus
-        the other; of a constrained motion also the pivots of the solve for its accelerations. A row
-        that is not ``strict`` may be zero. Where one is violated, the other functions give what
-        arithmetic gives, infinities and NaN among it; `simulate` stops there.
-        """
-        return self.evaluate("domain", state, parameters, target, out)
-
-    def reconstruction(
-        self,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Rates of what is reconstructed, one row for each component of ``RECONSTRUCTED``.
-
-        Arguments as in `rhs`, but that the state is followed by the rows of ``RECONSTRUCTED``:
-        ``(n + k, *batch)``, or a mapping that names them all.
-        """
-        return self.evaluate("reconstruction", state, parameters, target, out)
-
-    def inputs(self, function: str) -> Quantities:
+    def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
         if function != "reconstruction":
             return self.STATE
         return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
 
+    @by_name
     def evaluate(
         self,
         function: str,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        state: Values,
+        parameters: Values | None = None,
+        inputs: Values | None = None,
+        *,
+        time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
         """One of the ``functions`` by name; arguments as in `rhs`."""
+        return self._evaluate(function, target, state, parameters, inputs, time, out)
+
+    def _evaluate(self, function: str, target: Target, *given: Any) -> Array:
+        """A function at the state, parameters, inputs, time and result of a `Call`."""
         from coadjoint.solve.arrays import Call
 
-        call = Call(self, function, state, parameters, out)
+        *arrays, time, out = given
+        call = Call(self, function, *arrays, time=time, out=out)
         self._kernels.run(function, call, target)
         return call.result
 
+    @by_name
     def bind(
         self,
         function: str,
         state: Array,
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        parameters: Values | None = None,
+        inputs: Values | None = None,
+        *,
         out: Array | None = None,
+        time: ArrayLike | None = None,
         target: Target = "c",
     ) -> Callable[[], None]:
         """A call without arguments that evaluates ``state`` as it then is into ``out``.
@@ -250,15 +138,17 @@ class System:
             state: A float64, C-contiguous array, read at each call.
             parameters: As in `rhs`. A packed float64 array is read at each call, as the state is;
                 anything else is copied now. Signs are checked now.
+            inputs: As in `rhs`, and read as parameters are.
             out: As in `rhs`, and not optional: it is where the results appear.
+            time: As in `rhs`; an array of float64, also one without axes, is read at each call.
             target: As in `rhs`.
         """
         from coadjoint.solve.arrays import Call
 
-        call = Call(self, function, state, parameters, out, bound=True)
+        call = Call(self, function, state, parameters, inputs, time=time, out=out, bound=True)
         return self._kernels.bind(function, call, target)
 
-    def pack(self, parameters: ArrayLike | Mapping[str, ArrayLike] | None = None) -> Array:
+    def pack(self, parameters: Values | None = None) -> Array:
         """Parameters as one array ``(k,)`` or ``(k, *batch)``, defaults filled in."""
         from coadjoint.solve.arrays import pack_parameters
 
@@ -266,9 +156,10 @@ class System:
 
     def simulate(
         self,
-        state: ArrayLike | Mapping[str, ArrayLike],
+        state: Values,
         t: ArrayLike,
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        parameters: Values | None = None,
+        inputs: Any = None,
         *,
         method: str = "auto",
         rtol: float = 1e-10,
@@ -284,6 +175,11 @@ class System:
             state: Initial state, ``(n,)`` or by name.
             t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
             parameters: As in `rhs`, shared.
+            inputs: Constants, ``(m,)`` or by name; samples over time as ``(times, values,
+                "previous")``, each of which holds until the next one, or ``(times, values,
+                "linear")``, with values ``(m, T)`` or by name, over the whole of the run; or a
+                function of time that returns ``(m,)`` or values by name. No step crosses a jump
+                of samples. None for the defaults.
             method: A method of `scipy.integrate`; ``"auto"`` is ``"DOP853"``, order 8. Where
                 constraints are kept, one-step methods go on from the `projection` of each step;
                 BDF and LSODA remember steps and are left alone.
@@ -316,6 +212,7 @@ class System:
             state,
             t,
             parameters,
+            inputs=inputs,
             method=method,
             rtol=rtol,
             atol=atol,
@@ -384,8 +281,11 @@ class System:
         return dict(self.certificate.get("docs", {}))
 
     def __repr__(self) -> str:
-        state, parameters = ", ".join(self.STATE.components), ", ".join(self.PARAMETERS.components)
-        return f"<System {self.name}: state {state}; parameters {parameters or 'none'}>"
+        tables = {"state": self.STATE, "parameters": self.PARAMETERS}
+        driving = {"inputs": self.INPUTS, "time": self.TIME}
+        tables |= {name: quantities for name, quantities in driving.items() if quantities}
+        told = (f"{name} {', '.join(q.components) or 'none'}" for name, q in tables.items())
+        return f"<System {self.name}: {'; '.join(told)}>"
 
 
 def load_folder(folder: Path) -> System:

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.expressions import read_expression
-from coadjoint.spec.faults import ExpressionError
-from coadjoint.spec.model import Parameter, Shape, unpacked
+from coadjoint.spec.faults import ExpressionError, fault_at
+from coadjoint.spec.formulas import ROLES
+from coadjoint.spec.model import Input, Parameter, Shape, Time, unpacked
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.shapes import shape_of
 from coadjoint.spec.sizes import check_size
@@ -43,9 +44,15 @@ class Scalars:
 
     Args:
         parameters: All of the spec, with names that differ.
+        driving: Inputs and time, which no constant may name.
     """
 
-    def __init__(self, parameters: Sequence[Parameter] = ()) -> None:
+    def __init__(
+        self, parameters: Sequence[Parameter] = (), driving: Sequence[Input | Time] = ()
+    ) -> None:
+        self._driving = {
+            name: each.role for each in driving for name in (each.name, *each.components)
+        }
         self.shapes: dict[str, Shape] = {}
         self._components: dict[tuple[str, tuple[int, ...]], tuple[str, int]] = {}  # with signs
         self._positive: list[str] = []
@@ -65,6 +72,21 @@ class Scalars:
         if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
             return Fraction(0) if component else None
         return sign * self._field[component]
+
+    def check_names(self, tree: Node) -> None:
+        """Refuse what is no constant of the system.
+
+        Raises:
+            ExpressionError: An input or the time is named.
+        """
+        for node in walk(tree):
+            if isinstance(node, Name | Index) and node.name in self._driving:
+                raise fault_at(
+                    node,
+                    f"{node.name!r} is {ROLES[self._driving[node.name]]}",
+                    found=node.name,
+                    expected="constants of the algebra in terms of numbers and parameters",
+                )
 
     def check_terms(self, tree: Node, terms: int) -> None:
         """Count the terms of a coefficient with parameters: elimination among many takes for ever.
@@ -147,6 +169,7 @@ class _Reading:
     def read(self, text: str) -> _Linear:
         """The coefficients of the vectors, or of 1 where the basis is empty."""
         tree = read_expression(text)
+        self.scalars.check_names(tree)
         scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
         shape_of(tree, scope)
         self.scalars.check_terms(tree, check_size(tree, scope))

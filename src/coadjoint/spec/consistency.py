@@ -16,6 +16,7 @@ from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
 from coadjoint.spec.faults import listed
 from coadjoint.spec.model import (
     Constraint,
+    Input,
     Observable,
     Parameter,
     Reconstructed,
@@ -23,6 +24,7 @@ from coadjoint.spec.model import (
     Section,
     SpatialMomentum,
     Symmetry,
+    Time,
     Variable,
     state_of,
 )
@@ -45,6 +47,8 @@ _ROUTED = (
 )
 #: Tables that act on the motion, so that every route must know them.
 _ACTING = ("constraints", "forces", "dissipation", "double_bracket", "metriplectic")
+#: Routes whose matrices neither time nor inputs may change.
+UNDRIVEN = ("lax", "manakov")
 #: What a kind of spec has, in words.
 _KINDS = {
     "algebra": "[algebra]",
@@ -53,6 +57,8 @@ _KINDS = {
     "canonical": "canonical pairs in [poisson]",
     "configuration": "coordinates with velocities or momenta",
 }
+#: The key and the name that time may have, and nothing else: solutions call it so, too.
+TIME: tuple[KeyPath, str] = (("time", "name"), "t")
 #: What is emitted beside the state, or may be named there.
 Emitted = (
     Observable | Symmetry | SpatialMomentum | ReducedMomentum | Section | Constraint | Reconstructed
@@ -64,6 +70,8 @@ _TABLES = {
     Constraint: "constraints",
     Reconstructed: "reconstruction",
 }
+#: What has components that are given from outside.
+Given = Parameter | Input | Time
 #: A declared thing: its key, its name, the names of its components, and the names of its rates.
 _Declared = tuple[KeyPath, str, tuple[str, ...], tuple[str, ...]]
 
@@ -71,7 +79,7 @@ _Declared = tuple[KeyPath, str, tuple[str, ...], tuple[str, ...]]
 def check_names(
     source: Source,
     variables: Sequence[Variable],
-    parameters: Sequence[Parameter],
+    parameters: Sequence[Given],
     observables: Sequence[Emitted] = (),
     others: Mapping[KeyPath, str] = MappingProxyType({}),
 ) -> None:
@@ -80,7 +88,7 @@ def check_names(
     Args:
         source: The text of the spec.
         variables: The variables.
-        parameters: The parameters.
+        parameters: The parameters, the inputs and the time.
         observables: Those whose shape is known, and momentum maps.
         others: Further names at their keys, of things whose components are not known yet.
 
@@ -92,7 +100,7 @@ def check_names(
     declared += [(key, name, (), ()) for key, name in others.items()]
     for key, name, components, rates in declared:
         for derived in dict.fromkeys((name, *components)):
-            refused = refusal(derived)
+            refused = None if (key, derived) == TIME else refusal(derived)
             if refused is not None:
                 problem, expected, hint = refused
                 if derived != name:
@@ -117,15 +125,17 @@ def _why_doubled(key: KeyPath, derived: str) -> str:
 
 def _declared(
     variables: Sequence[Variable],
-    parameters: Sequence[Parameter],
+    parameters: Sequence[Given],
     observables: Sequence[Emitted],
 ) -> Iterable[_Declared]:
     for variable in variables:
         moving = variable in state_of(variables)
         rates = tuple(derived_names(variable.components)) if moving else ()
         yield ("variables", variable.name), variable.name, variable.components, rates
-    for parameter in parameters:
-        yield ("parameters", parameter.name), parameter.name, parameter.components, ()
+    for given in parameters:
+        table: KeyPath = (f"{given.role}s", given.name)
+        at = ("time", "name") if isinstance(given, Time) else table
+        yield at, given.name, given.components, ()
     for entry in observables:
         if isinstance(entry, ReducedMomentum):
             yield ("variables", entry.velocity.name), entry.name, entry.components, ()
@@ -143,9 +153,12 @@ def _declared(
 
 
 def check_sizes(
-    source: Source, variables: Sequence[Variable], parameters: Sequence[Parameter]
+    source: Source,
+    variables: Sequence[Variable],
+    parameters: Sequence[Parameter],
+    inputs: Sequence[Input] = (),
 ) -> None:
-    """The state and the parameters are not too many.
+    """The state, the parameters and the inputs are not too many.
 
     Raises:
         LimitError: More components than the limit.
@@ -154,6 +167,7 @@ def check_sizes(
     for key, quantities, limit, most in (
         ("variables", state, "STATE_COMPONENTS", STATE_COMPONENTS),
         ("parameters", parameters, "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS),
+        ("inputs", inputs, "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS),
     ):
         count = sum(len(quantity.components) for quantity in quantities)
         if count > most:
@@ -258,6 +272,14 @@ def check_routes(source: Source, file: SpecFile) -> None:
             )
         if start.table and getattr(file, start.table) is None:
             raise _missing(source, f"the route {route} has no table [{start.table}]", start.table)
+        if route in UNDRIVEN and (file.inputs or file.time):
+            raise source.fault(
+                ("routes", place),
+                f"the route {route} knows neither inputs nor time",
+                found=route,
+                expected="a Lax pair that is the same at all times",
+                hint=f'Remove "{route}", or make the inputs parameters.',
+            )
         energies = energies_of(route, kinds)
         if energies and not any(getattr(file, each) for each in energies):
             names = [each.title() for each in energies]

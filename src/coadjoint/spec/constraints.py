@@ -21,7 +21,7 @@ from coadjoint.spec.constrained import (
 )
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Formula, Variable
 from coadjoint.spec.names import refusal
 from coadjoint.spec.positions import KeyPath
@@ -110,7 +110,7 @@ class ConstraintReader:
         source: The text of the spec.
         file: Its tables.
         variables: All variables.
-        quantities: Variables, parameters and definitions.
+        quantities: Variables, parameters, inputs, time and definitions.
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class ConstraintReader:
             name: (velocity, sign)
             for velocity, (name, sign) in (solved_velocities(self.file) or {}).items()
         }
-        scope = make_scope("a constraint", self.motion, self.quantities)
+        scope = make_scope("a constraint", self.motion, self.quantities, driven=DRIVING)
         found = []
         for name, text in (self.file.constraints or {}).items():
             key: KeyPath = ("constraints", name)
@@ -155,7 +155,7 @@ class ConstraintReader:
                 Lagrangian, the force has another shape, or the motion is restricted.
         """
         self._check_whole("forces")
-        scope = make_scope("a force", self.motion, self.quantities)
+        scope = make_scope("a force", self.motion, self.quantities, driven=DRIVING)
         return {
             name: self._along(("forces", name), text, scope, self._forced)
             for name, text in self.file.forces.items()
@@ -184,7 +184,7 @@ class ConstraintReader:
             return None
         self._check_whole("dissipation")
         key: KeyPath = ("dissipation", "R")
-        scope = make_scope("a dissipation", self.motion, self.quantities)
+        scope = make_scope("a dissipation", self.motion, self.quantities, driven=DRIVING)
         formula = read_formula(self.source, key, self.file.dissipation.R, scope)
         owners = {part: each.name for each in self.velocities.values() for part in each.components}
         named = {getattr(node, "name", "") for node in walk(formula.tree)}
@@ -219,7 +219,7 @@ class ConstraintReader:
             return None
         self._check_whole(table)
         key: KeyPath = (table, "G")
-        scope = make_scope("a metric", self.motion, self.quantities)
+        scope = make_scope("a metric", self.motion, self.quantities, driven=DRIVING)
         G = read_formula(self.source, key, part.G, scope, any_shape=True)
         size = sum(len(each.components) for each in state_of(self.variables))
         if G.shape not in ((), (size, size)):
@@ -262,7 +262,7 @@ class ConstraintReader:
             SpecError: One is no inequality between scalars, or has a name that none may have.
         """
         reactions = reaction_shapes(constraints)
-        scope = make_scope("a condition", self.motion, self.quantities, reactions)
+        scope = make_scope("a condition", self.motion, self.quantities, reactions, driven=DRIVING)
         found = []
         for name, text in self.file.domain.items():
             key: KeyPath = ("domain", name)

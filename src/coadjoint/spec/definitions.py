@@ -17,7 +17,7 @@ from dataclasses import replace
 from coadjoint import limits
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean
-from coadjoint.spec.model import Definition, Parameter, Shape, Variable
+from coadjoint.spec.model import Definition, Input, Parameter, Shape, Time, Variable
 from coadjoint.spec.names import refusal
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.shapes import shape_of
@@ -40,14 +40,16 @@ def signature(key: str) -> tuple[str, tuple[str, ...]]:
 
 
 def read_definitions(
-    source: Source, texts: Mapping[str, str], quantities: Sequence[Variable | Parameter]
+    source: Source,
+    texts: Mapping[str, str],
+    quantities: Sequence[Variable | Parameter | Input | Time],
 ) -> tuple[Definition, ...]:
     """The definitions in order; each may use those before it.
 
     Args:
         source: The text of the spec.
         texts: The table [definitions]; its names have been found free.
-        quantities: All variables and parameters.
+        quantities: All variables, parameters, inputs and the time.
 
     Raises:
         SpecError: A key or an expression is none, or a name in it is unknown.

@@ -15,8 +15,8 @@ from coadjoint.errors import CoadjointError
 from coadjoint.spec.constrained import Reconstructed, Rolling
 from coadjoint.spec.constrained_schema import ReconstructedPart
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
-from coadjoint.spec.model import Shape, Variable
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.model import Definition, Shape, Variable
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.quantities import Parameter
 from coadjoint.spec.schema import SpecFile
@@ -126,6 +126,7 @@ class FollowedReader:
         tables: dict[str, set[str]] = {
             "variables": set(file.variables),
             "parameters": set(file.parameters),
+            "inputs": set(file.inputs),
             "definitions": {name.split("(")[0].strip() for name in file.definitions},
             "observables": set(file.observables),
             "symmetries": set(file.symmetries),
@@ -133,9 +134,9 @@ class FollowedReader:
             "reconstruction": set(file.reconstruction),
         }
         for each in self.quantities:
-            if isinstance(each, Variable | Parameter):
-                table = "variables" if isinstance(each, Variable) else "parameters"
-                tables[table] |= set(each.components)
+            if not isinstance(each, Definition):
+                table = "variables" if isinstance(each, Variable) else f"{each.role}s"
+                tables.setdefault(table, set()).update(each.components)
         for table, names in tables.items():
             for name in sorted(names & wanted):
                 raise self.source.fault(
@@ -167,7 +168,7 @@ class FollowedReader:
             record = Reconstructed(name, None, part.attitude or "", _shape(part))
             shapes |= dict.fromkeys(record.components, ()) | {name: record.shape}
         roles = tuple(dict.fromkeys(("velocity", *(each.role for each in self.variables))))
-        scope = make_scope("a rate", roles, self.quantities, shapes)
+        scope = make_scope("a rate", roles, self.quantities, shapes, driven=DRIVING)
         return (*first, *(self._reconstructed(name, part, scope) for name, part in parts.items()))
 
     def _units(self) -> dict[str, Unit | None]:

@@ -6,13 +6,13 @@ checked for names, shapes and size. Read next: `coadjoint.spec.consistency`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from coadjoint.spec.definitions import expand, functions
 from coadjoint.spec.expressions import read_expression
 from coadjoint.spec.faults import ExpressionError, did_you_mean, fault_at
-from coadjoint.spec.model import Definition, Formula, Parameter, Shape, Variable
+from coadjoint.spec.model import Definition, Formula, Input, Parameter, Shape, Time, Variable
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.shapes import shape_of, words
 from coadjoint.spec.sizes import check_size
@@ -20,21 +20,27 @@ from coadjoint.spec.source import Source, dotted
 from coadjoint.spec.tree import Index, Name, Node, walk
 
 #: What a spec declares and a formula may use.
-Quantity = Variable | Parameter | Definition
+Quantity = Variable | Parameter | Input | Time | Definition
 #: What the variables of each role are called together.
 PLURALS = {
     "velocity": "velocities",
     "momentum": "momenta",
     "advected": "advected quantities",
     "coordinate": "coordinates",
+    "input": "inputs",
+    "time": "time",
 }
+#: Roles that few kinds of formulas may use: what acts on the motion, or is measured along it.
+DRIVING = ("input", "time")
 #: What each role is called where it is out of place.
-_ROLES = {
+ROLES = {
     "velocity": "a velocity",
     "momentum": "a momentum",
     "advected": "an advected quantity",
     "coordinate": "a coordinate",
     "parameter": "a parameter",
+    "input": "an input",
+    "time": "the time",
 }
 
 
@@ -62,6 +68,8 @@ def make_scope(
     roles: tuple[str, ...],
     quantities: Iterable[Quantity],
     others: Mapping[str, Shape] | Iterable[str] = (),
+    *,
+    driven: Sequence[str] = (),
 ) -> Scope:
     """The scope of a kind of formula.
 
@@ -70,21 +78,27 @@ def make_scope(
         roles: Roles of variables that it may use; parameters it always may.
         quantities: Everything the spec declares.
         others: Further names with their shapes, or of scalars.
+        driven: Which of `DRIVING` it may use.
     """
     shapes = dict(others) if isinstance(others, Mapping) else dict.fromkeys(others, ())
     outside: dict[str, str] = {}
     definitions: dict[str, Definition] = {}
+    present: dict[str, None] = {}
     for quantity in quantities:
         if isinstance(quantity, Definition):
             definitions[quantity.name] = quantity
             continue
-        role = quantity.role if isinstance(quantity, Variable) else "parameter"
-        if role == "parameter" or role in roles:
+        role = quantity.role
+        if role in driven:
+            present[role] = None
+        if role in present or role == "parameter" or role in roles:
             shapes |= dict.fromkeys(quantity.components, ())
             shapes[quantity.name] = quantity.value_shape
         else:
             outside |= dict.fromkeys((quantity.name, *quantity.components), role)
-    takes = " and ".join([", ".join(PLURALS[role] for role in roles), "parameters"])
+    plurals = [PLURALS[role] for role in roles]
+    plurals += ["parameters", *(PLURALS[role] for role in present)]
+    takes = " and ".join(filter(None, [", ".join(plurals[:-1]), plurals[-1]]))
     return Scope(kind, takes, shapes, outside, definitions)
 
 
@@ -128,7 +142,7 @@ def _check_roles(tree: Node, scope: Scope) -> None:
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
             raise fault_at(
                 node,
-                f"{node.name!r} is {_ROLES[scope.outside[node.name]]}",
+                f"{node.name!r} is {ROLES[scope.outside[node.name]]}",
                 found=node.name,
                 expected=f"{scope.kind} in terms of {scope.takes}",
                 hint=did_you_mean(node.name, scope.shapes),

@@ -58,6 +58,7 @@ def read_bracket(
     """
     try:
         tree = read_expression(text)
+        scalars.check_names(tree)
         scope: Mapping[str, Shape] = {**scalars.shapes, **dict.fromkeys(PAIR, (size, size))}
         _check_free(tree, scalars)
         shape = shape_of(tree, scope)

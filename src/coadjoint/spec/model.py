@@ -25,7 +25,7 @@ from coadjoint.spec.constrained import (
     Rolling,
     Section,
 )
-from coadjoint.spec.quantities import Parameter, Variable, state_of
+from coadjoint.spec.quantities import Input, Parameter, Time, Variable, state_of
 from coadjoint.spec.tree import Node, walk
 
 __all__ = [
@@ -36,6 +36,7 @@ __all__ = [
     "Definition",
     "Force",
     "Formula",
+    "Input",
     "Integral",
     "Lax",
     "Observable",
@@ -49,6 +50,7 @@ __all__ = [
     "Shape",
     "Spec",
     "Symmetry",
+    "Time",
     "Transformation",
     "Variable",
     "component_names",
@@ -341,6 +343,8 @@ class Spec:
         sections: Sections of the constraint distribution with their momenta.
         accepted: Keys of the claims for which support by numbers is enough, such as
             ``("claims", "conserved", 0)``; brackets by their places.
+        inputs: What drives the system from outside, in declared order.
+        time: The time, if formulas name it.
     """
 
     name: str
@@ -379,6 +383,8 @@ class Spec:
     reconstruction: tuple[Reconstructed, ...] = ()
     sections: tuple[Section, ...] = ()
     accepted: frozenset[tuple[str | int, ...]] = frozenset()
+    inputs: tuple[Input, ...] = ()
+    time: Time | None = None
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
@@ -392,6 +398,11 @@ class Spec:
         part of the state. Under constraints, those velocities are that no constraint gives.
         """
         return state_of(self.variables)
+
+    @property
+    def driving(self) -> tuple[Input | Time, ...]:
+        """What kernels take after the parameters: the inputs, then the time."""
+        return (*self.inputs, *([] if self.time is None else [self.time]))
 
     @property
     def defined(self) -> tuple[Variable, ...]:

@@ -52,7 +52,8 @@ _C_HEADERS = _words(
 # Arguments, modules and functions of generated code, and the labels of results.
 _OURS = _words(
     """
-    state parameters out count state_stride parameters_stride out_stride np math numpy
+    state parameters inputs out count state_stride parameters_stride inputs_stride time_stride
+    out_stride np math numpy input_jacobian parameter_jacobian
     rhs jacobian energy observables poisson_tensor constraint_residual projection
     reconstruction domain target time t drift
     """

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.model import Force, Formula, Variable, state_of
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.schema import NewtonPart
@@ -48,7 +48,7 @@ def read_newton(
                 hint=did_you_mean(name, coordinates),
                 at=source.positions.key(("newton", name)),
             )
-    scope = make_scope("Newton's law", ("coordinate", "velocity"), quantities)
+    scope = make_scope("Newton's law", ("coordinate", "velocity"), quantities, driven=DRIVING)
     moving = {each.of for each in state_of(variables) if each.role == "velocity"}
     for name in coordinates:
         _check_law(source, name, name in parts, name in moving)

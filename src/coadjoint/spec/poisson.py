@@ -13,7 +13,16 @@ from fractions import Fraction
 
 from coadjoint.spec.faults import did_you_mean, listed
 from coadjoint.spec.formulas import Quantity, make_scope, read_formula
-from coadjoint.spec.model import Definition, Formula, Parameter, Poisson, Variable, unpacked
+from coadjoint.spec.model import (
+    Definition,
+    Formula,
+    Input,
+    Parameter,
+    Poisson,
+    Time,
+    Variable,
+    unpacked,
+)
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.schema import PoissonPart
 from coadjoint.spec.source import Source
@@ -26,7 +35,7 @@ def read_poisson(
     source: Source,
     part: PoissonPart,
     variables: Sequence[Variable],
-    constants: Sequence[Parameter | Definition],
+    constants: Sequence[Parameter | Input | Time | Definition],
 ) -> Poisson:
     """The bracket of a spec.
 
@@ -49,7 +58,7 @@ class _Reading:
         self,
         source: Source,
         variables: Sequence[Variable],
-        constants: Sequence[Parameter | Definition],
+        constants: Sequence[Parameter | Input | Time | Definition],
     ) -> None:
         self.source = source
         self.quantities: tuple[Quantity, ...] = (*variables, *constants)

@@ -1,4 +1,4 @@
-"""Quantities: the variables and parameters of a spec, with shapes and component names.
+"""Quantities: variables, parameters, inputs and time of a spec, with shapes and component names.
 
 Comes in: what `coadjoint.spec.structure` read. Goes out: frozen records, and which variables make
 the state. Read next: `coadjoint.spec.model`.
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import ClassVar
 
 from coadjoint.algebra.lie_algebra import SparseMatrix
 from coadjoint.algebra.representation import Representation
@@ -90,6 +91,8 @@ class Parameter:
         form: ``"antisymmetric"`` or ``"symmetric"`` if it is such a matrix in formulas, else "".
     """
 
+    role: ClassVar[str] = "parameter"
+
     name: str
     shape: Shape
     positive: bool = False
@@ -108,3 +111,61 @@ class Parameter:
         """Shape in formulas: that of the whole matrix where there is a form."""
         size = matrix_size(self.shape[0], self.form) if self.form else None
         return self.shape if size is None else (size, size)
+
+
+@dataclass(frozen=True)
+class Input:
+    """What drives the system from outside: an argument of every kernel, any function of time.
+
+    Attributes:
+        name: As declared, e.g. ``u``.
+        shape: ``()``, ``(n,)`` or ``(n, m)``.
+        default: One exact value per component, row by row; None if the user must give it.
+        unit: Unit text, ``"1"`` if dimensionless.
+        doc: Free text for documents.
+        rate: The input that is its time derivative, or "".
+    """
+
+    role: ClassVar[str] = "input"
+
+    name: str
+    shape: Shape
+    default: tuple[Fraction, ...] | None = None
+    unit: str = "1"
+    doc: str = ""
+    rate: str = ""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, in order."""
+        return component_names(self.name, self.shape)
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas."""
+        return self.shape
+
+
+@dataclass(frozen=True)
+class Time:
+    """The time, where formulas name it: a scalar argument of every kernel.
+
+    Attributes:
+        name: As declared, e.g. ``t``.
+        unit: Unit text.
+        doc: Free text for documents.
+    """
+
+    role: ClassVar[str] = "time"
+    shape: ClassVar[Shape] = ()
+    value_shape: ClassVar[Shape] = ()
+    default: ClassVar[None] = None
+
+    name: str
+    unit: str = "s"
+    doc: str = ""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Its name."""
+        return (self.name,)

@@ -38,13 +38,14 @@ from coadjoint.spec.constraints import ConstraintReader, solved_velocities
 from coadjoint.spec.definitions import defined_names, read_definitions
 from coadjoint.spec.faults import did_you_mean
 from coadjoint.spec.followed import FollowedReader
-from coadjoint.spec.formulas import Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
 from coadjoint.spec.lax import read_lax
 from coadjoint.spec.model import (
     Constraint,
     Definition,
     Force,
     Formula,
+    Input,
     Integral,
     Lax,
     Observable,
@@ -52,6 +53,7 @@ from coadjoint.spec.model import (
     Section,
     Spec,
     Symmetry,
+    Time,
     Variable,
     state_of,
 )
@@ -66,8 +68,9 @@ from coadjoint.spec.schema import (
     SpecFile,
 )
 from coadjoint.spec.source import Source
-from coadjoint.spec.structure import read_parameter, read_variable
+from coadjoint.spec.structure import read_inputs, read_parameter, read_variable
 from coadjoint.spec.symmetries import SymmetryReader, emitted_shapes
+from coadjoint.spec.uses import check_used
 from coadjoint.spec.validate import validate
 
 
@@ -128,36 +131,40 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     parameters = tuple(
         read_parameter(source, parameter, part) for parameter, part in file.parameters.items()
     )
-    check_sizes(source, (), parameters)
-    check_names(source, (), parameters)  # the algebra may depend on them
-    algebra, variables, pair = _read_structure(source, file, name, Scalars(parameters))
+    inputs = read_inputs(source, file.inputs)
+    time = None if file.time is None else Time(file.time.name, file.time.unit, file.time.doc)
+    driving: tuple[Input | Time, ...] = (*inputs, *([] if time is None else [time]))
+    given = (*parameters, *driving)
+    check_sizes(source, (), parameters, inputs)
+    check_names(source, (), given)  # the algebra may depend on them
+    algebra, variables, pair = _read_structure(source, file, name, Scalars(parameters, driving))
     check_sizes(source, variables, parameters)
     defined = defined_names(source, file.definitions)
     named: dict[KeyPath, str] = {("observables", each): each for each in file.observables}
-    check_names(source, variables, parameters, (), defined | named)
-    definitions = read_definitions(source, file.definitions, (*variables, *parameters))
+    check_names(source, variables, given, (), defined | named)
+    definitions = read_definitions(source, file.definitions, (*variables, *given))
     if algebra is not None:
         check_blocks(source, variables, algebra)
     poisson = None
     if file.poisson is not None:
-        constants: list[Parameter | Definition] = [*parameters, *definitions]
+        constants: list[Parameter | Input | Time | Definition] = [*given, *definitions]
         poisson = read_poisson(source, file.poisson, state_of(variables), constants)
     check_routes(source, file)
     check_covered(source, file, variables, algebra)
     check_claims(source, file, variables)
-    quantities: tuple[Quantity, ...] = (*variables, *parameters, *definitions)
+    quantities: tuple[Quantity, ...] = (*variables, *given, *definitions)
     constrained = ConstraintReader(source, file, variables, quantities)
     constraints = constrained.constraints()
     formulas = _Formulas(source, file, variables, quantities)
     observables = formulas.observables(constraints)
     actions = SymmetryReader(source, state_of(variables), formulas.quantities, observables)
-    symmetries = actions.symmetries(file.symmetries, name, Scalars(parameters))
+    symmetries = actions.symmetries(file.symmetries, name, Scalars(parameters, driving))
     sections = constrained.sections()
     follower = FollowedReader(source, file, algebra, variables, quantities)
     rolling = follower.rolling()
     followed = follower.followed(rolling)
     emitted: list[Observable | Symmetry | Section] = [*observables, *symmetries, *sections]
-    check_names(source, variables, parameters, emitted, defined)  # now with their components
+    check_names(source, variables, given, emitted, defined)  # now with their components
     spec = Spec(
         name=name,
         title=file.title,
@@ -194,9 +201,12 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         reconstruction=followed,
         sections=sections,
         accepted=_accepted(file),
+        inputs=inputs,
+        time=time,
     )
     others = [*emitted, *spec.spatial, *spec.reduced_momenta, *constraints, *followed]
-    check_names(source, variables, parameters, others, defined)
+    check_names(source, variables, given, others, defined)
+    check_used(source, spec)
     return spec if file.reduction is None else restricted(source, file.reduction, spec)
 
 
@@ -269,13 +279,15 @@ class _Formulas:
     def lagrangian(self) -> Formula | None:
         if self.file.lagrangian is None:
             return None
-        scope = make_scope("a Lagrangian", ("velocity", *self.fixed), self.quantities)
+        scope = make_scope(
+            "a Lagrangian", ("velocity", *self.fixed), self.quantities, driven=DRIVING
+        )
         return read_formula(self.source, ("lagrangian", "l"), self.file.lagrangian.l, scope)
 
     def hamiltonian(self) -> Formula | None:
         if self.file.hamiltonian is None:
             return None
-        scope = make_scope("a Hamiltonian", self.state, self.quantities)
+        scope = make_scope("a Hamiltonian", self.state, self.quantities, driven=DRIVING)
         return read_formula(self.source, ("hamiltonian", "h"), self.file.hamiltonian.h, scope)
 
     def lax(self) -> Lax | None:
@@ -290,7 +302,7 @@ class _Formulas:
 
     def observables(self, constraints: Sequence[Constraint]) -> tuple[Observable, ...]:
         reactions = reaction_shapes(constraints)
-        scope = make_scope("an observable", self.motion, self.quantities, reactions)
+        scope = make_scope("an observable", self.motion, self.quantities, reactions, driven=DRIVING)
         found = []
         for name, part in self.file.observables.items():
             key: KeyPath = ("observables", name)
@@ -314,7 +326,7 @@ class _Formulas:
         named = emitted_shapes(emitted)
         if self.file.hamiltonian is None and self.file.lagrangian is None:
             del named["energy"]
-        scope = make_scope("an integral", self.motion, self.quantities, named)
+        scope = make_scope("an integral", self.motion, self.quantities, named, driven=DRIVING)
         found = []
         for place, part in enumerate(self.file.claims.conserved):
             key: KeyPath = ("claims", "conserved", place)

@@ -42,11 +42,21 @@ def restricted(source: Source, part: ReductionPart, whole: Spec) -> Spec:
             found=listed(part.section),
             expected="a section over at least one variable",
         )
-    quantities: tuple[Quantity, ...] = (*kept, *whole.parameters, *whole.definitions)
+    quantities: tuple[Quantity, ...] = (
+        *kept,
+        *whole.parameters,
+        *whole.driving,
+        *whole.definitions,
+    )
     section = {
         name: _section(source, name, text, quantities, whole) for name, text in part.section.items()
     }
-    everything: tuple[Quantity, ...] = (*whole.variables, *whole.parameters, *whole.definitions)
+    everything: tuple[Quantity, ...] = (
+        *whole.variables,
+        *whole.parameters,
+        *whole.driving,
+        *whole.definitions,
+    )
     scope = make_scope("a function that vanishes", _roles(whole.variables), everything)
     where = tuple(
         read_formula(source, ("reduction", "where", place), text, scope, any_shape=True)

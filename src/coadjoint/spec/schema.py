@@ -146,6 +146,30 @@ class ParameterPart(Part):
     doc: Prose = Field("", description="what it is, for documents")
 
 
+class InputPart(Part):
+    """What drives the system from outside, as a control or a measured signal."""
+
+    shape: Annotated[list[Length], Field(max_length=2)] = Field(
+        [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix"
+    )
+    default: Numbers | None = Field(
+        None, description="exact default: a number for all components, or nested lists of them"
+    )
+    rate: str | None = Field(
+        None, description="the input that is its time derivative, where the motion needs this"
+    )
+    unit: Unit = Field("1", description="unit, such as 'N m'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+
+class TimePart(Part):
+    """The time, for formulas that name it."""
+
+    name: str = Field("t", description="its name in formulas")
+    unit: Unit = Field("s", description="unit; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+
 class LagrangianPart(Part):
     """The reduced Lagrangian."""
 
@@ -380,6 +404,10 @@ class SpecFile(Part):
     parameters: dict[str, ParameterPart] = Field(
         {}, description="the parameters by name", json_schema_extra=named()
     )
+    inputs: dict[str, InputPart] = Field(
+        {}, description="what drives the system, by name", json_schema_extra=named()
+    )
+    time: TimePart | None = Field(None, description="the time, where formulas name it")
     definitions: dict[str, str] = Field(
         {},
         description="short names for expressions, such as u = 'A*b' and 'V(s, d)' = 's^2 - d'",

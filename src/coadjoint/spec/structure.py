@@ -19,10 +19,10 @@ from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.components import FORMS
 from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.model import Parameter, Shape, Variable, matrix_size
+from coadjoint.spec.model import Input, Parameter, Shape, Variable, matrix_size
 from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.representations import block_places, representation_of
-from coadjoint.spec.schema import ParameterPart, VariablePart
+from coadjoint.spec.schema import InputPart, ParameterPart, VariablePart
 from coadjoint.spec.source import Source
 
 #: Keys that say how large a variable is, and the variables that each is for.
@@ -330,6 +330,45 @@ def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
             expected="positive numbers, since positive = true",
         )
     return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
+
+
+def read_inputs(source: Source, parts: Mapping[str, InputPart]) -> tuple[Input, ...]:
+    """The inputs with one exact default for each component, or none.
+
+    Raises:
+        SpecError: A default does not have the shape, or a rate is no input of the same shape.
+    """
+    found = []
+    for name, part in parts.items():
+        shape = tuple(part.shape)
+        default = read_default(source, ("inputs", name, "default"), part.default, shape)
+        _check_rate(source, name, parts)
+        found.append(Input(name, shape, default, part.unit, part.doc, part.rate or ""))
+    return tuple(found)
+
+
+def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> None:
+    """What is the rate of an input is another one, of its shape."""
+    rate = parts[name].rate
+    alike = [other for other in parts if other != name and parts[other].shape == parts[name].shape]
+    if rate is not None and rate not in alike:
+        raise source.fault(
+            ("inputs", name, "rate"),
+            f"{rate!a} is no other input of the shape of {name!r}",
+            found=rate,
+            expected=f"one of {listed(alike)}" if alike else "another input of its shape",
+            hint=did_you_mean(rate, alike) or "Declare it in [inputs].",
+        )
+    chain = [name]
+    while (following := parts[chain[-1]].rate or "") in parts:
+        if following in chain:
+            raise source.fault(
+                ("inputs", name, "rate"),
+                f"the rates {' -> '.join([*chain, following])} go round in a circle",
+                found=rate,
+                expected="an input whose rates end at one without",
+            )
+        chain.append(following)
 
 
 def read_default(

@@ -17,7 +17,7 @@ from coadjoint.errors import CoadjointError
 from coadjoint.spec.algebras import read_algebra
 from coadjoint.spec.coefficients import Scalars
 from coadjoint.spec.faults import ExpressionError, did_you_mean, fault_at, listed
-from coadjoint.spec.formulas import Quantity, make_scope, read_formula
+from coadjoint.spec.formulas import DRIVING, Quantity, make_scope, read_formula
 from coadjoint.spec.model import (
     ClaimedBracket,
     Formula,
@@ -212,7 +212,7 @@ class SymmetryReader:
     ) -> Formula:
         """A formula of the shape of a variable of the state."""
         shape = self._variable(key, name).value_shape
-        scope = make_scope(kind, self.roles, self.quantities, others)
+        scope = make_scope(kind, self.roles, self.quantities, others, driven=("time",))
         formula = read_formula(self.source, key, text, scope, any_shape=True)
         if formula.shape != shape:
             raise self._misfit(key, formula, f"{words(shape)}, as {name} is")
@@ -223,7 +223,8 @@ class SymmetryReader:
         return self.source.fault(key, f"the value is {found}", found=found, expected=expected)
 
     def _scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
-        scope = make_scope(f"a {key[-1]} of a symmetry", self.roles, self.quantities, shapes)
+        kind = f"a {key[-1]} of a symmetry"
+        scope = make_scope(kind, self.roles, self.quantities, shapes, driven=("time",))
         return self._linear(key, read_formula(self.source, key, text, scope), shapes)
 
     def _linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
@@ -290,7 +291,7 @@ class SymmetryReader:
         return formula
 
     def _any_shape(self, key: KeyPath, text: str, kind: str) -> Formula:
-        scope = make_scope(kind, self.roles, self.quantities, self.named)
+        scope = make_scope(kind, self.roles, self.quantities, self.named, driven=DRIVING)
         return read_formula(self.source, key, text, scope, any_shape=True)
 
     # -- [claims.brackets] --------------------------------------------------------------

@@ -1,0 +1,104 @@
+"""Implicit: derivatives of what the kernel solves for, by the rule for implicit functions.
+
+Where ``A x = k``, the derivative of x solves ``A x' = k' - A' x``, with the factors L and D of A.
+Comes in: a solve, and values with their slopes. Goes out: the unknowns with theirs.
+Read next: `coadjoint.derive.reference`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from operator import add, mul
+from typing import Any
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.sloped import Sloped, negative
+from coadjoint.derive.solver import Solve, factors
+from coadjoint.exact import Element
+
+#: Evaluates an element, with its slopes.
+Evaluate = Callable[[Element], Sloped[Any]]
+
+
+@dataclass(frozen=True)
+class ImplicitSolve:
+    """A solve with its factors.
+
+    Attributes:
+        solve: A, k and the names of x.
+        factors: L below the diagonal, zeros left out, and one over D on it.
+        unknowns: x as symbols.
+        last: The name of the unknown that is defined last.
+    """
+
+    solve: Solve
+    factors: Mapping[tuple[int, int], Element]
+    unknowns: tuple[Element, ...]
+    last: str
+
+    @classmethod
+    def of(cls, equations: Equations, solve: Solve) -> ImplicitSolve:
+        """A solve of a motion."""
+        definitions = dict(equations.exact.definitions)
+        last = [name for name in definitions if name in solve.names][-1]
+        unknowns = equations.setting.elements(solve.names)
+        found = factors(equations.setting.field, solve, definitions)
+        return cls(solve, found, unknowns, last)
+
+    @property
+    def elements(self) -> list[Element]:
+        """Everything that has to be known for it."""
+        rows = [entry for row in self.solve.matrix for entry in row]
+        return [*rows, *self.solve.known, *self.factors.values(), *self.unknowns]
+
+    def solved(self, known: Mapping[str, Sloped[Any]], value: Evaluate) -> dict[str, Sloped[Any]]:
+        """The unknowns with their slopes.
+
+        Args:
+            known: Values by name, those of the unknowns among them.
+            value: Evaluates an element of them.
+        """
+        names = self.solve.names
+        x = [known[name].value for name in names]
+        rows = [self._residual(i, x, value) for i in range(len(names))]
+        weights = {place: value(factor).value for place, factor in self.factors.items()}
+        slopes: list[dict[int, Any]] = [{} for _ in names]
+        for variable in sorted(set().union(*rows)):
+            column = [row.get(variable) for row in rows]
+            for i, slope in enumerate(self._substituted(column, weights)):
+                if slope is not None:
+                    slopes[i][variable] = slope
+        return {name: Sloped(x[i], slopes[i]) for i, name in enumerate(names)}
+
+    def _residual(self, i: int, x: list[Any], value: Evaluate) -> dict[int, Any]:
+        """``(k' - A' x)_i`` by each variable."""
+        found = dict(value(self.solve.known[i]).slopes)
+        for entry, unknown in zip(self.solve.matrix[i], x, strict=True):
+            slopes = value(entry).slopes if entry != 0 else {}
+            for variable, slope in slopes.items():
+                part = negative(mul(slope, unknown))
+                found[variable] = add(found[variable], part) if variable in found else part
+        return found
+
+    def _substituted(self, column: list[Any], weights: Mapping[tuple[int, int], Any]) -> list[Any]:
+        """``A^-1 r`` by L and D; None is zero."""
+        size = range(len(column))
+        y: list[Any] = []
+        for i in size:
+            before = [(weights[i, k], y[k]) for k in size[:i] if (i, k) in weights]
+            y.append(_less(column[i], before))
+        found: list[Any] = [None] * len(column)
+        for i in reversed(size):
+            after = [(weights[k, i], found[k]) for k in size[i + 1 :] if (k, i) in weights]
+            scaled = None if y[i] is None else mul(y[i], weights[i, i])
+            found[i] = _less(scaled, after)
+        return found
+
+
+def _less(start: Any, products: list[tuple[Any, Any]]) -> Any:
+    """A value minus some products; None is zero."""
+    parts = [] if start is None else [start]
+    parts += [negative(mul(a, b)) for a, b in products if b is not None]
+    return reduce(add, parts) if parts else None

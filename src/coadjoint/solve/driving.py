@@ -1,0 +1,264 @@
+"""Driving: the inputs and the time along one trajectory.
+
+Comes in: what `System.simulate` was given: constants, samples over time with their interpolation,
+or a function of time. Goes out: arrays that bound kernels read in place, the values at many times,
+and the times at which the inputs jump, where an integrator has to begin anew. Everything that can
+be is checked before the first step.
+Read next: `coadjoint.solve.simulate`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError, KernelTypeError
+from coadjoint.solve.arrays import as_float64, pack_inputs
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: How samples say what inputs are between them.
+INTERPOLATIONS: Final = ("previous", "linear")
+_FORM = 'samples as (times, values, "previous") or (times, values, "linear")'
+
+
+class Signal:
+    """Inputs as a function of time; this one is constant.
+
+    Args:
+        values: Shape ``(m,)``.
+
+    Attributes:
+        breaks: Where they jump.
+    """
+
+    breaks: Sequence[float] = ()
+
+    def __init__(self, values: Array) -> None:
+        self.values = values
+
+    def enter(self, time: float) -> None:
+        """Begin a stretch between two jumps."""
+
+    def at(self, _: float) -> Array:
+        """The values at one time of the stretch, ``(m,)``."""
+        return self.values
+
+    def over(self, _: Array) -> Array:
+        """The values at many times, ``(m, T)``, or ``(m,)`` if they are constant."""
+        return self.values
+
+
+class Previous(Signal):
+    """Samples, each of which holds until the next one."""
+
+    def __init__(self, times: Array, values: Array) -> None:
+        self.times, self.values, self._place = times, values, 0
+        jumps = (values[:, 1:] != values[:, :-1]).any(axis=0)
+        self.breaks = times[1:][jumps].tolist()
+
+    def enter(self, time: float) -> None:
+        """Hold the sample of this time, also at the end of the stretch, where the next begins."""
+        self._place = int(np.searchsorted(self.times, time, side="right")) - 1
+
+    def at(self, _: float) -> Array:
+        """The sample that is held."""
+        return np.asarray(self.values[:, self._place])
+
+    def over(self, times: Array) -> Array:
+        """The sample before each time."""
+        places = np.searchsorted(self.times, times, side="right") - 1
+        return np.asarray(self.values[:, places])
+
+
+class Linear(Signal):
+    """Samples with straight lines between them."""
+
+    def __init__(self, times: Array, values: Array) -> None:
+        self.times, self.values = times, values
+
+    def at(self, time: float) -> Array:
+        """The values at one time."""
+        return np.array([np.interp(time, self.times, row) for row in self.values])
+
+    over = at  # type: ignore[assignment]  # np.interp takes both
+
+
+class Function(Signal):
+    """Inputs by a function of time, whose values are checked at each call."""
+
+    def __init__(self, system: System, function: Callable[[float], Any]) -> None:
+        self.system, self.function = system, function
+
+    def at(self, time: float) -> Array:
+        """What the function returns.
+
+        Raises:
+            KernelArgumentError: Another shape than ``(m,)``, or no finite number.
+        """
+        where = f"of the function inputs at t = {time:.12g}"
+        values = _packed(self.system, self.function(float(time)), where)
+        return _one(self.system, values, where)
+
+    def over(self, times: Array) -> Array:
+        """What it returns at each time."""
+        return np.column_stack([self.at(time) for time in times.tolist()])
+
+
+class Driving:
+    """The inputs and the time of a System along one trajectory.
+
+    Args:
+        system: The System.
+        given: Constants, samples, or a function of time.
+        start: When the trajectory begins.
+        end: When it ends.
+
+    Attributes:
+        now: Inputs and time as bound kernels read them, by name; as far as the System has them.
+        breaks: Times between start and end at which inputs jump.
+
+    Raises:
+        KernelArgumentError: A name, shape, value or range that cannot be right.
+        KernelTypeError: A type that cannot become float64 without loss.
+    """
+
+    def __init__(self, system: System, given: Any, start: float, end: float) -> None:
+        self.system, self.now = system, dict[str, Any]()
+        self._signal = _signal(system, given, start, end)
+        if self._signal is not None:
+            self.now["inputs"] = np.empty(system.INPUTS.size)
+        if system.TIME:
+            self.now["time"] = np.empty(())
+        jumps = self._signal.breaks if self._signal is not None else ()
+        self.breaks = tuple(float(time) for time in jumps if start < time < end)
+        self.enter(start)
+
+    def enter(self, time: float) -> None:
+        """Begin a stretch between two jumps, with its values at that time."""
+        if self._signal is not None:
+            self._signal.enter(time)
+        self.at(time)
+
+    def at(self, time: float) -> None:
+        """Give `now` the values at a time of this stretch.
+
+        Raises:
+            KernelArgumentError: The function of time returns another shape, or no finite number.
+        """
+        if "time" in self.now:
+            self.now["time"][...] = time
+        if self._signal is not None:
+            self.now["inputs"][:] = self._signal.at(time)
+
+    def over(self, times: Array) -> dict[str, Any]:
+        """Inputs and time for functions at many times; a jump belongs to what follows it."""
+        found: dict[str, Any] = {"time": times} if "time" in self.now else {}
+        return found | ({"inputs": self._signal.over(times)} if self._signal is not None else {})
+
+
+# -- what was given -----------------------------------------------------------------------------
+
+
+def _signal(system: System, given: Any, start: float, end: float) -> Signal | None:
+    """The inputs as a function of time; None where a system has none."""
+    if not system.INPUTS:
+        if given is not None:
+            pack_inputs(system, given)  # which refuses them
+        return None
+    if callable(given):
+        return Function(system, given)
+    if isinstance(given, tuple) and any(np.ndim(part) for part in given):
+        return _sampled(system, given, start, end)
+    return Signal(_one(system, _packed(system, given, ""), ""))
+
+
+def _sampled(system: System, given: tuple[Any, ...], start: float, end: float) -> Signal:
+    """Samples over the whole of a run.
+
+    Raises:
+        KernelArgumentError: The interpolation is not stated, a shape or order is wrong, a value is
+            not finite, or the run begins before the first sample or ends after the last.
+    """
+    kind = given[2] if len(given) == 3 else None
+    if kind not in INTERPOLATIONS:
+        raise KernelArgumentError(
+            f"inputs are a tuple of {len(given)} with the interpolation {kind!r}; expected "
+            f"{_FORM}.",
+            found=str(kind),
+            expected=list(INTERPOLATIONS),
+        )
+    times = as_float64(given[0], "times of inputs")
+    ordered = times.ndim == 1 and times.size > 1 and bool((np.diff(times) > 0).all())
+    if not ordered or not np.isfinite(times).all():
+        raise KernelArgumentError(
+            f"times of inputs are {str(given[0])[:80]}; expected two or more increasing finite "
+            "times.",
+            found=str(given[0])[:80],
+        )
+    values = _packed(system, given[1], " samples")
+    wanted = (system.INPUTS.size, times.size)
+    if values.ndim == 1 and wanted[0] == 1:
+        values = values[np.newaxis]
+    if values.shape != wanted or not np.isfinite(values).all():
+        problem = "are not all finite" if values.shape == wanted else f"have shape {values.shape}"
+        raise KernelArgumentError(
+            f"samples of inputs {problem}; expected finite numbers of shape {wanted}, one column "
+            "for each time.",
+            found=list(values.shape),
+            expected=list(wanted),
+        )
+    if not times[0] <= start <= end <= times[-1]:
+        raise KernelArgumentError(
+            f"inputs are sampled from t = {times[0]:g} to {times[-1]:g}, and the run is from "
+            f"{start:g} to {end:g}; expected samples over all of it, since interpolation beyond "
+            "its range is refused. Add samples, or shorten the run.",
+            found=[float(times[0]), float(times[-1])],
+            expected=[start, end],
+        )
+    return Previous(times, values) if kind == "previous" else Linear(times, values)
+
+
+def _packed(system: System, given: Any, where: str) -> Array:
+    """Inputs as an array, a number for the only one of a system; errors say where."""
+    only = system.INPUTS.size == 1 and given is not None and np.ndim(given) == 0
+    try:
+        return pack_inputs(system, [given] if only and not isinstance(given, dict) else given)
+    except (KernelArgumentError, KernelTypeError) as error:
+        if not where:
+            raise
+        raise type(error)(f"values {where.strip()}: {error}", **error.parts) from error
+
+
+def _one(system: System, values: Array, where: str) -> Array:
+    """One finite value for each component.
+
+    Raises:
+        KernelArgumentError: There are more, or one is not finite.
+    """
+    size = system.INPUTS.size
+    if values.shape != (size,):
+        raise KernelArgumentError(
+            f"simulate follows one trajectory; values {where or 'of inputs'} have the shape "
+            f"{values.shape}, expected ({size},): {', '.join(system.INPUTS.components)}. For "
+            f"values over time, pass {_FORM}.",
+            found=list(values.shape),
+            expected=[size],
+        )
+    if not np.isfinite(values).all():
+        place = int(np.argmin(np.isfinite(values)))
+        name, value = system.INPUTS.components[place], float(values[place])
+        raise KernelArgumentError(
+            " ".join(filter(None, [f"{system.name}: the input {name} is {value}", where]))
+            + "; expected a finite number.",
+            found=str(value),
+            component=name,
+        )
+    return values
