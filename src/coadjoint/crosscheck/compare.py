@@ -141,8 +141,8 @@ class Subject:
 
     @cached_property
     def inside(self) -> Array:
-        """Points of the domain, state and parameters one below the other; perhaps none."""
-        names = (*self._widest.state, *self._widest.parameters)
+        """Points of the domain, each name of the widest function in a row; perhaps none."""
+        names = self._widest.names
         if not isinstance(self.reference, Derived):
             return np.empty((len(names), 0))
         return points_inside(self.reference.equations, names)

@@ -124,7 +124,7 @@ class Points:
         """Points near some others, at distances of six decades.
 
         Args:
-            centres: Shape ``(states + parameters, N)``; NaN for components that may be any.
+            centres: Shape ``(rows, N)``, all that a batch has; NaN for components that may be any.
             seed: Chooses the points.
             count: How many.
         """

@@ -1,6 +1,6 @@
 """Lowering, outputs that are zero everywhere although the kernel would compute them.
 
-Comes in: the Programs ``jacobian`` and ``projection``. Goes out: the places of these outputs. They
+Comes in: Programs of derivatives, and ``projection``. Goes out: the places of these outputs. They
 rest on definitions, and on functions with relations between them, so that an output may vanish only
 once everything is put in. What is not zero at a random point modulo a prime is not zero; of the
 others closed forms decide, exactly.
@@ -29,23 +29,24 @@ def vanishing(function: str, places: Iterable[int], equations: Equations) -> Ite
     """Those of some outputs of a Jacobian or projection whose closed forms are zero."""
     own = equations.projection if function == "projection" else equations
     assert own is not None, "projected only where constraints are kept"
-    field, state, known = own.setting.field, own.setting.state, None
+    field, known = own.setting.field, None
+    variables = own.derivatives.get(function, ())
     for place in places:
         if known is None:
-            known = Decided(field, state)
+            known = Decided(field, own.setting.state)
             for name, value in own.exact.definitions:
                 known.define(name, value)
-        i, j = divmod(place, len(state)) if function == "jacobian" else (place, None)
+        i, j = divmod(place, len(variables)) if variables else (place, None)
         closed = known.closed(own.exact.rates[i])
         if closed is None:
             continue
-        if field.is_zero(closed if j is None else field.derivative(closed, state[j])):
+        if field.is_zero(closed if j is None else field.derivative(closed, variables[j])):
             yield place
 
 
 def _suspects(program: Program) -> list[int]:
     """Places of the outputs that are computed, and zero at a random point modulo a prime."""
-    source, names = random.Random(1), (*program.state, *program.parameters)  # noqa: S311
+    source, names = random.Random(1), program.names  # noqa: S311
     for _ in range(TRIES):
         inputs = {name: Residue(source.randrange(1, PRIME)) for name in names}
         with suppress(ZeroDivisionError):  # a pole, or no square root
