@@ -164,6 +164,11 @@ BY_HAND = {
     # signs; pivots and the entry between them, of shared squares; two known sides with quotients; u
     # and accelerations
     "snakeboard": 3 + 4 + 2 + 6 + 4 + 3 + 5 + 3 + 11 + 12 + 2 + 16,
+    "heavy_top_damped": 3 + 2 * 9 + 12 + 9,  # as heavy_top; friction, and two sums for each axis
+    "bloch": 9 + 2 + 2 + 3,  # a cross product, quotients by T2, (M0 - M3)/T1, sums
+    "lorenz_gyrostat": 2 + 4 + 3,  # sigma (y - x); r x - y - x z; x y - b z
+    "double_bracket_body": 3 + 2 * 9 + 3 + 3,  # velocities, two cross products, alpha, sums
+    "landau_lifshitz_gilbert": 3 + 2 * 9 + 3 + 3,  # K m3 + B3 and its sign; as above
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
 }
 

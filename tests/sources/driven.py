@@ -80,7 +80,14 @@ def gilbert_observables(m: Vector, parameters: Vector) -> dict[str, Any]:
     """The energy as it stands in the bracket, and the square of the length."""
     gamma, alpha, *B, K = parameters
     whole = dot(m, B) + K * m[2] * m[2] / 2
-    return {"energy": -gamma * whole / (1 + alpha**2), "casimir1": dot(m, m)}
+    share = -gamma / (1 + alpha**2)
+    return {
+        "energy": share * whole,
+        "casimir1": dot(m, m),
+        "omega1": share * B[0],
+        "omega2": share * B[1],
+        "omega3": share * (B[2] + K * m[2]),
+    }
 
 
 RATES = {

@@ -16,6 +16,7 @@ from coadjoint.derive import (
     complexification,
     euler_lagrange,
     euler_poincare,
+    external,
     hamel,
     hamilton_pontryagin,
     kaluza_klein,
@@ -35,7 +36,6 @@ from coadjoint.derive import (
     setting,
 )
 from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
-from coadjoint.derive.external import forced
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.spec import Spec
@@ -98,6 +98,7 @@ SYMBOLS: Mapping[str, Callable[[Spec], tuple[str, ...]]] = MappingProxyType(
 def make_setting(spec: Spec) -> Setting:
     """The Setting of a Spec, with the symbols of all its routes: they live in one field."""
     names = [name for route in spec.routes if route in SYMBOLS for name in SYMBOLS[route](spec)]
+    names += external.symbols(spec)
     return setting.make_setting(spec, tuple(dict.fromkeys((*names, *legendre.symbols(spec)))))
 
 
@@ -124,7 +125,7 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
     given = setting or make_setting(spec)
     if spec.reduction is not None:
         return reductions.restricted(given, ROUTES[chosen])
-    return forced(ROUTES[chosen](given))
+    return external.forced(ROUTES[chosen](given))
 
 
 make_callable(__name__, "derive")

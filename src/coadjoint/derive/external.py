@@ -27,6 +27,7 @@ from coadjoint.derive.interpret import entries
 from coadjoint.derive.legendre import Matrix
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
+from coadjoint.spec import Spec
 
 #: What may be added, as LaTeX.
 LATEX = {
@@ -34,6 +35,14 @@ LATEX = {
     "P G P dh": r"P G P\,\partial h",
     "G dS": r"G\,\partial S",
 }
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """Names of the components of ``P dh``, from which a double bracket is computed."""
+    relaxation = spec.relaxation
+    if relaxation is None or relaxation.S is not None:
+        return ()
+    return tuple(f"_v{n + 1}" for n in range(sum(len(each.components) for each in spec.state)))
 
 
 def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Element, ...]:
@@ -68,8 +77,10 @@ def forced(free: Equations) -> Equations:
     setting = free.setting
     if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
         return free
-    forces, relaxed = added_rates(setting), relaxed_rates(free)
-    added = tuple(f + x for f, x in zip(forces, relaxed, strict=True))
+    named = zip(symbols(setting.spec), free.exact.rates, strict=False)
+    shown = [(symbol(name), value) for name, value in named]
+    free, forces = _named(free), added_rates(setting)
+    added = tuple(f + x for f, x in zip(forces, relaxed_rates(free), strict=True))
     rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
     lines = zip(setting.state, added, rates, strict=True)
     moved = [(name, force, whole) for name, force, whole in lines if force != 0]
@@ -80,12 +91,23 @@ def forced(free: Equations) -> Equations:
         f"dx/dt = ... + {' + '.join(text)}",
         rf"\dot x = \dots + {' + '.join(LATEX[each] for each in text)}",
         (
+            *shown,
             *((symbol(f"f_{name}"), force) for name, force, _ in moved),
             *((rate(name), whole) for name, _, whole in moved),
         ),
     )
     exact = replace(free.exact, rates=rates, forces=added)
     return replace(free, exact=exact, steps=(*free.steps, step))
+
+
+def _named(free: Equations) -> Equations:
+    """The motion with names for its rates where a double bracket uses them twice."""
+    names = symbols(free.spec)
+    if not names:
+        return free
+    definitions = (*free.exact.definitions, *zip(names, free.exact.rates, strict=True))
+    rates = free.setting.elements(names)
+    return replace(free, exact=replace(free.exact, definitions=definitions, rates=rates))
 
 
 def added_rates(setting: Setting) -> list[Element]:
