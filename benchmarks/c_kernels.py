@@ -36,7 +36,7 @@ def contest(system: System, hand: Any, repeat: Any) -> dict[str, float]:
         AssertionError: They do not compute the same.
     """
     library = load_library(system.folder, system.name, system.id, "exact", lambda _: None)
-    kernels: dict[str, Any] = {"generated": library.function("rhs"), "by hand": hand}
+    kernels: dict[str, Any] = {"generated": library.symbol("rhs"), "by hand": hand}
     state = np.random.default_rng(0).normal(size=(system.STATE.size, MEMBERS))
     # One result array for both: where an array lies decides how its rows share the cache.
     parameters, out = system.pack(None), np.empty_like(state)

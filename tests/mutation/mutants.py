@@ -387,7 +387,7 @@ MUTANTS = (
     ),
     Mutant(PROVE + "zero.py", "if not min(counts):", "if min(counts):"),
     # symmetries and Lax pairs
-    Mutant(PROVE + "symmetries.py", "if rate == own[n] == 0]", "if rate != own[n] == 0]"),
+    Mutant(PROVE + "symmetries.py", "if rate == 0 and setting", "if rate != 0 and setting"),
     Mutant(PROVE + "symmetries.py", "lie_derivative(motion, X)", "lie_derivative(X, X)"),
     Mutant(
         PROVE + "symmetries.py",

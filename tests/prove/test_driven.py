@@ -190,7 +190,7 @@ def test_a_lagrangian_of_time_beside_constraints():
     """The balance gains minus the explicit part of l, as a third term."""
     found = conserved(ROD, ('"m*(vx^2 + vy^2)/2"', '"m*(vx^2 + vy^2)/2*(1 + t^2) - t*x"'))
     assert found == {
-        "the energy changes by the power of the forces and the work of the moving constraints and "
+        "the energy changes by the power of the forces, the work of the moving constraints and "
         "its explicit dependence on time"
     }
 

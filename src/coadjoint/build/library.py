@@ -79,7 +79,7 @@ class Library:
 
     def function(self, function: str) -> Callable[..., None]:
         """One function of the kernel by its bare name, for plain integers."""
-        self._found(function)
+        self.symbol(function)
 
         def call(*arguments: int) -> None:
             self.bind(function, *arguments)()
@@ -92,14 +92,14 @@ class Library:
         ctypes passes values of its own types as they are; without ``argtypes`` it does not look
         at them again, which saves 60 of 540 nanoseconds a call (docs/decisions/loading.md).
         """
-        found: Any = self._found(function)
+        found: Any = self.symbol(function)
         found.restype = None
         assert len(arguments) >= _LEAST, len(arguments)
         pairs = zip((_SIZE, *_ARRAY * (len(arguments) // 2)), arguments, strict=True)
         return partial(found, *(kind(value) for kind, value in pairs))
 
-    def _found(self, function: str) -> Any:
-        """A function of the object by its bare name.
+    def symbol(self, function: str) -> Any:
+        """A function of the object by its bare name, as ctypes has it.
 
         Raises:
             CompilerError: The object has none.

@@ -355,6 +355,7 @@ def _others(subject: Subject, family: str, count: int) -> Batch:
     return Batch(
         np.concatenate([more.state, near.state], axis=1),
         np.concatenate([more.parameters, near.parameters], axis=1),
+        {name: np.concatenate([a, near.driving[name]], axis=1) for name, a in more.driving.items()},
     )
 
 
