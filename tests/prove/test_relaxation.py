@@ -43,6 +43,22 @@ def test_a_double_bracket_keeps_casimirs_and_loses_energy():
     assert "the energy is conserved" not in found
 
 
+@pytest.mark.parametrize(
+    ("table", "factor", "law"),
+    [
+        ("[inputs]\nu = { default = 0 }", "(1 + u^2)", "grows while the inputs are constant"),
+        ("[time]\nname = 't'", "(1 + t^2)", "its explicit dependence on time"),
+    ],
+)
+def test_a_driven_double_bracket_says_what_may_change_the_energy(table, factor, law):
+    """An input or time in the energy makes it grow; no sentence says that it never does."""
+    kinetic = "dot(Omega, diag(I)*Omega)/2"
+    found = double("a", ("[claims]", f"{table}\n[claims]"), (kinetic, f"{kinetic}*{factor}"))
+    assert set(found.values()) == {Verdict.PROVED}
+    assert any(law in statement for statement in found)
+    assert not any(statement.endswith("never grows") for statement in found)
+
+
 def test_a_metriplectic_bracket_keeps_energy_and_gains_entropy():
     """The mirror image: the energy is kept, and the Casimir S changes."""
     found = metriplectic(PROJECTION)

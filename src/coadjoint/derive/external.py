@@ -1,4 +1,4 @@
-r"""External forces: what acts beside the Lagrangian or the Hamiltonian.
+r"""External forces and dissipation, which neither a Lagrangian nor a Hamiltonian contains.
 
 Principle of Lagrange and d'Alembert (Holm 2011, section 12.2): a force f does work along every
 virtual displacement, so it is added to the rate of the momentum along its velocity; with Rayleigh's
@@ -9,9 +9,10 @@ function R,
 
 Where velocities of coordinates are the state it gives the acceleration :math:`M^{-1} f`. A force
 along a momentum, or along a coordinate of a declared bracket, is added to its rate as it stands.
-Dissipation by a symmetric bracket G beside the Poisson bracket P (Bloch, Krishnaprasad, Marsden and
-Ratiu 1996; Morrison 1986) is :math:`\dot x = P\,\partial h + P G P\,\partial h`, or with an
-entropy S :math:`\dot x = P\,\partial h + G\,\partial S`.
+A symmetric bracket G dissipates as well. With the Poisson bracket P the motion (Bloch,
+Krishnaprasad, Marsden and Ratiu 1996; Morrison 1986) is
+:math:`\dot x = P\,\partial h + P G P\,\partial h`, or with an entropy S
+:math:`\dot x = P\,\partial h + G\,\partial S`.
 Comes in: Equations of a motion by its energy alone. Goes out: Equations with the forces.
 Read next: `coadjoint.derive.frames`, for motions on which constraints act as well.
 """
@@ -70,7 +71,7 @@ def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
 
 
 def forced(free: Equations) -> Equations:
-    """The motion with what the spec declares beside the energy; the same where that is nothing.
+    """Equations of motion with the declared forces and dissipation; unchanged without any.
 
     Routes with constraints, and those with momenta of their own, put the forces in themselves.
     """
@@ -87,7 +88,7 @@ def forced(free: Equations) -> Equations:
     relaxation = setting.spec.relaxation
     text = ["f - dR/dxi"] * setting.spec.is_forced + ([relaxation.added] if relaxation else [])
     step = Step(
-        "What acts beside the energy, added to the rates",
+        "Forces and dissipation, added to the rates",
         f"dx/dt = ... + {' + '.join(text)}",
         rf"\dot x = \dots + {' + '.join(LATEX[each] for each in text)}",
         (

@@ -22,6 +22,7 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.external import added_rates, metric
 from coadjoint.exact import Element
+from coadjoint.prove.driven import changes_by_time, while_constant
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
@@ -52,9 +53,9 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
         if not spec.is_forced:
             law = ("dS/dt = <dS, G dS>: the entropy never falls", "conserved", known.entropy)
             claims.append(law)
-    elif not spec.is_forced:
-        law = ("dh/dt = -<P dh, G P dh>: the energy never grows", "conserved", known.energy)
-        claims.append(law)
+    elif not spec.is_forced and not changes_by_time(first):
+        text = "dh/dt = -<P dh, G P dh>: the energy never grows" + while_constant(first, [energy])
+        claims.append((text, "conserved", known.energy))
     claims.append((f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.added))
     yield from claimed_by(spec, (relaxation.table,), claims, first.setting.field)
 
