@@ -13,8 +13,8 @@ import coadjoint
 from coadjoint.cli import main
 from coadjoint.cli.program import COMMANDS
 from coadjoint.limits import EXAMINED_GENERATORS
+from coadjoint.spec.core.shapes import FUNCTIONS
 from coadjoint.spec.schema import SpecFile
-from coadjoint.spec.shapes import FUNCTIONS
 from tests.conftest import SYSTEMS
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -37,8 +37,8 @@ from coadjoint.prove.energy import keeps_energy
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Formula, Spec, Variable
+from coadjoint.spec.core.units import Unit, parse_unit, product_of, unit_of, unit_text
 from coadjoint.spec.model import Constraint, Reconstructed, Shape, component_names
-from coadjoint.spec.units import Unit, parse_unit, product_of, unit_of, unit_text
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]

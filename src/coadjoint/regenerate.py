@@ -35,8 +35,8 @@ from coadjoint.render.write import (
     write_systems,
 )
 from coadjoint.sandbox import Children, report_progress, run_bounded
-from coadjoint.spec.faults import listed
-from coadjoint.spec.names import system_refusal
+from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.names import system_refusal
 from coadjoint.spec.reader import read_file
 
 #: Called with system, stage, number of stages done, number of stages.

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.derive.constrained import ConstrainedMotion
-from coadjoint.derive.kinematics import rate_name
-from coadjoint.derive.solver import Solve, solution_defects, solve_in_kernel, solver_names
+from coadjoint.derive.mechanics.constrained import ConstrainedMotion
+from coadjoint.derive.mechanics.kinematics import rate_name
+from coadjoint.derive.mechanics.solver import Solve, solution_defects, solve_in_kernel, solver_names
 from coadjoint.exact import Field
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower

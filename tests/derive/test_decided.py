@@ -2,8 +2,8 @@
 
 import pytest
 
-from coadjoint.derive import decided as module
-from coadjoint.derive.decided import Decided
+from coadjoint.derive.mechanics import decided as module
+from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.exact import Field
 
 NAMES = ("x", "y", "a", "m", "_b1", "_b2", "_k1", "_k2", "_d1")

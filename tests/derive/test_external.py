@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import sympy
 
-from coadjoint.derive import derive, external
+from coadjoint.derive import derive
+from coadjoint.derive.mechanics import external
 from coadjoint.errors import DerivationError, SpecError
 from coadjoint.prove import Verdict, prove
 from tests.sources.test_multipliers import written_out

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from coadjoint.derive import make_setting
-from coadjoint.derive.frames import Frame, frame_rates
+from coadjoint.derive.mechanics.frames import Frame, frame_rates
 from tests.constrained import BALL, PARTICLE, SLEIGH
 from tests.specs import spec
 

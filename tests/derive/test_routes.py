@@ -124,7 +124,7 @@ def test_velocities_coupled_beyond_three_are_solved_for_in_the_kernel():
 
 def test_velocities_coupled_beyond_the_limit_are_refused_with_a_way_out(monkeypatch):
     """What the kernel would not solve either asks for a Hamiltonian."""
-    monkeypatch.setattr("coadjoint.derive.legendre.COUPLED_VELOCITIES", 5)
+    monkeypatch.setattr("coadjoint.derive.mechanics.legendre.COUPLED_VELOCITIES", 5)
     with pytest.raises(LimitError, match=r"couples 6 velocities.* 5 \(COUPLED.*lie-poisson"):
         derive(spec(COUPLED))
 

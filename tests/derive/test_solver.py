@@ -7,8 +7,8 @@ import pytest
 
 from coadjoint.crosscheck.oracle import oracle
 from coadjoint.derive import derive, make_setting
+from coadjoint.derive.mechanics.solver import Solve, solution_defects, solve_in_kernel, solver_names
 from coadjoint.derive.reference import Reference
-from coadjoint.derive.solver import Solve, solution_defects, solve_in_kernel, solver_names
 from coadjoint.errors import CrossCheckError, DerivationError, LimitError
 from coadjoint.exact import Field
 from coadjoint.lower.check import check_inverse
@@ -161,7 +161,7 @@ def test_a_degenerate_leading_block_is_refused():
 
 def test_too_many_coupled_velocities_are_refused(monkeypatch):
     """The count, the names and the limit are told."""
-    monkeypatch.setattr("coadjoint.derive.legendre.COUPLED_VELOCITIES", 3)
+    monkeypatch.setattr("coadjoint.derive.mechanics.legendre.COUPLED_VELOCITIES", 3)
     with pytest.raises(LimitError, match=r"couples 4 velocities .*W12.* 3 .COUPLED_VELOCITIES"):
         derive(spec(BODY))
 

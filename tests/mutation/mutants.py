@@ -42,7 +42,7 @@ GROUPS = "src/coadjoint/groups/"
 POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
-DEFINITIONS = "src/coadjoint/spec/definitions.py"
+DEFINITIONS = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 
@@ -440,7 +440,7 @@ MUTANTS = (
         tests=("tests/prove/test_symmetries.py", "-k", "by_the_place"),
     ),
     Mutant(
-        "src/coadjoint/derive/decided.py",
+        "src/coadjoint/derive/mechanics/decided.py",
         "        if closed is None or self.field.reach(closed) & self._first:\n",
         "        if closed is None:\n            return self.field.zero\n        if False:\n",
         tests=("tests/derive/test_decided.py",),

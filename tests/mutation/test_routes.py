@@ -54,7 +54,9 @@ def test_a_mutant_is_killed(mutant, judge, record_property):
 
 def change(old, new, *systems, tests=()):
     """A change of the Euler-Poincare route, judged by all routes of systems, or by tests."""
-    return RouteMutant("", "src/coadjoint/derive/euler_poincare.py", old, new, systems, tests)
+    return RouteMutant(
+        "", "src/coadjoint/derive/routes/euler_poincare.py", old, new, systems, tests
+    )
 
 
 @pytest.mark.parametrize("system", sorted({s for m in ROUTE_MUTANTS for s in m.systems}))

@@ -8,7 +8,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.derive.solver import Solve, solution_defects, solver_names
+from coadjoint.derive.mechanics.solver import Solve, solution_defects, solver_names
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from coadjoint.derive import external
+from coadjoint.derive.mechanics import external
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.prove import Verdict, prove

@@ -7,7 +7,7 @@ section 12.3.3): they put the constraints in before the variation.
 import pytest
 
 from coadjoint.derive import derive
-from coadjoint.derive.almost_poisson import reduced_momenta
+from coadjoint.derive.mechanics.almost_poisson import reduced_momenta
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.equivalence import LegendreMap

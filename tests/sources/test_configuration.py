@@ -10,8 +10,8 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.derive.configuration import mechanics
-from coadjoint.derive.euler_lagrange import christoffel, christoffel_first
+from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.routes.euler_lagrange import christoffel, christoffel_first
 from coadjoint.derive.setting import make_setting
 from coadjoint.prove import Verdict, prove
 from coadjoint.resources import derivations_folder

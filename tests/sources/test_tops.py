@@ -13,7 +13,7 @@ import sympy
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.derive import derive, make_setting
-from coadjoint.derive.nambu import distinguished_function
+from coadjoint.derive.routes.nambu import distinguished_function
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.charts import ChartMap

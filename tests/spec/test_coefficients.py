@@ -8,10 +8,10 @@ import pytest
 
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.limits import PARAMETRIC_TERMS
-from coadjoint.spec.coefficients import Scalars, read_coefficient, read_combination
+from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
+from coadjoint.spec.core.positions import scan
+from coadjoint.spec.core.source import Source
 from coadjoint.spec.model import Parameter
-from coadjoint.spec.positions import scan
-from coadjoint.spec.source import Source
 
 KEY = ("k",)
 BASIS = ("e1", "e2", "e3")

@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.errors import SpecError
-from coadjoint.spec.faults import listed
+from coadjoint.spec.core.faults import listed
 from tests.constrained import BALL, PARTICLE, SLEIGH
 from tests.specs import RIGID_BODY, spec
 

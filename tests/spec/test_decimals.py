@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coadjoint.spec.decimals import read_float, read_number
+from coadjoint.spec.core.decimals import read_float, read_number
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coadjoint import limits
-from coadjoint.spec.expressions import read_expression
-from coadjoint.spec.faults import ExpressionError
-from coadjoint.spec.tree import Binary, Call, Index, Name, Negate, Number, Power, walk, walk_up
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.tree import Binary, Call, Index, Name, Negate, Number, Power, walk, walk_up
 
 VALUES = {"x": Fraction(3), "y": Fraction(-5, 2), "a_b": Fraction(7)}
 

@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.errors import LimitError, SpecError
-from coadjoint.spec.tree import Name
+from coadjoint.spec.core.tree import Name
 from tests.specs import RIGID_BODY, spec
 
 TOP = RIGID_BODY.replace(

@@ -8,14 +8,14 @@ import sys
 
 import pytest
 
-from coadjoint.spec.names import (
+from coadjoint.spec.core.names import (
     NAME,
     better,
     derived_names,
     refusal,
     system_refusal,
 )
-from coadjoint.spec.shapes import FUNCTIONS
+from coadjoint.spec.core.shapes import FUNCTIONS
 
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 needs_compiler = pytest.mark.skipif(not COMPILERS, reason="no gcc and no clang on this machine")

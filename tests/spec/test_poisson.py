@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.errors import SpecError
-from coadjoint.spec.tree import Name
+from coadjoint.spec.core.tree import Name
 from tests.spec.texts import refused
 from tests.specs import RIGID_BODY, spec
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coadjoint.limits import SPEC_NESTING
-from coadjoint.spec.positions import scan
+from coadjoint.spec.core.positions import scan
 
 SAMPLE = '''# a comment with "quotes" and [brackets]
 title = "a \\"b\\" \\u00e9"  # after

@@ -2,9 +2,9 @@
 
 import pytest
 
-from coadjoint.spec.expressions import read_expression
-from coadjoint.spec.faults import ExpressionError
-from coadjoint.spec.shapes import FUNCTIONS, shape_of, words
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.shapes import FUNCTIONS, shape_of, words
 
 SCOPE = {
     "s": (),

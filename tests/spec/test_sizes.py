@@ -6,9 +6,9 @@ from time import process_time
 import pytest
 import sympy
 
-from coadjoint.spec.expressions import read_expression
-from coadjoint.spec.faults import ExpressionError
-from coadjoint.spec.sizes import check_size
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.sizes import check_size
 
 SCOPE = {"x": (), "y": (), "z": (), "I": (3,), "u": (3,), "A": (3, 3), "F": (8, 8)}
 

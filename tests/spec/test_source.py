@@ -3,9 +3,9 @@
 import tomllib
 
 from coadjoint.errors import LimitError, SpecError
-from coadjoint.spec.faults import ExpressionError, did_you_mean, listed
-from coadjoint.spec.positions import scan
-from coadjoint.spec.source import Source, dotted, joined, shown
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, listed
+from coadjoint.spec.core.positions import scan
+from coadjoint.spec.core.source import Source, dotted, joined, shown
 
 TEXT = 'title = "x"\n\n[lagrangian]\n\tl = "dot(Omgea, Omega)/2"  # a comment\n'
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from coadjoint.spec.expressions import read_expression
-from coadjoint.spec.units import parse_unit, unit_of, unit_text
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.units import parse_unit, unit_of, unit_text
 from tests.specs import shipped
 
 UNITS = {"m": "kg", "v": "m/s", "I": "kg m^2", "Omega": "1/s", "x": "m", "odd": "(m)"}

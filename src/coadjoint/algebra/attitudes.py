@@ -3,7 +3,7 @@
 Comes in: an algebra and the side on which its motions multiply. Goes out: the `Representation` by
 which an attitude is advected like anything else: a left-invariant motion ``dg/dt = g xi`` is
 ``dg/dt = -rho(xi) g`` with ``rho(xi) g = -g xi``, a right-invariant one ``dg/dt = xi g`` has
-``rho(xi) g = xi g``. Read next: `coadjoint.derive.reconstruction`.
+``rho(xi) g = xi g``. Read next: `coadjoint.derive.mechanics.reconstruction`.
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ conserved = ["energy"]
 @click.argument("name")
 def command(name: str) -> None:
     """Write NAME.toml, a commented spec to start from."""
-    from coadjoint.spec.names import system_refusal
+    from coadjoint.spec.core.names import system_refusal
 
     name = name.removesuffix(".toml")
     refusal = system_refusal(name)

@@ -8,7 +8,10 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from coadjoint.callable_module import make_callable
-from coadjoint.derive import (
+from coadjoint.derive import reductions, setting
+from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
+from coadjoint.derive.mechanics import external, kinematics, legendre
+from coadjoint.derive.routes import (
     alignment,
     canonical,
     cayley_klein,
@@ -16,13 +19,10 @@ from coadjoint.derive import (
     complexification,
     euler_lagrange,
     euler_poincare,
-    external,
     hamel,
     hamilton_pontryagin,
     kaluza_klein,
-    kinematics,
     lax,
-    legendre,
     lie_poisson,
     manakov,
     matrix_euler_poincare,
@@ -32,10 +32,7 @@ from coadjoint.derive import (
     nonholonomic,
     poincare,
     poisson,
-    reductions,
-    setting,
 )
-from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.spec import Spec

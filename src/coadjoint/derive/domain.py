@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.kinematics import multiplier_name
-from coadjoint.derive.solver import pivot_name
+from coadjoint.derive.mechanics.kinematics import multiplier_name
+from coadjoint.derive.mechanics.solver import pivot_name
 from coadjoint.exact import Condition, Element, Region
 
 

@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING
 import sympy
 from sympy.printing.mathml import mathml
 
+from coadjoint.derive.mechanics.solver import Solve, solver_names
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.solver import Solve, solver_names
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
 if TYPE_CHECKING:
-    from coadjoint.derive.distribution import Distribution
+    from coadjoint.derive.mechanics.distribution import Distribution
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Exact:
     Attributes:
         definitions: Velocities by name, each in terms of the state; rates and observables may use
             these names. In the order in which they can be computed. Names with a leading underscore
-            are intermediates of a solve in the kernel (`coadjoint.derive.solver`).
+            are intermediates of a solve in the kernel (`coadjoint.derive.mechanics.solver`).
         rates: Time derivative of each state component.
         energy: The Hamiltonian, in terms of the state; None for forces without a potential.
         observables: Name and value of each scalar emitted beside the dynamics, energy included.
@@ -307,7 +307,7 @@ class Equations:
     @cached_property
     def followed(self) -> tuple[tuple[str, Element], ...]:
         """What follows from the motion without acting on it: each variable with its rate."""
-        from coadjoint.derive.followed import rates_followed  # which needs distributions
+        from coadjoint.derive.mechanics.followed import rates_followed  # which needs distributions
 
         return rates_followed(self.setting, self.distribution)
 
@@ -327,7 +327,7 @@ class Equations:
     @cached_property
     def projection(self) -> Equations | None:
         """The nearest state on the constraints that are kept, in place of the rates."""
-        from coadjoint.derive.projection import projected  # which makes Equations
+        from coadjoint.derive.mechanics.projection import projected  # which makes Equations
 
         return projected(self)
 

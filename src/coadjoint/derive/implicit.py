@@ -14,8 +14,8 @@ from operator import add, mul
 from typing import Any
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.solver import Solve, factors
 from coadjoint.derive.sloped import Sloped, negative
-from coadjoint.derive.solver import Solve, factors
 from coadjoint.exact import Element
 
 #: Evaluates an element, with its slopes.

@@ -15,7 +15,7 @@ from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.witness import is_nonzero
-from coadjoint.spec import tree
+from coadjoint.spec.core import tree
 
 #: An element, a tuple of elements or a tuple of tuples of elements.
 Quantity = Any

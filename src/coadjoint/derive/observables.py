@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from coadjoint.derive.interpret import Quantity
-from coadjoint.derive.reconstruction import spatial_momentum
+from coadjoint.derive.mechanics.reconstruction import spatial_momentum
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symmetries import momentum_maps
 from coadjoint.exact import Element

@@ -3,7 +3,7 @@ r"""Lax pairs as matrices of elements: what :math:`\dot L = [L, M]` says, power 
 Comes in: a Setting and a pair, declared or found. Goes out: one linear equation in the rates of the
 state for each entry of each power of the spectral parameter, and the rates that solve them. An
 equation too many is not used here; whether all of them hold is a claim of the certificate.
-Read next: `coadjoint.derive.lax` and `coadjoint.derive.manakov`, the routes, and
+Read next: `coadjoint.derive.routes.lax` and `coadjoint.derive.routes.manakov`, the routes, and
 `coadjoint.derive.integrals`.
 """
 
@@ -17,7 +17,7 @@ from coadjoint.derive.interpret import entries
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, Field
-from coadjoint.spec.faults import listed
+from coadjoint.spec.core.faults import listed
 
 Matrix = tuple[tuple[Element, ...], ...]
 

@@ -2,7 +2,7 @@
 
 Comes in: a Spec. Goes out: a `Setting` that ties the declared quantities to the positions of the
 Lie algebra and of the advected spaces. Routes share this and the algebra, never each other's
-results. Read next: `coadjoint.derive.euler_poincare`.
+results. Read next: `coadjoint.derive.routes.euler_poincare`.
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Condition, Element, Field, Region
-from coadjoint.spec import Formula, Spec, tree
-from coadjoint.spec.components import FORMS
-from coadjoint.spec.constrained import Condition as Inequality
+from coadjoint.spec import Formula, Spec
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import FORMS
+from coadjoint.spec.core.shapes import ELEMENTARY
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
-from coadjoint.spec.poisson import pairing_weights
-from coadjoint.spec.shapes import ELEMENTARY
-from coadjoint.spec.uses import formulas
+from coadjoint.spec.sections.constrained import Condition as Inequality
+from coadjoint.spec.sections.poisson import pairing_weights
+from coadjoint.spec.sections.uses import formulas
 
 if TYPE_CHECKING:
     from coadjoint.derive.integrals import Integrals

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra, semidirect_product
-from coadjoint.derive.configuration import mechanics
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import AlgebraError
 from coadjoint.groups.vectors import matmul

@@ -1,7 +1,7 @@
 """Symbols: free names for the variables that a route needs beyond those of a spec.
 
 Comes in: a Spec and the names that a reader would like to see. Goes out: these names, or ones near
-them where the spec has taken some. Read next: `coadjoint.derive.clebsch`.
+them where the spec has taken some. Read next: `coadjoint.derive.routes.clebsch`.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ from coadjoint.groups.vectors import scale
 from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_function, lifted
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
-from coadjoint.spec.components import FORMS
+from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.model import Symmetry, matrix_size, unpacked
 
 #: Components that move, by name.

@@ -3,7 +3,7 @@
 Comes in: a square matrix of elements. Goes out: a rational point of the domain at which every pivot
 excludes zero. Bounds at one point prove that a determinant is not identically zero; no expression
 swells, and no prime or rounding has a say.
-Read next: `coadjoint.derive.legendre`, `coadjoint.prove.equivalence`.
+Read next: `coadjoint.derive.mechanics.legendre`, `coadjoint.prove.equivalence`.
 """
 
 from __future__ import annotations

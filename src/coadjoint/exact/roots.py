@@ -2,7 +2,7 @@
 
 Comes in: elements as derivatives leave them. Goes out: the same with fewer terms. The height of a
 spheroid is ``(a^2*(1 - z^2) + c^2*z^2)/h``, which is h; its slope is over the third power of h.
-Read next: `coadjoint.derive.nonholonomic`, whose forces are such slopes.
+Read next: `coadjoint.derive.routes.nonholonomic`, whose forces are such slopes.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from coadjoint.derive import Equations
-from coadjoint.derive.solver import Solve, factors
+from coadjoint.derive.mechanics.solver import Solve, factors
 from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming

@@ -19,7 +19,7 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.domain import bounds
-from coadjoint.derive.solver import forward_name, scaled_name
+from coadjoint.derive.mechanics.solver import forward_name, scaled_name
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
 from coadjoint.lower.graph import Graph

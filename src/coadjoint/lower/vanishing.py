@@ -4,7 +4,7 @@ Comes in: Programs of derivatives, and ``projection``. Goes out: the places of t
 rest on definitions, and on functions with relations between them, so that an output may vanish only
 once everything is put in. What is not zero at a random point modulo a prime is not zero; of the
 others closed forms decide, exactly.
-Read next: `coadjoint.derive.decided`, which decides the definitions.
+Read next: `coadjoint.derive.mechanics.decided`, which decides the definitions.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from contextlib import suppress
 
 from coadjoint.algebra.linear import PRIME
 from coadjoint.derive import Equations
-from coadjoint.derive.decided import TRIES, Decided, call_modulo
+from coadjoint.derive.mechanics.decided import TRIES, Decided, call_modulo
 from coadjoint.lower.program import ZERO, Program, run
 from coadjoint.poisson.ranks import Residue, residue
 

@@ -1,10 +1,10 @@
 r"""The almost-Poisson bracket of a constrained motion: that it is one, and how far from Poisson.
 
 In momenta :math:`M_k = \langle p, D_k \rangle` along the distribution the motion is
-:math:`J \nabla H` (`coadjoint.derive.almost_poisson`). Whether J satisfies the Jacobi identity is
-a finding: it does if the constraints are integrable, and for rolling bodies it does not. The
-defects are :math:`\{\{a, b\}, c\}` and its cyclic images for a, b, c among momenta and positions;
-derivatives by momenta are those by velocities, through the mass matrix,
+:math:`J \nabla H` (`coadjoint.derive.mechanics.almost_poisson`). Whether J satisfies the Jacobi
+identity is a finding: it does if the constraints are integrable, and for rolling bodies it does
+not. The defects are :math:`\{\{a, b\}, c\}` and its cyclic images for a, b, c among momenta and
+positions; derivatives by momenta are those by velocities, through the mass matrix,
 
 .. math::
     \frac{\partial (M, z)}{\partial (\eta, z)}
@@ -26,12 +26,12 @@ from typing import Any
 import mpmath
 
 from coadjoint.derive import Equations
-from coadjoint.derive.almost_poisson import Tensor, brackets, momenta_along
-from coadjoint.derive.distribution import Row
-from coadjoint.derive.driving import explicit
-from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.external import external_forces
 from coadjoint.derive.interpret import inverse
+from coadjoint.derive.mechanics.almost_poisson import Tensor, brackets, momenta_along
+from coadjoint.derive.mechanics.distribution import Row
+from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.emission import lagrangian_of
+from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.exact import Element
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.jacobi import Triple, schouten_bracket

@@ -23,7 +23,7 @@ from typing import Any
 
 from coadjoint.algebra.linear import nullspace, rank_modulo
 from coadjoint.derive import Equations, Relation
-from coadjoint.derive.driving import explicit
+from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
 from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks

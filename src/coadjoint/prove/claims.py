@@ -18,7 +18,7 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.domain import region
 from coadjoint.derive.interpret import Quantity
-from coadjoint.derive.reconstruction import fixed_row
+from coadjoint.derive.mechanics.reconstruction import fixed_row
 from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.derive.symmetries import in_formulas

@@ -17,13 +17,13 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.constrained import section_components
-from coadjoint.derive.distribution import Distribution, Row
-from coadjoint.derive.driving import explicit
 from coadjoint.derive.interpret import determinant
-from coadjoint.derive.kinematics import kept_rows, rate_name
-from coadjoint.derive.legendre import LARGEST_BLOCK
-from coadjoint.derive.solver import Solve, solution_defects
+from coadjoint.derive.mechanics.constrained import section_components
+from coadjoint.derive.mechanics.distribution import Distribution, Row
+from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
+from coadjoint.derive.mechanics.legendre import LARGEST_BLOCK
+from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.ranks import generic_rank, source_of_ranks

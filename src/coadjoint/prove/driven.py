@@ -5,7 +5,7 @@ that is :math:`dh/dt = \partial h/\partial t`; with velocities :math:`dE/dt = -\
 t`, which is the same where both are known, at the same point. An integral that names inputs is one
 while these are constant.
 Comes in: Equations. Goes out: the change of the energy, and what statements say of it.
-Read next: `coadjoint.derive.driving`.
+Read next: `coadjoint.derive.mechanics.driving`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from coadjoint.derive import Equations
-from coadjoint.derive.driving import explicit, names_inputs
+from coadjoint.derive.mechanics.driving import explicit, names_inputs
 from coadjoint.exact import Element
 
 #: What the energy of a motion that depends on time changes by.

@@ -4,7 +4,7 @@ Comes in: Equations by the route canonical of a spec with a Lagrangian. Goes out
 With :math:`p = \partial l / \partial v` the transform of l is :math:`h = p \cdot v - l`. Here it is
 taken back from h alone: :math:`v = \partial h / \partial p` is solved for p, and :math:`p \cdot v -
 h` must be the declared l.
-Read next: `coadjoint.derive.configuration`.
+Read next: `coadjoint.derive.mechanics.configuration`.
 
 Source:
     Holm (2011), Geometric Mechanics II, definition 2.5.1.
@@ -18,7 +18,7 @@ from fractions import Fraction
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.configuration import conjugates
+from coadjoint.derive.mechanics.configuration import conjugates
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 from functools import cached_property
 
 from coadjoint.derive import Equations
-from coadjoint.derive.distribution import Distribution
+from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.exact import Element, Field
 from coadjoint.prove.driven import (
     OWN_CHANGE,

@@ -14,14 +14,14 @@ from functools import cached_property
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import determinant
-from coadjoint.derive.legendre import (
+from coadjoint.derive.mechanics.legendre import (
     LARGEST_BLOCK,
     Matrix,
     coupled_blocks,
     known_side,
     mass_matrix,
 )
-from coadjoint.derive.solver import Solve, solution_defects
+from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field
 from coadjoint.exact.regular import witness_regular
 from coadjoint.exact.signs import sign

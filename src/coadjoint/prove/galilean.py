@@ -19,8 +19,8 @@ from dataclasses import replace
 from functools import partial
 
 from coadjoint.derive import Equations, Setting
-from coadjoint.derive.forces import accelerations
 from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.setting import Declared, whole
 from coadjoint.exact import Element
 from coadjoint.groups.galilean import (

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.derive import Equations
-from coadjoint.derive.driving import explicit
+from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.prove.equivalence import in_velocities, kept_velocities

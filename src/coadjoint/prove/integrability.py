@@ -18,8 +18,8 @@ from functools import cached_property
 from itertools import combinations
 
 from coadjoint.derive import Equations
-from coadjoint.derive.distribution import Distribution, Row
 from coadjoint.derive.interpret import determinant
+from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.exact import Element, Field
 from coadjoint.exact.witness import is_entire, is_nonzero
 from coadjoint.poisson.ranks import independent_rows

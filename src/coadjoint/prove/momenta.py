@@ -11,7 +11,7 @@ Theorem (Bloch, Krishnaprasad, Marsden and Murray 1996, momentum equation; Holm 
 where the reactions do no work. Noether's theorem keeps the momentum of a symmetry only if its
 field is in the distribution; Jellett's integral is such a momentum.
 Comes in: Equations with a distribution and declared sections. Goes out: claims for the certificate.
-Read next: `coadjoint.derive.constrained` on sections.
+Read next: `coadjoint.derive.mechanics.constrained` on sections.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from collections.abc import Iterator
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.constrained import section_momenta, section_vector
-from coadjoint.derive.driving import explicit
-from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.external import external_forces
+from coadjoint.derive.mechanics.constrained import section_momenta, section_vector
+from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.emission import lagrangian_of
+from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.exact import Element, element_text
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import SHOWN

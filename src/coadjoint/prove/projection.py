@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.distribution import Distribution
-from coadjoint.derive.emission import lagrangian_of
-from coadjoint.derive.kinematics import multiplier_name, shift_name
-from coadjoint.derive.solver import solution_defects
+from coadjoint.derive.mechanics.distribution import Distribution
+from coadjoint.derive.mechanics.emission import lagrangian_of
+from coadjoint.derive.mechanics.kinematics import multiplier_name, shift_name
+from coadjoint.derive.mechanics.solver import solution_defects
 from coadjoint.exact import Element
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Decision, Examined, decide_zero

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.external import added_rates, metric
+from coadjoint.derive.mechanics.external import added_rates, metric
 from coadjoint.exact import Element
 from coadjoint.prove.driven import changes_by_time, while_constant
 from coadjoint.prove.equivalence import in_velocities

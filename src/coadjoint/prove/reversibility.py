@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from coadjoint.derive.kinematics import rate_name
+from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.exact import Element
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import finding, first_nonzero, for_parameters

@@ -6,14 +6,14 @@ moves along the plane, so that the body neither leaves it nor sinks in; (iii) th
 :math:`\Gamma \cdot s` of the centre of mass changes as its velocity Y says.
 Comes in: Equations with a distribution. Goes out: claims for the certificate. A wrong profile,
 whose :math:`ds/dt` is not tangent to the plane, is refuted by (ii).
-Read next: `coadjoint.derive.followed`, which rests on (i).
+Read next: `coadjoint.derive.mechanics.followed`, which rests on (i).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from coadjoint.derive.followed import arm
+from coadjoint.derive.mechanics.followed import arm
 from coadjoint.groups.vectors import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Examined, decide_zero

@@ -25,7 +25,7 @@ from functools import cached_property
 from itertools import islice
 
 from coadjoint.algebra.linear import PRIME, echelon_modulo, primes
-from coadjoint.derive.kinematics import kept_rows
+from coadjoint.derive.mechanics.kinematics import kept_rows
 from coadjoint.exact import Element
 from coadjoint.poisson.ranks import Residue, residue
 from coadjoint.prove.constrained import ConstrainedRates

@@ -15,8 +15,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.driving import explicit
 from coadjoint.derive.interpret import Quantity, entries
+from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative

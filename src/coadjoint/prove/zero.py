@@ -34,7 +34,7 @@ from coadjoint.prove.points import (
     real_function,
 )
 from coadjoint.spec import Spec
-from coadjoint.spec.positions import KeyPath
+from coadjoint.spec.core.positions import KeyPath
 
 __all__ = ["DIGITS", "Decision", "Discovery", "decide_zero", "random_points", "real_function"]
 

@@ -27,7 +27,7 @@ from coadjoint.render.ownership import (
     leftovers,
     make_plan,
 )
-from coadjoint.spec.faults import listed
+from coadjoint.spec.core.faults import listed
 
 _AGAIN: Final = "coadjoint regenerate"
 

@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from coadjoint.errors import OutputError
 from coadjoint.files import is_table_of_texts, parsed, read_object, read_present
-from coadjoint.spec.faults import listed
+from coadjoint.spec.core.faults import listed
 
 MANIFEST: Final = "manifest.json"
 LOCK: Final = ".lock"

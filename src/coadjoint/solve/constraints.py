@@ -4,7 +4,7 @@ Comes in: a System whose kernel has a function ``projection``, one set of parame
 Goes out: an error for a start off the constraints; else states on them. An integrator keeps a
 residual to its own accuracy in each step, and without the projection that adds up: the wheels
 of the snakeboard slip by 3e-11 m/s after ten seconds, and by more after a hundred.
-Read next: `coadjoint.derive.projection`.
+Read next: `coadjoint.derive.mechanics.projection`.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """Specs: a TOML file to a checked `Spec`; no SymPy, no NumPy, and nothing of a text is executed.
 
 Read next: `coadjoint.spec.reader`, which has the order of the steps, then
-`coadjoint.spec.expressions`.
+`coadjoint.spec.core.expressions`.
 """
 
-from coadjoint.spec import tree
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.shapes import FUNCTIONS
 from coadjoint.spec.model import (
     Formula,
     Observable,
@@ -18,7 +19,6 @@ from coadjoint.spec.model import (
 )
 from coadjoint.spec.reader import read_spec, read_spec_text
 from coadjoint.spec.schema import json_schema
-from coadjoint.spec.shapes import FUNCTIONS
 
 __all__ = [
     "FUNCTIONS",

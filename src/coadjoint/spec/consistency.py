@@ -13,7 +13,10 @@ from typing import Any
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
-from coadjoint.spec.faults import listed
+from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.names import derived_names, refusal
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.source import Source
 from coadjoint.spec.model import (
     Constraint,
     Input,
@@ -28,11 +31,8 @@ from coadjoint.spec.model import (
     Variable,
     state_of,
 )
-from coadjoint.spec.names import derived_names, refusal
-from coadjoint.spec.positions import KeyPath
 from coadjoint.spec.routes import STARTS, energies_of, is_in_frame, kinds_of
 from coadjoint.spec.schema import SpecFile
-from coadjoint.spec.source import Source
 
 #: How a missing table is written.
 _HOW = {

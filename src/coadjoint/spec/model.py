@@ -15,8 +15,9 @@ from pathlib import Path
 from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
-from coadjoint.spec.components import FORMS, Shape, component_names, matrix_size, unpacked
-from coadjoint.spec.constrained import (
+from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
+from coadjoint.spec.core.tree import Node, walk
+from coadjoint.spec.sections.constrained import (
     Condition,
     Constraint,
     Reconstructed,
@@ -25,8 +26,7 @@ from coadjoint.spec.constrained import (
     Rolling,
     Section,
 )
-from coadjoint.spec.quantities import Input, Parameter, Time, Variable, state_of
-from coadjoint.spec.tree import Node, walk
+from coadjoint.spec.sections.quantities import Input, Parameter, Time, Variable, state_of
 
 __all__ = [
     "FORMS",

@@ -22,8 +22,6 @@ from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.limits import SPEC_BYTES
-from coadjoint.spec.algebras import read_algebra
-from coadjoint.spec.coefficients import Scalars
 from coadjoint.spec.consistency import (
     check_blocks,
     check_claims,
@@ -33,13 +31,12 @@ from coadjoint.spec.consistency import (
     check_sizes,
     check_tables,
 )
-from coadjoint.spec.constrained import reaction_shapes
-from coadjoint.spec.constraints import ConstraintReader, solved_velocities
-from coadjoint.spec.definitions import defined_names, read_definitions
-from coadjoint.spec.faults import did_you_mean
-from coadjoint.spec.followed import FollowedReader
-from coadjoint.spec.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
-from coadjoint.spec.lax import read_lax
+from coadjoint.spec.core.coefficients import Scalars
+from coadjoint.spec.core.faults import did_you_mean
+from coadjoint.spec.core.formulas import DRIVING, Quantity, Scope, make_scope, read_formula
+from coadjoint.spec.core.names import system_refusal
+from coadjoint.spec.core.positions import KeyPath, scan
+from coadjoint.spec.core.source import Source
 from coadjoint.spec.model import (
     Constraint,
     Definition,
@@ -57,20 +54,23 @@ from coadjoint.spec.model import (
     Variable,
     state_of,
 )
-from coadjoint.spec.names import system_refusal
-from coadjoint.spec.newton import read_newton
-from coadjoint.spec.poisson import read_poisson
-from coadjoint.spec.positions import KeyPath, scan
-from coadjoint.spec.reductions import restricted
-from coadjoint.spec.representations import read_representations, representation_of
 from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import (
     SpecFile,
 )
-from coadjoint.spec.source import Source
-from coadjoint.spec.structure import read_inputs, read_parameter, read_variable
-from coadjoint.spec.symmetries import SymmetryReader, emitted_shapes
-from coadjoint.spec.uses import check_used
+from coadjoint.spec.sections.algebras import read_algebra
+from coadjoint.spec.sections.constrained import reaction_shapes
+from coadjoint.spec.sections.constraints import ConstraintReader, solved_velocities
+from coadjoint.spec.sections.definitions import defined_names, read_definitions
+from coadjoint.spec.sections.followed import FollowedReader
+from coadjoint.spec.sections.lax import read_lax
+from coadjoint.spec.sections.newton import read_newton
+from coadjoint.spec.sections.poisson import read_poisson
+from coadjoint.spec.sections.reductions import restricted
+from coadjoint.spec.sections.representations import read_representations, representation_of
+from coadjoint.spec.sections.structure import read_inputs, read_parameter, read_variable
+from coadjoint.spec.sections.symmetries import SymmetryReader, emitted_shapes
+from coadjoint.spec.sections.uses import check_used
 from coadjoint.spec.validate import validate
 
 

@@ -11,24 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
-from coadjoint.spec.algebra_schema import (
-    AlgebraPart,
-    OperandPart,
-    Part,
-    also_flag,
-    also_text,
-    named,
-)
-from coadjoint.spec.constrained_schema import (
-    Accept,
-    DissipationPart,
-    DoubleBracketPart,
-    MetriplecticPart,
-    ReconstructedPart,
-    RollingPart,
-    SectionPart,
-)
-from coadjoint.spec.values import (
+from coadjoint.spec.core.values import (
     DEFINITION_PATTERN,
     POISSON_PATTERN,
     Block,
@@ -41,6 +24,23 @@ from coadjoint.spec.values import (
     Title,
     Unit,
     is_unique,
+)
+from coadjoint.spec.sections.algebra_schema import (
+    AlgebraPart,
+    OperandPart,
+    Part,
+    also_flag,
+    also_text,
+    named,
+)
+from coadjoint.spec.sections.constrained_schema import (
+    Accept,
+    DissipationPart,
+    DoubleBracketPart,
+    MetriplecticPart,
+    ReconstructedPart,
+    RollingPart,
+    SectionPart,
 )
 
 

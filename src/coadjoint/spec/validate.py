@@ -1,7 +1,7 @@
 """Validate: a TOML text to a `SpecFile`, with every fault of its form at its line.
 
 Comes in: a `Source`. Goes out: the checked tables, or one error that lists all faults.
-Read next: `coadjoint.spec.structure`.
+Read next: `coadjoint.spec.sections.structure`.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from pydantic_core import ErrorDetails
 
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
-from coadjoint.spec.algebra_schema import Part
-from coadjoint.spec.decimals import read_float
-from coadjoint.spec.faults import did_you_mean, listed
-from coadjoint.spec.positions import KeyPath, Span
+from coadjoint.spec.core.decimals import read_float
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.positions import KeyPath, Span
+from coadjoint.spec.core.source import Source, joined, shown
 from coadjoint.spec.schema import SpecFile
-from coadjoint.spec.source import Source, joined, shown
+from coadjoint.spec.sections.algebra_schema import Part
 
 #: Faults that one message shows at the most; each takes three rows of a screen.
 MOST_FAULTS = 6

@@ -1,0 +1,152 @@
+r"""External forces and dissipation, which neither a Lagrangian nor a Hamiltonian contains.
+
+Principle of Lagrange and d'Alembert (Holm 2011, section 12.2): a force f does work along every
+virtual displacement, so it is added to the rate of the momentum along its velocity; with Rayleigh's
+function R,
+
+.. math::
+    \frac{d}{dt} \frac{\partial l}{\partial \xi} = \dots + f - \frac{\partial R}{\partial \xi}.
+
+Where velocities of coordinates are the state it gives the acceleration :math:`M^{-1} f`. A force
+along a momentum, or along a coordinate of a declared bracket, is added to its rate as it stands.
+A symmetric bracket G dissipates as well. With the Poisson bracket P the motion (Bloch,
+Krishnaprasad, Marsden and Ratiu 1996; Morrison 1986) is
+:math:`\dot x = P\,\partial h + P G P\,\partial h`, or with an entropy S
+:math:`\dot x = P\,\partial h + G\,\partial S`.
+Comes in: Equations of a motion by its energy alone. Goes out: Equations with the forces.
+Read next: `coadjoint.derive.mechanics.frames`, for motions on which constraints act as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from coadjoint.derive.equations import Equations, Step, rate, symbol
+from coadjoint.derive.interpret import entries
+from coadjoint.derive.mechanics.configuration import applied, mechanics
+from coadjoint.derive.mechanics.legendre import Matrix
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+#: What may be added, as LaTeX.
+LATEX = {
+    "f - dR/dxi": r"f - \partial R / \partial \xi",
+    "P G P dh": r"P G P\,\partial h",
+    "G dS": r"G\,\partial S",
+}
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """Names of the components of ``P dh``, from which a double bracket is computed."""
+    relaxation = spec.relaxation
+    if relaxation is None or relaxation.S is not None:
+        return ()
+    return tuple(f"_v{n + 1}" for n in range(sum(len(each.components) for each in spec.state)))
+
+
+def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Element, ...]:
+    """The declared force ``f - dR/dxi`` along each velocity."""
+    field, spec = setting.field, setting.spec
+    found = dict.fromkeys(velocities, field.zero) | _declared(setting, "velocity")
+    if spec.dissipation is not None:
+        slopes = field.gradient(setting.formula(spec.dissipation), velocities)
+        found = {name: found[name] - s for name, s in zip(velocities, slopes, strict=True)}
+    return tuple(found[name] for name in velocities)
+
+
+def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
+    """The declared forces along variables of some roles, by component."""
+    return {
+        name: part
+        for variable in setting.spec.variables
+        if variable.name in setting.spec.forces and variable.role in roles
+        for name, part in zip(
+            variable.components,
+            setting.components(setting.spec.forces[variable.name]),
+            strict=True,
+        )
+    }
+
+
+def forced(free: Equations) -> Equations:
+    """Equations of motion with the declared forces and dissipation; unchanged without any.
+
+    Routes with constraints, and those with momenta of their own, put the forces in themselves.
+    """
+    setting = free.setting
+    if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
+        return free
+    named = zip(symbols(setting.spec), free.exact.rates, strict=False)
+    shown = [(symbol(name), value) for name, value in named]
+    free, forces = _named(free), added_rates(setting)
+    added = tuple(f + x for f, x in zip(forces, relaxed_rates(free), strict=True))
+    rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
+    lines = zip(setting.state, added, rates, strict=True)
+    moved = [(name, force, whole) for name, force, whole in lines if force != 0]
+    relaxation = setting.spec.relaxation
+    text = ["f - dR/dxi"] * setting.spec.is_forced + ([relaxation.added] if relaxation else [])
+    step = Step(
+        "Forces and dissipation, added to the rates",
+        f"dx/dt = ... + {' + '.join(text)}",
+        rf"\dot x = \dots + {' + '.join(LATEX[each] for each in text)}",
+        (
+            *shown,
+            *((symbol(f"f_{name}"), force) for name, force, _ in moved),
+            *((rate(name), whole) for name, _, whole in moved),
+        ),
+    )
+    exact = replace(free.exact, rates=rates, forces=added)
+    return replace(free, exact=exact, steps=(*free.steps, step))
+
+
+def _named(free: Equations) -> Equations:
+    """The motion with names for its rates where a double bracket uses them twice."""
+    names = symbols(free.spec)
+    if not names:
+        return free
+    definitions = (*free.exact.definitions, *zip(names, free.exact.rates, strict=True))
+    rates = free.setting.elements(names)
+    return replace(free, exact=replace(free.exact, definitions=definitions, rates=rates))
+
+
+def added_rates(setting: Setting) -> list[Element]:
+    """What the forces add to the rate of each component of the state."""
+    field, velocities = setting.field, setting.velocities
+    found = _declared(setting, "momentum", "coordinate")
+    along = external_forces(setting, velocities)
+    if setting.momenta and velocities:
+        for name, force, weight in zip(setting.momenta, along, setting.weights, strict=True):
+            found[name] = found.get(name, field.zero) + force * weight
+    elif any(along):
+        moved = applied(field, mechanics(setting).inverse_mass, along)
+        found |= zip(velocities, moved, strict=True)
+    return [found.get(name, field.zero) for name in setting.state]
+
+
+def metric(setting: Setting) -> Matrix:
+    """G of the declared double or metriplectic bracket, with a row for each state component."""
+    relaxation, field = setting.spec.relaxation, setting.field
+    assert relaxation is not None, "asked for only beside one"
+    size, value = len(setting.state), setting.value(relaxation.G)
+    if isinstance(value, tuple):
+        return tuple(tuple(field.zero + x for x in entries(row)) for row in value)
+    return tuple(
+        tuple(field.zero + value if i == j else field.zero for j in range(size))
+        for i in range(size)
+    )
+
+
+def relaxed_rates(free: Equations) -> tuple[Element, ...]:
+    """``P G P dh`` with the rates of the free motion for ``P dh``, or ``G dS``."""
+    setting, relaxation = free.setting, free.spec.relaxation
+    field, tensor = setting.field, free.exact.poisson_tensor
+    if relaxation is None:
+        return (field.zero,) * len(setting.state)
+    if relaxation.S is not None:
+        return applied(
+            field, metric(setting), field.gradient(setting.formula(relaxation.S), setting.state)
+        )
+    assert tensor is not None, "the reader asks for a bracket"
+    return applied(field, tensor, applied(field, metric(setting), free.exact.rates))

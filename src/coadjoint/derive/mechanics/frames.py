@@ -1,0 +1,119 @@
+r"""Frames: quasi-velocities, their vector fields and how these commute.
+
+A velocity :math:`\xi = \xi^k X_k` moves positions z, which are advected quantities and coordinates,
+by :math:`\dot z = \xi^k X_k z`. Along an algebra the fields commute as its basis does, with the
+other sign if the system is right invariant; velocities of coordinates are
+:math:`X = \partial/\partial q` and commute with everything. Poincare's equations (Holm 2011,
+appendix D) then hold for both at once,
+
+.. math::
+    \frac{d}{dt} \frac{\partial l}{\partial \xi^k}
+        = \Big\langle \frac{\partial l}{\partial \xi}, [\xi, X_k] \Big\rangle + X_k l.
+
+Comes in: a Setting. Goes out: these fields, brackets and forces.
+Read next: `coadjoint.derive.mechanics.distribution`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+from coadjoint.spec import Variable
+
+#: Components along the velocities of a frame.
+Vector = tuple[Element, ...]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The velocities of a system with their vector fields.
+
+    Attributes:
+        setting: The spec and its field.
+    """
+
+    setting: Setting
+
+    @cached_property
+    def velocities(self) -> tuple[str, ...]:
+        """Names of all velocities: along the algebra, then of coordinates."""
+        setting = self.setting
+        if setting.spec.algebra is None:
+            return setting.velocities
+        partners = (setting.spec.partner("velocity", q.name) for q in self._coordinates)
+        return (*setting.velocities, *(name for v in partners if v for name in v.components))
+
+    @cached_property
+    def positions(self) -> tuple[str, ...]:
+        """Names of what the velocities move."""
+        advected = (name for each in self.setting.advected for name in each.components)
+        return (*advected, *self.setting.positions)
+
+    @property
+    def _coordinates(self) -> tuple[Variable, ...]:
+        return self.setting.spec.having_role("coordinate")
+
+    @cached_property
+    def _own(self) -> int:
+        """How many of the velocities are along the algebra."""
+        return 0 if self.setting.spec.algebra is None else self.setting.algebra.dimension
+
+    def rates(self, vector: Sequence[Element]) -> dict[str, Element]:
+        """``X z`` of every position z, along a vector of the frame."""
+        setting, moved = self.setting, dict[str, Element]()
+        for variable in setting.advected:
+            a = setting.elements(variable.components)
+            acted = setting.actions[variable.name].act(vector[: self._own], a)
+            moved |= {
+                name: setting.field.zero - setting.sign * x
+                for name, x in zip(variable.components, acted, strict=True)
+            }
+        return moved | dict(zip(setting.positions, vector[self._own :], strict=True))
+
+    def along(self, vector: Sequence[Element], function: Element) -> Element:
+        """``X f`` of a function of the positions, along a vector of the frame."""
+        field, moved = self.setting.field, self.rates(vector)
+        slopes = field.gradient(function, self.positions)
+        pairs = zip(slopes, self.positions, strict=True)
+        return field.sum(slope * moved[name] for slope, name in pairs if slope != 0)
+
+    def unit(self, k: int) -> Vector:
+        """The k-th vector of the frame."""
+        field = self.setting.field
+        return tuple(field.one if i == k else field.zero for i in range(len(self.velocities)))
+
+    def structure(self, a: Sequence[Element], b: Sequence[Element]) -> Vector:
+        """``a^i b^j [X_i, X_j]``: the bracket of vectors with constant components."""
+        setting = self.setting
+        zeros = [setting.field.zero] * (len(self.velocities) - self._own)
+        if not self._own:
+            return tuple(zeros)
+        found = setting.algebra.bracket(a[: self._own], b[: self._own])
+        return (*(setting.field.zero + setting.sign * x for x in found), *zeros)
+
+    def bracket(self, a: Sequence[Element], b: Sequence[Element]) -> Vector:
+        """``[a, b]`` of vector fields whose components are functions of the positions."""
+        pairs = zip(a, b, self.structure(a, b), strict=True)
+        return tuple(self.along(a, y) - self.along(b, x) + c for x, y, c in pairs)
+
+    def inertial(self, momenta: Sequence[Element], vector: Sequence[Element]) -> Vector:
+        """``<p, [xi, X_k]>`` for every k."""
+        setting = self.setting
+        zeros = [setting.field.zero] * (len(self.velocities) - self._own)
+        if not self._own:
+            return tuple(zeros)
+        found = setting.algebra.ad_star(vector[: self._own], momenta[: self._own])
+        return (*(setting.field.zero + setting.sign * x for x in found), *zeros)
+
+    def slopes(self, function: Element) -> Vector:
+        """``X_k f`` for every k."""
+        return tuple(self.along(self.unit(k), function) for k in range(len(self.velocities)))
+
+
+def frame_rates(frame: Frame) -> Mapping[str, Element]:
+    """``dz/dt`` of every position in the velocities themselves."""
+    return frame.rates(frame.setting.elements(frame.velocities))

@@ -1,0 +1,214 @@
+"""The Legendre transform of a Lagrangian quadratic in the velocities, exactly.
+
+Comes in: l as an element. Goes out: the momenta dl/dxi, the velocities in terms of the momenta, and
+the energy. Of up to `LARGEST_BLOCK` coupled velocities the inverse is written out; more of them are
+solved for in the kernel, and then keep their names everywhere else.
+Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
+`coadjoint.derive.mechanics.solver`.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from coadjoint.derive.interpret import determinant, inverse
+from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel, solver_names
+from coadjoint.derive.setting import Setting, sampled_setting
+from coadjoint.errors import DerivationError, LimitError
+from coadjoint.exact import Element
+from coadjoint.exact.regular import certain_minors, witness_regular
+from coadjoint.limits import COUPLED_VELOCITIES
+from coadjoint.spec import Spec
+
+#: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.
+LARGEST_BLOCK = 3
+
+Matrix = tuple[tuple[Element, ...], ...]
+
+
+@dataclass(frozen=True)
+class LegendreTransform:
+    """``mu = dl/dxi`` and back.
+
+    Attributes:
+        momenta: ``dl/dxi_i`` along the basis of the algebra, in velocities and advected quantities.
+        velocities: ``xi_i`` along the basis, in momenta and advected quantities; its own symbol
+            where the kernel solves for it.
+        energy: ``<mu, xi> - l`` with mu the symbols of the momenta.
+        definitions: What the kernel computes to solve for velocities, and these; then the other
+            velocities by name.
+        solves: What the kernel solves; see `coadjoint.derive.mechanics.solver`.
+    """
+
+    momenta: tuple[Element, ...]
+    velocities: tuple[Element, ...]
+    energy: Element
+    definitions: tuple[Definition, ...]
+    solves: tuple[Solve, ...]
+
+
+def legendre_transform(setting: Setting, lagrangian: Element) -> LegendreTransform:
+    """Transform l(xi, a), quadratic in xi, block by block of coupled velocities.
+
+    Raises:
+        DerivationError: l is not quadratic in the velocities, or has no invertible transform.
+        LimitError: l couples more velocities than docs/limits.md allows.
+    """
+    field, names = setting.field, setting.velocities
+    momenta = field.gradient(lagrangian, names)
+    mass = mass_matrix(setting, lagrangian)
+    _check_quadratic(setting, mass)
+    known = known_side(setting, momenta)
+    velocities: dict[str, Element] = {}
+    solves: list[Solve] = []
+    for block in coupled_blocks(mass):
+        own = tuple(tuple(mass[i][j] for j in block) for i in block)
+        rest = [known[i] for i in block]
+        if len(block) <= LARGEST_BLOCK:
+            velocities |= _written_out(setting, own, rest, block)
+        else:
+            _check_pivots(setting, own, block)
+            solves.append(Solve(own, rest, block, [names[i] for i in block]))
+    pairs = zip(setting.momenta, names, setting.weights, strict=True)
+    energy = sum((field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs), -lagrangian)
+    solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    written = [(name, velocities[name]) for name in names if name in velocities]
+    return LegendreTransform(
+        momenta,
+        tuple(velocities.get(name, field[name]) for name in names),
+        energy,
+        (*solved, *written),
+        tuple(solves),
+    )
+
+
+def mass_matrix(setting: Setting, lagrangian: Element) -> Matrix:
+    """The second derivatives of a Lagrangian by the velocities."""
+    slopes = setting.field.gradient(lagrangian, setting.velocities)
+    return tuple(setting.field.gradient(slope, setting.velocities) for slope in slopes)
+
+
+def known_side(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
+    """``mu - dl/dxi`` at rest: the right side of ``mass * xi = known``."""
+    rest = dict.fromkeys(setting.velocities, setting.field.zero)
+    field, pairs = setting.field, zip(setting.momenta, momenta, setting.weights, strict=True)
+    return [field[mu] * (1 / w) - field.substitute(slope, rest) for mu, slope, w in pairs]
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """Names of the intermediates, if velocities of a spec must be solved for in the kernel.
+
+    Which velocities are coupled shows with random numbers for everything else, before there is a
+    field; unused symbols would slow down every operation in it.
+    """
+    count = sum(len(variable.components) for variable in spec.having_role("velocity"))
+    if spec.lagrangian is None or spec.in_frame or count <= LARGEST_BLOCK:
+        return ()
+    setting = sampled_setting(spec, "velocity", random.Random(1))  # noqa: S311 (no secret)
+    try:
+        lagrangian = setting.formula(spec.lagrangian)
+    except DerivationError:  # the route will say so
+        return ()
+    blocks = coupled_blocks(mass_matrix(setting, lagrangian))
+    coupled = (block for block in blocks if LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES)
+    return tuple(name for block in coupled for name in solver_names(block))
+
+
+def _check_quadratic(setting: Setting, mass: Matrix) -> None:
+    """The second derivatives of l may depend on anything but velocities."""
+    for row, name in zip(mass, setting.velocities, strict=True):
+        for entry in row:
+            found = setting.field.reach(entry) & set(setting.velocities)
+            if found:
+                raise _refusal(
+                    setting,
+                    f"the Lagrangian is not quadratic in the velocities: its second derivative by "
+                    f"{name} depends on {', '.join(sorted(found))}; expected"
+                    " a kinetic energy quadratic in the velocities. Give a [hamiltonian] and the "
+                    "route lie-poisson instead.",
+                    name,
+                )
+
+
+def coupled_blocks(mass: Matrix) -> list[tuple[int, ...]]:
+    """Positions that the mass matrix couples, as its connected blocks."""
+    blocks: list[set[int]] = []
+    for i, row in enumerate(mass):
+        linked = {i} | {j for j, entry in enumerate(row) if entry != 0}
+        meeting = [block for block in blocks if block & linked]
+        blocks = [block for block in blocks if not block & linked]
+        blocks.append(linked.union(*meeting))
+    return sorted(tuple(sorted(block)) for block in blocks)
+
+
+def _written_out(
+    setting: Setting, matrix: Matrix, known: list[Element], block: tuple[int, ...]
+) -> dict[str, Element]:
+    """Velocities of one block from ``mass * xi = known``, by name."""
+    names = [setting.velocities[i] for i in block]
+    if witness_regular(setting.field, matrix) is None:
+        raise _singular(setting, matrix, names)
+    products = (zip(row, known, strict=True) for row in inverse(matrix))
+    values = (sum((m * k for m, k in row), setting.field.zero) for row in products)
+    return dict(zip(names, values, strict=True))
+
+
+def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
+    """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
+    names = [setting.velocities[i] for i in block]
+    if len(block) > COUPLED_VELOCITIES:
+        raise _refusal(
+            setting,
+            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
+            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
+            "that decouple them, or give a [hamiltonian] and the route lie-poisson.",
+            names[0],
+            LimitError,
+        )
+    minors = certain_minors(setting.field, matrix)
+    if minors == len(matrix):
+        return
+    if witness_regular(setting.field, matrix) is None:
+        raise _singular(setting, matrix, names)
+    raise _refusal(
+        setting,
+        f"the kinetic energy of {', '.join(names[: minors + 1])} alone is degenerate, and the "
+        "kernel solves for velocities in the order of the algebra; expected a kinetic energy that "
+        "is positive for each. Give a [hamiltonian] and the route lie-poisson instead.",
+        names[minors],
+    )
+
+
+def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError | LimitError:
+    """What is wrong with a block whose determinant no point shows to be other than 0."""
+    what = f"det d2l/d({', '.join(names)})2"
+    if len(matrix) > LARGEST_BLOCK or setting.field.is_zero(determinant(matrix)):
+        problem = f"the Lagrangian has no invertible Legendre transform: {what} is 0"
+        remedy = "expected every velocity in the kinetic energy. Add the missing kinetic term of "
+        remedy += f"{' and '.join(names)}."
+    else:
+        problem = "the Legendre transform may be invertible nowhere: no point was found at which "
+        problem += f"{what} is certainly not 0"
+        remedy = "expected a kinetic energy that is positive. Write it in simpler functions."
+    return _refusal(setting, f"{problem}; {remedy}", names[0])
+
+
+def _refusal(
+    setting: Setting,
+    message: str,
+    velocity: str,
+    kind: type[DerivationError | LimitError] = DerivationError,
+) -> DerivationError | LimitError:
+    """An error that points at the Lagrangian."""
+    formula = setting.spec.lagrangian
+    assert formula is not None
+    return kind(
+        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
+        path=str(setting.spec.path),
+        line=formula.line,
+        key=formula.key,
+        found=formula.text,
+        velocity=velocity,
+    )

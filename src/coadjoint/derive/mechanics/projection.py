@@ -1,0 +1,82 @@
+r"""Projection: a state moved back onto the constraints that are kept.
+
+A motion keeps a residual :math:`R = A\eta - b` as well as the integrator does, and no better: what
+it loses in each step stays. The nearest state that satisfies the constraints has the same positions
+and velocities :math:`\eta + d`, with the least kinetic energy of the change d,
+
+.. math::
+    \min_d \tfrac12 d^T M d, \quad A(\eta + d) = b
+    \qquad\Longrightarrow\qquad
+    \begin{pmatrix} M & A^T \\ A & 0 \end{pmatrix} \begin{pmatrix} d \\ u \end{pmatrix}
+        = \begin{pmatrix} 0 \\ -R \end{pmatrix},
+
+the matrix of the accelerations, so that :math:`L D L^T` is shared with them. It is one step, since
+R is affine in the velocities.
+Comes in: Equations with constraints that are kept. Goes out: Equations whose rates are that state.
+Read next: `coadjoint.prove.projection`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from coadjoint.derive.equations import Equations, Exact
+from coadjoint.derive.mechanics.decided import Decided
+from coadjoint.derive.mechanics.kinematics import (
+    Kinematics,
+    kept_rows,
+    multiplier_name,
+    rate_name,
+    shift_name,
+)
+from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel
+from coadjoint.exact import Element
+
+
+def projected(equations: Equations) -> Equations | None:
+    """The nearest state on the constraints, in place of the rates; None where none is kept.
+
+    Definitions are those of the equations on which matrix and residuals rest, then the solve.
+    """
+    found = equations.distribution
+    if found is None or not found.kept:
+        return None
+    field, exact = equations.setting.field, equations.exact
+    shifts = {rate_name(v): shift_name(n) for n, v in enumerate(found.independent)}
+    sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(equations))}
+    solves = tuple(
+        Solve(
+            solve.matrix,
+            [sides.get(name, field.zero) for name in solve.names],
+            solve.block,
+            [shifts.get(name, name) for name in solve.names],
+        )
+        for solve in exact.solves
+        if sides.keys() & set(solve.names)  # velocities of other blocks stay
+    )
+    moved = {name for solve in solves for name in solve.names}
+    changes = {
+        v: field[shifts[rate_name(v)]] for v in found.independent if shifts[rate_name(v)] in moved
+    }
+    needed = [e for solve in solves for row in (*solve.matrix, solve.known) for e in row]
+    needed += [residual for _, residual in exact.residuals]
+    definitions = equations.definitions_of(needed)
+    decided = Decided(field, equations.setting.state)
+    for name, value in definitions:
+        decided.define(name, value)
+    definitions += [line for solve in solves for line in solve_in_kernel(field, solve, decided)]
+    state = tuple(field[name] + changes.get(name, field.zero) for name in equations.setting.state)
+    nearest = Exact(tuple(definitions), state, None, (), None, solves, exact.residuals)
+    return replace(equations, exact=nearest, steps=())
+
+
+def _residuals(equations: Equations) -> list[Element]:
+    """What vanishes on the constraints that are kept, in eta, with entries by their names."""
+    found = equations.distribution
+    assert found is not None, "asked for only where constraints are kept"
+    field, motion = equations.setting.field, Kinematics(found)
+    eta = equations.setting.elements(found.independent)
+    return [
+        field.sum([*(motion.named(a) * x for a, x in zip(row, eta, strict=True)), motion.named(b)])
+        for *row, b in kept_rows(found)
+    ]

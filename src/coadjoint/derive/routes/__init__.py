@@ -1,0 +1,5 @@
+"""Routes: one module for each way from a Spec to its equations of motion.
+
+A route has a function ``derive``, from a Setting to Equations, and ``symbols``, from a Spec to the
+names of variables of its own, where it needs any. Read next: `coadjoint.derive`.
+"""

@@ -1,0 +1,102 @@
+r"""The alignment route: Newton's law of one particle in R^3 as a Riccati equation of quaternions.
+
+Theorem (Holm 2011, section 3.1.4, equation 3.1.33): with
+
+.. math:: \alpha = \frac{r\cdot v}{r^2}, \quad \chi = \frac{r\times v}{r^2}, \quad
+          \beta = \frac{r\cdot F}{r^2}, \quad \psi = \frac{r\times F}{r^2},
+
+the velocity is :math:`v = \alpha r + \chi\times r`, and Newton's law :math:`\dot v = F` becomes
+
+.. math:: \dot q + q^2 = [\beta, \psi], \qquad q = [\alpha, \chi], \qquad \chi\cdot r = 0.
+
+The product is that of quaternions. Without the relation :math:`\chi\cdot r = 0` it is false.
+Comes in: a Setting with [newton] of one three-vector. Goes out: Equations in r, alpha and chi.
+Read next: `coadjoint.groups.quaternions`.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.mechanics.configuration import fault
+from coadjoint.derive.mechanics.forces import accelerations
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.symbols import fresh
+from coadjoint.exact import Element
+from coadjoint.groups.quaternions import Quaternion
+from coadjoint.groups.vectors import Vector, add, cross, dot, scale
+from coadjoint.spec import Spec
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """The motion of the alignment quaternion.
+
+    Raises:
+        DerivationError: There is not one particle in three dimensions, or a mass is zero.
+    """
+    setting = setting_of(given)
+    _check_particle(setting)
+    field, r = setting.field, setting.elements(setting.positions)
+    own = symbols(setting.spec)
+    alpha, *chi = setting.elements(own)
+    v = add(scale(alpha, r), cross(chi, r))
+    moved = dict(zip(setting.velocities, v, strict=True))
+    force = tuple(field.substitute(f, moved) for f in accelerations(setting))
+    source = Quaternion(dot(r, force), *cross(r, force)).scaled(1 / dot(r, r))
+    q = Quaternion(alpha, *chi)
+    rates = (*v, *(source - q * q).components)
+    named = dict(zip(setting.positions, r, strict=True)) | moved
+    chart = Chart(
+        (*setting.positions, *own),
+        tuple(named[x] for x in setting.state),
+        "v = alpha r + chi x r",
+        (Relation("chi . r = 0", dot(chi, r)),),
+    )
+    exact = Exact((), rates, None, (), None)
+    return Equations(setting, "alignment", exact, _steps(chart, v, source, rates), chart)
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """``alpha`` and the three components of ``chi``."""
+    return fresh(spec, ("alpha", "chi1", "chi2", "chi3"))
+
+
+def _check_particle(setting: Setting) -> None:
+    """One position in R^3."""
+    laws = setting.spec.newton
+    if len(laws) != 1 or len(setting.positions) != 3 or laws[0].force.shape != (3,):
+        coordinates = ", ".join(setting.positions)
+        raise fault(
+            setting,
+            laws[0].force,
+            f"the route alignment is that of one particle in three dimensions, and the coordinates "
+            f"are {coordinates}; expected one coordinate with shape = [3]. Remove the route.",
+            coordinates,
+        )
+
+
+def _steps(
+    chart: Chart, v: Vector, source: Quaternion, rates: tuple[Element, ...]
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    letters = zip(("v1", "v2", "v3"), v, strict=True)
+    forces = zip(("beta", "psi1", "psi2", "psi3"), source.components, strict=True)
+    return (
+        Step(
+            "Velocity by its components along and across r",
+            "v = alpha r + chi x r,  chi . r = 0",
+            r"v = \alpha r + \chi \times r, \quad \chi \cdot r = 0",
+            tuple((symbol(name), value) for name, value in letters),
+        ),
+        Step(
+            "Force along and across r",
+            "beta = r . F/r^2,  psi = r x F/r^2",
+            r"\beta = r \cdot F / r^2, \quad \psi = r \times F / r^2",
+            tuple((symbol(name), value) for name, value in forces),
+        ),
+        Step(
+            "Riccati equation of quaternions",
+            "dr/dt = v,  d[alpha, chi]/dt = [beta, psi] - [alpha, chi]^2",
+            r"\dot r = v, \quad \frac{d}{dt}[\alpha, \chi] = [\beta, \psi] - [\alpha, \chi]^2",
+            tuple(zip(map(rate, chart.variables), rates, strict=True)),
+        ),
+    )

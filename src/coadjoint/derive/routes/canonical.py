@@ -1,0 +1,199 @@
+r"""The canonical route: Hamilton's equations of coordinates and momenta, by partial derivatives.
+
+Theorem (Holm 2011, sections 2.5 and 2.5.1): the Legendre transform :math:`h = p \cdot v - l` of a
+Lagrangian turns its equations into
+
+.. math:: \dot q = \frac{\partial h}{\partial p}, \qquad
+          \dot p = -\frac{\partial h}{\partial q} + B \frac{\partial h}{\partial p},
+
+where B is zero unless the spec declares magnetic terms :math:`\{p_i, p_j\} = B_{ij}(q)` (exercise
+3.1.39). Where the state has velocities and no momenta, the route moves momenta of its own,
+:math:`p = \partial l / \partial v`. An entry of symmetric matrices beside the diagonal is paired
+twice by :math:`\mathrm{tr}(P\,dS/dt)`, so its two equations have a factor 1/2.
+Comes in: a Setting with a Hamiltonian or a Lagrangian. Goes out: Equations.
+Read next: `coadjoint.derive.routes.newton`, which knows no energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.mechanics.configuration import (
+    conjugates,
+    declared_energy,
+    fault,
+    in_state_order,
+    mechanics,
+)
+from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.legendre import legendre_transform
+from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel
+from coadjoint.derive.observables import observables
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.structure import poisson_structure
+from coadjoint.derive.symbols import fresh
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+#: A coordinate, its momentum and their bracket.
+Pair = tuple[str, str, Fraction]
+#: ``{p_i, p_j}`` by names, in both orders.
+Magnetic = Mapping[tuple[str, str], Element]
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Hamilton's equations.
+
+    Raises:
+        DerivationError: The Legendre transform cannot be inverted, or nothing says what the momenta
+            of a declared Hamiltonian are.
+    """
+    setting = setting_of(given)
+    if setting.spec.poisson is None and not setting.momenta:
+        return _in_own_momenta(setting)
+    h, solves = _hamiltonian(setting)
+    field, pairs = setting.field, _pairs(setting)
+    velocities = dict(zip(setting.momenta, setting.velocities, strict=False))
+    slopes = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
+    solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    written = [
+        (velocities[p], slopes[p] * weight)
+        for _, p, weight in pairs
+        if p in velocities and velocities[p] not in dict(solved)
+    ]
+    named = {p: field[v] for p, v in velocities.items()}
+    rates = in_state_order(setting, _hamilton(setting, pairs, slopes, named, _magnetic(setting)))
+    tensor = poisson_structure(setting).tensor
+    exact = Exact((*solved, *written), rates, h, observables(setting, h), tensor, solves)
+    return Equations(setting, "canonical", exact, _steps(setting.state, h, slopes, rates))
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """Momenta of its own, where the state has velocities and no bracket is declared."""
+    if spec.poisson is not None or spec.having_role("momentum"):
+        return ()
+    coordinates = spec.having_role("coordinate")
+    return fresh(spec, [f"p_{name}" for q in coordinates for name in q.components])
+
+
+def _hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
+    """h, declared or by the Legendre transform; what the kernel solves for keeps its name in it."""
+    spec = setting.spec
+    if spec.hamiltonian is None and setting.momenta:
+        assert spec.lagrangian is not None, "the reader asks for a Hamiltonian or a Lagrangian"
+        transform = legendre_transform(setting, setting.formula(spec.lagrangian))
+        velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
+        return setting.field.substitute(transform.energy, velocities), transform.solves
+    energy = declared_energy(setting)
+    assert energy is not None, "the reader asks for a Hamiltonian or a Lagrangian"
+    return energy, ()
+
+
+def _pairs(setting: Setting) -> list[Pair]:
+    """Coordinates with their momenta."""
+    bracket, names = setting.spec.poisson, setting.state
+    if bracket is None:
+        return list(zip(setting.positions, setting.momenta, setting.weights, strict=True))
+    places = zip(bracket.pairs, bracket.weights, strict=True)
+    return [(names[i], names[j], weight) for (i, j), weight in places]
+
+
+def _magnetic(setting: Setting) -> Magnetic:
+    """The declared magnetic terms."""
+    bracket, names = setting.spec.poisson, setting.state
+    found: dict[tuple[str, str], Element] = {}
+    for i, j, formula in bracket.entries if bracket is not None else ():
+        value = setting.formula(formula)
+        found |= {(names[i], names[j]): value, (names[j], names[i]): -value}
+    return found
+
+
+def _hamilton(
+    setting: Setting,
+    pairs: Sequence[Pair],
+    slopes: Mapping[str, Element],
+    velocities: Mapping[str, Element],
+    magnetic: Magnetic,
+) -> dict[str, Element]:
+    """``dq/dt = w h_p`` and ``dp/dt = -w h_q + B h_p``, by name.
+
+    Args:
+        setting: The spec and the field.
+        pairs: q, p and w.
+        slopes: The partial derivatives of h.
+        velocities: Symbols that stand for ``w h_p``, by momentum.
+        magnetic: B.
+    """
+    field = setting.field
+    rates: dict[str, Element] = {}
+    for q, p, weight in pairs:
+        rates[q] = velocities[p] if p in velocities else slopes[p] * weight
+        turning = field.sum(magnetic[p, k] * slopes[k] for _, k, _ in pairs if (p, k) in magnetic)
+        rates[p] = turning - slopes[q] * weight
+    return rates
+
+
+def _in_own_momenta(setting: Setting) -> Equations:
+    """Hamilton's equations of (q, p) with ``p = dl/dv``, mapped to the declared (q, v)."""
+    spec, field, q = setting.spec, setting.field, setting.positions
+    if spec.lagrangian is None:
+        assert spec.hamiltonian is not None, "the reader asks for one of the two"
+        message = (
+            "the route canonical finds no momenta for this Hamiltonian: the state has velocities. "
+            'Declare momenta with role = "momentum", or the bracket, as [poisson] canonical = '
+            '[["q", "v"]].'
+        )
+        raise fault(setting, spec.hamiltonian, message, spec.hamiltonian.text)
+    known, own = mechanics(setting), symbols(spec)
+    p = setting.elements(own)
+    v = conjugates(field, known.lagrangian, setting.velocities, p, known.refusal)
+    solved = dict(zip(setting.velocities, v, strict=True))
+    products = (a * b for a, b in zip(p, v, strict=True))
+    h = field.sum(products) - field.substitute(known.lagrangian, solved)
+    variables = (*q, *own)
+    slopes = dict(zip(variables, field.gradient(h, variables), strict=True))
+    pairs = [(a, b, Fraction(1)) for a, b in zip(q, own, strict=True)]
+    named = _hamilton(setting, pairs, slopes, {}, {})
+    for name, force in zip(own, external_forces(setting, setting.velocities), strict=True):
+        named[name] += field.substitute(force, solved)
+    rates = tuple(named[x] for x in variables)
+    state = tuple(solved.get(x, field[x]) for x in setting.state)
+    exact = Exact((), rates, h, (), None)
+    chart = Chart(variables, state, "p = dl/dv")
+    steps = (
+        Step(
+            "Legendre transform",
+            "v solved from p = dl/dv",
+            r"p = \partial l / \partial v",
+            tuple((symbol(name), value) for name, value in solved.items()),
+        ),
+        *_steps(variables, h, slopes, rates),
+    )
+    return Equations(setting, "canonical", exact, steps, chart)
+
+
+def _steps(
+    names: Sequence[str],
+    h: Element,
+    slopes: Mapping[str, Element],
+    rates: Sequence[Element],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    return (
+        Step("Hamiltonian", "h(q, p)", "h(q, p)", ((symbol("h"), h),)),
+        Step(
+            "Derivatives of the Hamiltonian",
+            "dh/dq, dh/dp",
+            r"\partial h / \partial q, \quad \partial h / \partial p",
+            tuple((partial("h", name), slopes[name]) for name in names),
+        ),
+        Step(
+            "Hamilton's equations",
+            "dq/dt = dh/dp,  dp/dt = -dh/dq + B dh/dp",
+            r"\dot q = \partial h / \partial p, \quad "
+            r"\dot p = -\partial h / \partial q + B\, \partial h / \partial p",
+            tuple(zip(map(rate, names), rates, strict=True)),
+        ),
+    )

@@ -1,0 +1,284 @@
+r"""The Cayley-Klein route: Lagrange's equations for unit quaternions.
+
+Theorem (Holm 2011, sections 4.1 to 4.1.3): the attitude of a body is a quaternion q up to sign, its
+angular velocity :math:`\Omega = 2\,\mathrm{Im}(q^{-1} \dot q)`, and what is fixed in space,
+:math:`a_0`, is seen from it as :math:`a = q^{-1} a_0 q`. Of the Lagrangian
+
+.. math::
+    L(q, \dot q) = l\bigl(2\,\mathrm{Im}(q^{-1} \dot q),\; q^{-1} a_0 q\bigr)
+
+Lagrange's equations :math:`p = \partial L/\partial\dot q`, :math:`\dot p = \partial L/\partial q`
+are taken as they stand. L does not change where q is scaled; with
+:math:`\dot q = q \Omega / 2` the length of q stays what it is. The momentum in the body is
+
+.. math::
+    \Pi = \tfrac12 \mathrm{Im}(q^* p), \qquad
+    \dot\Pi = \tfrac12 \mathrm{Im}(\dot q^* p + q^* \dot p),
+
+and torques come out of :math:`\partial L/\partial q` through a(q). Everything is a product of
+quaternions; no cross product, hat or bracket occurs. A right-invariant system multiplies in the
+other order: :math:`\Omega = 2\,\mathrm{Im}(\dot q q^{-1})`.
+Comes in: a Setting with a Lagrangian on so(3), whose advected quantities are vectors or the unit
+quaternion itself. Goes out: Equations in the Chart (q, Pi, a_0) that covers the rotations twice, or
+in the declared state where that has the quaternion. Read next: `coadjoint.groups.quaternions`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from coadjoint.algebra import algebra_by_name, same_constants
+from coadjoint.algebra.representation import adjoint
+from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.mechanics.emission import emission, lagrangian_of
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.refusals import refusal
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.symbols import fresh
+from coadjoint.exact import Element
+from coadjoint.groups.quaternions import Quaternion
+from coadjoint.spec import Spec
+from coadjoint.spec.model import Variable
+
+ROUTE = "cayley-klein"
+HALF = Fraction(1, 2)
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """``q0 .. q3``, and what is fixed in space: ``Gamma_space1``; none where q is declared."""
+    if _declared(spec) is not None:
+        return ()
+    fixed = [f"{v.name}_space{n + 1}" for v in spec.having_role("advected") for n in range(3)]
+    return fresh(spec, ["q0", "q1", "q2", "q3", *fixed])
+
+
+def _declared(spec: Spec) -> Variable | None:
+    """The quaternion of the declared state, if it has one."""
+    return next((v for v in spec.having_role("advected") if v.form == "quaternion"), None)
+
+
+@dataclass(frozen=True)
+class _Body:
+    """A body in terms of its Cayley-Klein parameters.
+
+    Attributes:
+        setting: What was declared.
+        q: The attitude.
+        omega: The angular velocity, a pure quaternion.
+        seen: What is fixed in space, as the body sees it, by name.
+    """
+
+    setting: Setting
+    q: Quaternion
+    omega: Quaternion
+    seen: Mapping[str, Quaternion]
+
+    def product(self, *factors: Quaternion) -> Quaternion:
+        """The product in the order of a left-invariant system, reversed for a right one."""
+        whole, *others = factors if self.setting.sign == 1 else factors[::-1]
+        for factor in others:
+            whole = whole * factor
+        return whole
+
+    @property
+    def q_rate(self) -> Quaternion:
+        """``dq/dt = q Omega / 2``."""
+        return HALF * self.product(self.q, self.omega)
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by Lagrange's equations for unit quaternions.
+
+    Raises:
+        DerivationError: The algebra is not so(3), or what is advected is no vector.
+    """
+    setting = setting_of(given)
+    check_rotations(setting)
+    lagrangian = lagrangian_of(setting)
+    body = _body(setting)
+    transform = legendre_transform(setting, lagrangian)
+    momentum_rate = _momentum_rate(body, _slopes(body, lagrangian))
+    if _declared(setting.spec) is not None:
+        rates = setting.in_state_order(momentum_rate, _advection(body))
+        exact = emission(setting, transform, rates)
+        return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, setting.state))
+    exact, chart = _in_chart(body, transform, momentum_rate)
+    return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, chart.variables), chart)
+
+
+def check_rotations(setting: Setting) -> None:
+    """The motions are rotations, and what is advected is turned by them as vectors are."""
+    algebra, rotations = setting.algebra, algebra_by_name("so(3)")
+    if not same_constants(algebra, rotations):
+        raise refusal(
+            setting,
+            ROUTE,
+            f"the algebra is {algebra.name}",
+            algebra.name,
+            "so(3), or another basis with [e1, e2] = e3 and cyclic",
+            "Remove the route.",
+        )
+    turning = tuple(map(dict, adjoint(rotations).matrices))
+    for variable in setting.advected:
+        action = setting.actions[variable.name]
+        if variable.form != "quaternion" and tuple(map(dict, action.matrices)) != turning:
+            raise refusal(
+                setting,
+                ROUTE,
+                f"{variable.name} has the representation {action.name!r}",
+                action.name,
+                "vectors or the unit quaternion, on which quaternions act by products",
+                "Remove the route.",
+            )
+
+
+def _body(setting: Setting) -> _Body:
+    """The attitude and what it sees, in the declared state or in symbols of this route."""
+    omega = Quaternion.pure(setting.elements(setting.velocities))
+    declared = _declared(setting.spec)
+    vectors = [each for each in setting.advected if each.form != "quaternion"]
+    if declared is not None:
+        q = Quaternion(*setting.elements(declared.components))
+        seen = {v.name: Quaternion.pure(setting.elements(v.components)) for v in vectors}
+        return _Body(setting, q, omega, seen)
+    names = symbols(setting.spec)
+    q = Quaternion(*setting.elements(names[:4]))
+    turned = _Body(setting, q, omega, {})
+    fixed = [Quaternion.pure(setting.elements(names[n : n + 3])) for n in range(4, len(names), 3)]
+    # the inverse would do as well as q*, since the length of q is 1 here, but not be polynomial
+    seen = {v.name: turned.product(q.conjugate, a, q) for v, a in zip(vectors, fixed, strict=True)}
+    return _Body(setting, q, omega, seen)
+
+
+def _slopes(body: _Body, lagrangian: Element) -> Quaternion:
+    """``q^* dL/dq`` at ``dq/dt = q Omega / 2``, by the chain rule through Omega(q) and a(q).
+
+    For a small change e of q, with ``h = q^-1 e``: ``d(q^-1) = -h q^-1``, so that Omega changes by
+    ``-Im(h Omega)`` and a by ``a h - h a``.
+    """
+    setting, field = body.setting, body.setting.field
+    names = [n for v in setting.advected for n in v.components if v.name in body.seen]
+    image = {
+        name: value
+        for v in setting.advected
+        if v.name in body.seen
+        for name, value in zip(v.components, body.seen[v.name].vector, strict=True)
+    }
+    slopes = field.gradient(lagrangian, names)
+    dl_da = dict(zip(names, (field.substitute(s, image) for s in slopes), strict=True))
+    pi = setting.elements(setting.momenta)
+    found = []
+    for h in Quaternion.units():  # e = q h, so these are the components of q* dL/dq
+        turn = body.product(h, body.omega)
+        total = [-mu * x for mu, x in zip(pi, turn.vector, strict=True)]
+        for variable in setting.advected:
+            if variable.name in body.seen:
+                a = body.seen[variable.name]
+                change = (body.product(a, h) - body.product(h, a)).vector
+                pairs = zip(variable.components, change, strict=True)
+                total += [dl_da[name] * x for name, x in pairs]
+        found.append(field.sum(field.zero + x for x in total))
+    declared = _declared(setting.spec)
+    if declared is not None:  # l may know the attitude itself
+        own = Quaternion(*field.gradient(lagrangian, declared.components))
+        found = [
+            f + x
+            for f, x in zip(found, body.product(body.q.conjugate, own).components, strict=True)
+        ]
+    return Quaternion(*found)
+
+
+def _momentum_rate(body: _Body, slopes: Quaternion) -> tuple[Element, ...]:
+    """``dPi/dt = Im((dq/dt)^* p + q^* dp/dt) / 2`` with ``q^* p = 2 Pi``.
+
+    ``p = dL/d(dq/dt)`` pairs e with ``<Pi, 2 Im(q^-1 e)>``; so ``q^* p = 2 Pi``, and
+    ``(dq/dt)^* = Omega^* q^* / 2``.
+    """
+    pi = Quaternion.pure(body.setting.elements(body.setting.momenta))
+    turning = body.product(body.omega.conjugate, pi)
+    whole = HALF * (turning + slopes)
+    return body.setting.field.vector(whole.vector)
+
+
+def _advection(body: _Body) -> dict[str, tuple[Element, ...]]:
+    """``dq/dt`` and ``da/dt = (a Omega - Omega a)/2`` in the declared state."""
+    field = body.setting.field
+    found = {
+        name: field.vector(
+            (HALF * (body.product(a, body.omega) - body.product(body.omega, a))).vector
+        )
+        for name, a in body.seen.items()
+    }
+    declared = _declared(body.setting.spec)
+    assert declared is not None, "the chart has no advected quantities"
+    return found | {declared.name: field.vector(body.q_rate.components)}
+
+
+def _in_chart(
+    body: _Body, transform: LegendreTransform, momentum_rate: tuple[Element, ...]
+) -> tuple[Exact, Chart]:
+    """The motion of q, Pi and the fixed vectors, which stand still."""
+    setting, field = body.setting, body.setting.field
+    names = symbols(setting.spec)
+    image = {
+        name: value
+        for v in setting.advected
+        for name, value in zip(v.components, body.seen[v.name].vector, strict=True)
+    }
+    fixed = names[4:]
+    rates = (*field.vector(body.q_rate.components), *momentum_rate, *(field.zero for _ in fixed))
+    velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
+    length = field.vector((body.q.norm - 1,))[0]
+    chart = Chart(
+        (*names[:4], *setting.momenta, *fixed),
+        tuple(image.get(name, field[name]) for name in setting.state),
+        _through(setting),
+        (Relation("dot(q, q) = 1", length),),
+    )
+    return Exact(velocities, rates, None, (), None), chart
+
+
+def _through(setting: Setting) -> str:
+    """The map in words."""
+    cover = "the double cover of the rotations by unit quaternions"
+    sides = ("q* ", " q") if setting.sign == 1 else ("q ", " q*")
+    seen = [f"{v.name} = {sides[0]}{v.name}_space{sides[1]}" for v in setting.advected]
+    return ", ".join((cover, *seen))
+
+
+def _steps(
+    body: _Body, lagrangian: Element, exact: Exact, variables: tuple[str, ...]
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    left = body.setting.sign == 1
+    law = "Omega = 2 Im(q^-1 dq/dt),  a = q^-1 a0 q"
+    latex = r"\Omega = 2\,\mathrm{Im}(q^{-1} \dot q), \qquad a = q^{-1} a_0 q"
+    if not left:
+        law = "Omega = 2 Im(dq/dt q^-1),  a = q a0 q^-1"
+        latex = r"\Omega = 2\,\mathrm{Im}(\dot q q^{-1}), \qquad a = q a_0 q^{-1}"
+    seen = [
+        (symbol(name), x)
+        for variable in body.setting.advected
+        if variable.name in body.seen
+        for name, x in zip(variable.components, body.seen[variable.name].vector, strict=True)
+    ]
+    q_star_p = "q* p" if left else "p q*"
+    return (
+        Step("Lagrangian", "l(Omega, a)", r"l(\Omega, a)", ((symbol("l"), lagrangian),)),
+        Step("Attitude as a quaternion", law, latex, tuple(seen)),
+        Step(
+            "Angular velocity",
+            "Omega solved from Pi = dl/dOmega",
+            r"\Omega = \Omega(\Pi, a)",
+            tuple((symbol(name), value) for name, value in exact.definitions),
+        ),
+        Step(
+            "Lagrange's equations for q",
+            f"p = dL/d(dq/dt),  dp/dt = dL/dq,  Pi = Im({q_star_p})/2",
+            r"p = \partial L / \partial \dot q, \quad \dot p = \partial L / \partial q, \quad "
+            rf"\Pi = \tfrac12 \mathrm{{Im}}({'q^* p' if left else 'p q^*'})",
+            tuple(zip(map(rate, variables), exact.rates, strict=True)),
+        ),
+    )

@@ -1,0 +1,199 @@
+r"""The Euler-Lagrange route: from a Lagrangian on coordinates q and velocities v = dq/dt.
+
+Theorem (Holm 2011, sections 2.2 and 2.2.1): the action :math:`\int l(q, \dot q)\,dt` is stationary
+for fixed ends exactly if
+
+.. math:: \frac{d}{dt}\frac{\partial l}{\partial v} = \frac{\partial l}{\partial q}.
+
+With momenta p in the state these are rates of p. Without them the left side is written out,
+
+.. math:: M \dot v = \frac{\partial l}{\partial q} - \frac{\partial^2 l}{\partial v\,\partial q} v,
+    \qquad M = \frac{\partial^2 l}{\partial v^2},
+
+which for a kinetic energy alone is the geodesic equation :math:`\dot v^c = -\Gamma^c_{ab} v^a v^b`
+(section 2.2.4). Where l depends on time explicitly, :math:`-\partial^2 l/\partial v\,\partial t`
+stands on the right side, too.
+Comes in: a Setting with a Lagrangian and no algebra. Goes out: Equations.
+Read next: `coadjoint.derive.routes.canonical`, the other road.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.mechanics.configuration import Mechanics, applied, in_state_order, mechanics
+from coadjoint.derive.mechanics.driving import explicit_rate
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.observables import observables
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.structure import poisson_structure
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+#: ``table[c][a][b]``.
+Table = tuple[tuple[tuple[Element, ...], ...], ...]
+_LAW = "d/dt dl/dv = dl/dq,  dq/dt = v"
+_LATEX = r"\frac{d}{dt} \frac{\partial l}{\partial v} = \frac{\partial l}{\partial q}, \quad "
+_LATEX += r"\dot q = v"
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by Hamilton's principle.
+
+    Raises:
+        DerivationError: The mass matrix is singular, or velocities cannot be solved for.
+    """
+    setting = setting_of(given)
+    known = mechanics(setting)
+    return _in_momenta(known) if setting.momenta else _in_velocities(known)
+
+
+def _in_velocities(known: Mechanics) -> Equations:
+    """``dq/dt = v, dv/dt = M^-1 (dl/dq - d2l/dvdq v)``."""
+    setting, field = known.setting, known.setting.field
+    v = setting.elements(setting.velocities)
+    carried = applied(field, known.mixed, v)
+    own = [explicit_rate(setting, p, "a momentum dl/dv") for p in known.momenta]
+    forces = [slope - c - e for slope, c, e in zip(known.slopes, carried, own, strict=True)]
+    moved = applied(field, known.inverse_mass, forces)
+    named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
+    rates = in_state_order(setting, named)
+    tensor = poisson_structure(setting).tensor
+    exact = Exact((), rates, known.energy, observables(setting, known.energy), tensor)
+    return Equations(setting, "euler-lagrange", exact, _steps(known, rates))
+
+
+def _in_momenta(known: Mechanics) -> Equations:
+    """``dq/dt = v, dp/dt = dl/dq`` with v from ``p = dl/dv``."""
+    setting, field = known.setting, known.setting.field
+    transform = legendre_transform(setting, known.lagrangian)
+    pairs = zip(setting.momenta, known.slopes, setting.weights, strict=True)
+    named = dict(zip(setting.positions, setting.elements(setting.velocities), strict=True))
+    named |= {p: slope * weight for p, slope, weight in pairs}
+    rates = in_state_order(setting, named)
+    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
+    energy = field.substitute(transform.energy, velocities)
+    tensor = poisson_structure(setting).tensor
+    values = observables(setting, energy)
+    exact = Exact(transform.definitions, rates, energy, values, tensor, transform.solves)
+    return Equations(setting, "euler-lagrange", exact, _steps(known, rates, transform))
+
+
+# -- geodesics ------------------------------------------------------------------------------------
+
+
+def christoffel_first(known: Mechanics) -> Table:
+    """``Gamma_cab = (dM_ca/dq_b + dM_cb/dq_a - dM_ab/dq_c)/2``, of the first kind."""
+    field, q, mass = known.setting.field, known.setting.positions, known.mass
+    size = range(len(q))
+    slope = [[field.gradient(entry, q) for entry in row] for row in mass]
+    half = field.number(Fraction(1, 2))
+    return tuple(
+        tuple(
+            tuple((slope[c][a][b] + slope[c][b][a] - slope[a][b][c]) * half for b in size)
+            for a in size
+        )
+        for c in size
+    )
+
+
+def christoffel(known: Mechanics) -> Table:
+    """``Gamma^c_ab``, of the second kind, for the metric that is the mass matrix.
+
+    Source:
+        Holm (2011), Geometric Mechanics II, section 2.2.4.
+    """
+    field, first = known.setting.field, christoffel_first(known)
+    size = range(len(first))
+    columns = [
+        [applied(field, known.inverse_mass, [first[c][a][b] for c in size]) for b in size]
+        for a in size
+    ]
+    return tuple(tuple(tuple(columns[a][b][c] for b in size) for a in size) for c in size)
+
+
+def is_natural(known: Mechanics) -> bool:
+    """Whether velocities occur in l as ``M_ab(q) v_a v_b/2`` alone."""
+    field, names = known.setting.field, known.setting.velocities
+    v = known.setting.elements(names)
+    moving = [m - x for m, x in zip(known.momenta, applied(field, known.mass, v), strict=True)]
+    named = set(names).intersection(
+        *[set().union(*(field.reach(e) for r in known.mass for e in r))]
+    )
+    return not named and all(map(field.is_zero, moving))
+
+
+# -- the derivation in words ----------------------------------------------------------------------
+
+
+def _steps(
+    known: Mechanics, rates: tuple[Element, ...], transform: LegendreTransform | None = None
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    setting = known.setting
+    momenta = zip((partial("l", v) for v in setting.velocities), known.momenta, strict=True)
+    steps = [
+        Step("Lagrangian", "l(q, v)", "l(q, v)", ((symbol("l"), known.lagrangian),)),
+        Step("Momenta", "p = dl/dv", r"p = \partial l / \partial v", tuple(momenta)),
+        Step(
+            "Mass matrix",
+            "M_ab = d2l/dv_a dv_b",
+            r"M_{ab} = \partial^2 l / \partial v_a \partial v_b",
+            _entries("M", known.mass),
+        ),
+    ]
+    if transform is not None:
+        solved = tuple((symbol(name), value) for name, value in transform.definitions)
+        steps.append(Step("Velocities", "v solved from p = dl/dv", "v = v(q, p)", solved))
+    elif is_natural(known):
+        steps += _geometry(known)
+    energy = Step("Energy", "E = v . dl/dv - l", r"E = v \cdot \partial l / \partial v - l")
+    steps.append(Step(energy.title, energy.text, energy.latex, ((symbol("E"), known.energy),)))
+    motion = tuple(zip(map(rate, setting.state), rates, strict=True))
+    return (*steps, Step("Euler-Lagrange equations", _LAW, _LATEX, motion))
+
+
+def _geometry(known: Mechanics) -> list[Step]:
+    """Christoffel symbols, where the metric is not constant."""
+    first, second = christoffel_first(known), christoffel(known)
+    if not any(entry for row in first for line in row for entry in line):
+        return []
+    return [
+        Step(
+            "Christoffel symbols of the first kind",
+            "Gamma_cab = (dM_ca/dq_b + dM_cb/dq_a - dM_ab/dq_c)/2",
+            r"\Gamma_{cab} = \tfrac12(\partial_b M_{ca} + \partial_a M_{cb} - \partial_c M_{ab})",
+            _symbols("Gamma_", first),
+        ),
+        Step(
+            "Christoffel symbols of the second kind",
+            "Gamma^c_ab = (M^-1)_cd Gamma_dab,  dv_c/dt = -Gamma^c_ab v_a v_b + forces",
+            r"\Gamma^c_{ab} = (M^{-1})_{cd} \Gamma_{dab}",
+            _symbols("Gamma^", second),
+        ),
+    ]
+
+
+def _entries(
+    name: str, matrix: tuple[tuple[Element, ...], ...]
+) -> tuple[tuple[Left, Element], ...]:
+    """The entries on and above the diagonal that are not zero."""
+    return tuple(
+        (symbol(f"{name}_{i + 1}{j + 1}"), entry)
+        for i, row in enumerate(matrix)
+        for j, entry in enumerate(row)
+        if j >= i and entry
+    )
+
+
+def _symbols(name: str, table: Table) -> tuple[tuple[Left, Element], ...]:
+    """Christoffel symbols that are not zero, a <= b."""
+    joint = "_" if name.endswith("^") else ""
+    return tuple(
+        (symbol(f"{name}{c + 1}{joint}{a + 1}{b + 1}"), entry)
+        for c, rows in enumerate(table)
+        for a, row in enumerate(rows)
+        for b, entry in enumerate(row)
+        if a <= b and entry
+    )

@@ -1,0 +1,87 @@
+r"""The Euler-Poincare route: from a reduced Lagrangian, with advected quantities.
+
+Theorem (Holm 2011, sections 9.1 and 9.1.4; Holm, Marsden and Ratiu 1998): Hamilton's principle for
+a left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
+:math:`\delta a = -\rho(\eta) a`, gives
+
+.. math::
+    \frac{d}{dt}\frac{\partial l}{\partial\xi} = \mathrm{ad}^*_\xi \frac{\partial l}{\partial\xi}
+        + \frac{\partial l}{\partial a} \diamond a, \qquad \dot a = -\rho(\xi) a,
+
+and a right-invariant one the same with the opposite sign of the right-hand sides.
+Comes in: a Setting with a Lagrangian. Goes out: Equations in the momenta :math:`\mu = \partial
+l/\partial\xi`, with the velocities as definitions. Read next:
+`coadjoint.derive.routes.lie_poisson`, the other road to the same motion.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.equations import Equations, Step, partial, rate, signed, symbol
+from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by the Euler-Poincare theorem.
+
+    Raises:
+        DerivationError: The Lagrangian has no invertible Legendre transform.
+    """
+    setting = setting_of(given)
+    lagrangian = lagrangian_of(setting)
+    transform = legendre_transform(setting, lagrangian)
+    rates = _rates(setting, lagrangian)
+    exact = emission(setting, transform, rates)
+    return Equations(
+        setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
+    )
+
+
+def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
+    """Right-hand sides in state, velocities and parameters, in the order of the state."""
+    sign, xi = setting.sign, setting.elements(setting.velocities)
+    mu = setting.elements(setting.momenta)
+    momentum = list(setting.algebra.ad_star(xi, mu))
+    advected = {}
+    for variable in setting.advected:
+        action = setting.actions[variable.name]
+        a = setting.elements(variable.components)
+        dl_da = setting.field.gradient(lagrangian, variable.components)
+        torque = action.diamond(dl_da, a)
+        momentum = [m + t for m, t in zip(momentum, torque, strict=True)]
+        advected[variable.name] = [-sign * x for x in action.act(xi, a)]
+    return setting.in_state_order([sign * m for m in momentum], advected)
+
+
+def _steps(
+    setting: Setting,
+    lagrangian: Element,
+    transform: LegendreTransform,
+    rates: tuple[Element, ...],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    back = "-" if setting.sign == 1 else ""
+    turned = signed(setting.sign, "ad*_xi mu + dl/da <> a")
+    turned_latex = signed(
+        setting.sign, r"\mathrm{ad}^*_\xi \mu + (\partial l / \partial a) \diamond a"
+    )
+    momenta = (partial("l", velocity) for velocity in setting.velocities)
+    return (
+        Step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", ((symbol("l"), lagrangian),)),
+        Step(
+            "Momenta",
+            "mu = dl/dxi",
+            r"\mu = \partial l / \partial \xi",
+            tuple(zip(momenta, transform.momenta, strict=True)),
+        ),
+        velocities_step(transform),
+        Step(
+            "Euler-Poincare equations and advection",
+            f"dmu/dt = {turned},  da/dt = {back}rho(xi) a",
+            rf"\dot\mu = {turned_latex}, \qquad \dot a = {back}\rho(\xi) a",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+    )

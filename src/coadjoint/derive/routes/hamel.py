@@ -1,0 +1,112 @@
+r"""Hamel's route: the constrained Lagrangian with the gyroscopic force that it misses.
+
+Theorem (Hamel 1904; Holm 2011, section 12.3.3): let :math:`l_c(\eta, z) = l(B\eta + \beta, z)` be
+the Lagrangian with the constraints put in. The motion is not that of :math:`l_c`: with
+:math:`D_k = B_k^l X_l` the fields of the distribution,
+
+.. math::
+    \frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} - D_k\, l_c
+        = \Big\langle \frac{\partial l}{\partial \xi}, [\xi, D_k] \Big\rangle + B_k \cdot f,
+
+where :math:`[\xi, D_k]` gains :math:`\partial D_k/\partial t` if the constraints move, and
+the brackets of the fields leave the distribution unless the constraints are integrable, so
+that the momentum on the right is that of the whole Lagrangian.
+Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
+Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.equations import Equations, Step, component, partial, symbol
+from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
+from coadjoint.derive.mechanics.distribution import Row, distribution
+from coadjoint.derive.mechanics.driving import explicit_rate
+from coadjoint.derive.mechanics.emission import lagrangian_of
+from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.kinematics import Matrix
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by Hamel's equations.
+
+    Raises:
+        DerivationError: As on the route nonholonomic.
+    """
+    setting = setting_of(given)
+    found = distribution(setting)
+    motion = ConstrainedMotion(found)
+    lagrangian = lagrangian_of(setting)
+    constrained = setting.field.substitute(lagrangian, found.solved)
+    momenta = setting.field.gradient(constrained, found.independent)
+    mass = tuple(setting.field.gradient(p, found.independent) for p in momenta)
+    known = _known(motion, lagrangian, constrained, momenta)
+    exact = emission(motion, lagrangian, motion.kinematics, mass, known, ())
+    steps = _steps(motion, constrained, momenta, mass, known)
+    return Equations(setting, "hamel", exact, steps, distribution=found)
+
+
+def _known(
+    motion: ConstrainedMotion, lagrangian: Element, constrained: Element, momenta: Row
+) -> Row:
+    """``D_k l_c + <p, [xi, D_k]> + B_k f - dp_c/dz dz/dt``."""
+    found, frame = motion.distribution, motion.frame
+    field = frame.setting.field
+    slopes = field.gradient(lagrangian, frame.velocities)
+    p = [field.substitute(slope, found.solved) for slope in slopes]
+    acting = external_forces(frame.setting, frame.velocities)
+    forces = [field.substitute(force, found.solved) for force in acting]
+    known = []
+    for k, momentum in enumerate(momenta):
+        D = [row[k] for row in found.B]
+        own = (explicit_rate(frame.setting, d, "a constraint") for d in D)
+        turned = [a + b for a, b in zip(frame.bracket(found.xi, D), own, strict=True)]
+        gyroscopic = field.sum(a * b for a, b in zip(p, turned, strict=True) if a and b)
+        driven = field.sum(b * f for b, f in zip(D, forces, strict=True) if b and f)
+        carried = frame.along(found.xi, momentum)
+        carried += explicit_rate(frame.setting, momentum, "a momentum")
+        known.append(frame.along(D, constrained) + gyroscopic + driven - carried)
+    return tuple(known)
+
+
+def _steps(
+    motion: ConstrainedMotion, constrained: Element, momenta: Row, mass: Matrix, known: Row
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    names = motion.distribution.independent
+    return (
+        Step(
+            "Constrained Lagrangian",
+            "l_c(eta, z) = l(B eta + beta, z)",
+            r"l_c(\eta, z) = l(B\eta + \beta, z)",
+            ((symbol("l_c"), constrained),),
+        ),
+        Step(
+            "Its momenta",
+            "dl_c/deta",
+            r"\partial l_c / \partial \eta",
+            tuple(zip((partial("l_c", name) for name in names), momenta, strict=True)),
+        ),
+        Step(
+            "Reduced mass matrix",
+            "d2l_c/deta2",
+            r"\partial^2 l_c / \partial \eta^2",
+            tuple(
+                (symbol(f"M_{i + 1}{j + 1}"), entry)
+                for i, row in enumerate(mass)
+                for j, entry in enumerate(row)
+                if j >= i and entry != 0
+            ),
+        ),
+        Step(
+            "Hamel's equations, solved for the accelerations in the kernel",
+            "d/dt dl_c/deta_k = D_k l_c + <p, [xi, D_k]> + B_k f",
+            r"\frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} = D_k l_c + \langle p, [\xi, D_k] "
+            r"\rangle + B_k f",
+            tuple(
+                (component("M eta'", r"M \dot\eta", n), value) for n, value in enumerate(known, 1)
+            ),
+        ),
+    )

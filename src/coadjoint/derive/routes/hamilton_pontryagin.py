@@ -1,0 +1,181 @@
+r"""The Hamilton-Pontryagin route: velocity, momentum and group element vary independently.
+
+Theorem (Holm 2011, sections 2.4.1 and 9.2): for a left-invariant Lagrangian, the principle
+
+.. math::
+    \delta \int l(\xi, g^{-1} a_0) + \langle \mu, g^{-1} \dot g - \xi \rangle \, dt = 0
+
+gives by :math:`\delta\xi` the Legendre relation :math:`\mu = \partial l/\partial\xi`, by
+:math:`\delta\mu` the reconstruction :math:`\dot g = g \xi`, and by :math:`\delta g` the momentum
+equation. Right-invariant: :math:`g a_0` and :math:`\dot g g^{-1}`.
+
+The variation of g is taken in exponential coordinates about the point where the motion is:
+
+.. math::
+    g = g_0 e^\epsilon, \quad g^{-1} \dot g = \dot\epsilon - [\epsilon, \dot\epsilon]/2 + \ldots,
+    \quad a = a_0 - \rho(\epsilon) a_0 + \ldots
+
+so that the momentum equation is the ordinary Euler-Lagrange equation of :math:`\epsilon` at
+:math:`\epsilon = 0`. No coadjoint operator and no diamond is formed.
+Comes in: a Setting with a Lagrangian. Goes out: Equations with velocities as definitions.
+Read next: `coadjoint.derive.routes.clebsch`, where the advected quantities vary instead of g.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
+from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.symbols import fresh
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """Exponential coordinates of the group and their rates: ``eps1``, ``deps1``."""
+    assert spec.algebra is not None, "the reader asks for an algebra on this route"
+    numbers = range(1, spec.algebra.dimension + 1)
+    return fresh(spec, [f"{letter}{n}" for letter in ("eps", "deps") for n in numbers])
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by the Hamilton-Pontryagin principle.
+
+    Raises:
+        DerivationError: The Lagrangian has no invertible Legendre transform.
+    """
+    setting = setting_of(given)
+    lagrangian = lagrangian_of(setting)
+    action = _action(setting, lagrangian)
+    transform = legendre_transform(setting, lagrangian)
+    rates = setting.in_state_order(_momentum_equation(setting, action), _advection(setting, action))
+    exact = emission(setting, transform, rates)
+    steps = _steps(setting, action, transform, rates)
+    return Equations(setting, "hamilton-pontryagin", exact, steps)
+
+
+@dataclass(frozen=True)
+class _Action:
+    """The integrand, to first order in the coordinates of g.
+
+    Attributes:
+        coordinates: Names of eps.
+        rates: Names of its time derivative.
+        moved: The advected quantities at ``g0 exp(eps)``, by component.
+        integrand: ``l(xi, a(eps)) + <mu, g^-1 dg/dt - xi>``.
+    """
+
+    coordinates: tuple[str, ...]
+    rates: tuple[str, ...]
+    moved: Mapping[str, Element]
+    integrand: Element
+
+
+def _action(setting: Setting, lagrangian: Element) -> _Action:
+    """The action near the point where the motion is."""
+    field, n = setting.field, setting.algebra.dimension
+    names = symbols(setting.spec)
+    eps, deps = setting.elements(names[:n]), setting.elements(names[n:])
+    moved: dict[str, Element] = {}
+    for variable in setting.advected:
+        a = setting.elements(variable.components)
+        change = setting.actions[variable.name].act(eps, a)
+        pairs = zip(variable.components, a, change, strict=True)
+        moved |= {name: x - setting.sign * dx for name, x, dx in pairs}
+    turning = field.vector(setting.algebra.bracket(eps, deps))
+    constraint = [
+        rate - setting.sign * turn / 2 - xi
+        for rate, turn, xi in zip(deps, turning, setting.elements(setting.velocities), strict=True)
+    ]
+    pairing = zip(setting.elements(setting.momenta), constraint, strict=True)
+    integrand = field.substitute(lagrangian, moved) + field.sum(mu * c for mu, c in pairing)
+    return _Action(names[:n], names[n:], moved, integrand)
+
+
+def _at_the_motion(setting: Setting, action: _Action, element: Element) -> Element:
+    """An element at eps = 0, deps/dt = xi: what the variations of mu say."""
+    rates = zip(action.rates, setting.elements(setting.velocities), strict=True)
+    here = dict(rates) | dict.fromkeys(action.coordinates, setting.field.zero)
+    return setting.field.substitute(element, here)
+
+
+def _momentum_equation(setting: Setting, action: _Action) -> tuple[Element, ...]:
+    """Euler-Lagrange of eps: ``d/dt dL/deps' = dL/deps``, solved for dmu/dt.
+
+    ``dL/deps'`` is ``mu`` plus a part linear in eps, whose rate is known since eps' = xi. eps''
+    does not occur: L is linear in eps'.
+    """
+    field = setting.field
+    forces = field.gradient(action.integrand, action.coordinates)
+    found = []
+    for name, force in zip(action.rates, forces, strict=True):
+        slopes = field.gradient(field.derivative(action.integrand, name), action.coordinates)
+        carried = (s * field[xi] for s, xi in zip(slopes, action.rates, strict=True))
+        found.append(_at_the_motion(setting, action, force - field.sum(carried)))
+    return tuple(found)
+
+
+def _advection(setting: Setting, action: _Action) -> dict[str, list[Element]]:
+    """``da/dt`` along ``g0 exp(eps)`` with eps' = xi, per advected quantity."""
+    field = setting.field
+
+    def carried(name: str) -> Element:
+        slopes = field.gradient(action.moved[name], action.coordinates)
+        pairs = zip(slopes, setting.elements(setting.velocities), strict=True)
+        total = field.sum(slope * xi for slope, xi in pairs if slope)
+        return _at_the_motion(setting, action, total)
+
+    return {each.name: [carried(name) for name in each.components] for each in setting.advected}
+
+
+def _steps(
+    setting: Setting, action: _Action, transform: LegendreTransform, rates: tuple[Element, ...]
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    left = setting.sign == 1
+    velocity = ("g^-1 dg/dt", r"g^{-1} \dot g") if left else ("dg/dt g^-1", r"\dot g g^{-1}")
+    motion = ("dg/dt = g xi", r"\dot g = g \xi") if left else ("dg/dt = xi g", r"\dot g = \xi g")
+    near = (
+        ("g = g0 exp(eps)", r"g = g_0 e^\epsilon")
+        if left
+        else ("g = exp(eps) g0", r"g = e^\epsilon g_0")
+    )
+    momenta = (partial("l", name) for name in setting.velocities)
+    by_name = dict(zip(setting.state, rates, strict=True))
+    advected = [name for name in setting.state if name not in setting.momenta]
+    xi = setting.elements(setting.velocities)
+    return (
+        Step(
+            "Hamilton-Pontryagin action",
+            f"L = l(xi, a) + <mu, {velocity[0]} - xi>,  {near[0]}, first order in eps",
+            rf"L = l(\xi, a) + \langle \mu, {velocity[1]} - \xi \rangle, \qquad {near[1]}",
+            ((symbol("L"), action.integrand),),
+        ),
+        Step(
+            "Variation of xi: the Legendre relation",
+            "mu = dl/dxi",
+            r"\mu = \partial l / \partial \xi",
+            tuple(zip(momenta, transform.momenta, strict=True)),
+        ),
+        velocities_step(transform),
+        Step(
+            f"Variation of mu: the reconstruction {motion[0]}",
+            f"{motion[0]}, that is deps/dt = xi at eps = 0",
+            rf"{motion[1]}, \qquad \dot\epsilon = \xi",
+            (
+                *zip(map(rate, action.coordinates), xi, strict=True),
+                *((rate(name), by_name[name]) for name in advected),
+            ),
+        ),
+        Step(
+            "Variation of g: the momentum equation",
+            "d/dt dL/d(deps/dt) = dL/deps at eps = 0",
+            r"\frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
+            r"= \frac{\partial L}{\partial \epsilon}",
+            tuple((rate(name), by_name[name]) for name in setting.momenta),
+        ),
+    )

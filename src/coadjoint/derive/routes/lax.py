@@ -1,0 +1,132 @@
+r"""The Lax route: from a declared pair of matrices with a spectral parameter.
+
+Theorem (Lax 1968; Holm 2011, section 2.4.4): if :math:`\dot L = [L, M]` for every value of
+:math:`\lambda`, the motion of L is isospectral, :math:`L(t) = g^{-1} L(0)\, g` with :math:`\dot g =
+g M`. Each entry of each power of :math:`\lambda` is one linear equation in the rates of the state.
+Comes in: a Setting with the table [lax], and an energy that gives the velocities. Goes out:
+Equations by the pair. Read next: `coadjoint.prove.lax`, where all of its equations must hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from coadjoint.derive.equations import Equations, Exact, Left, Step, rate, symbol
+from coadjoint.derive.observables import observables
+from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
+from coadjoint.derive.routes import manakov
+from coadjoint.derive.routes.lie_poisson import hamiltonian
+from coadjoint.derive.routes.poisson import velocities_of
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.structure import poisson_structure
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+ROUTE = "lax"
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """The spectral parameter."""
+    return (spec.lax.spectral,) if spec.lax is not None else ()
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by the declared pair.
+
+    Raises:
+        DerivationError: The pair does not determine the rates of the state.
+    """
+    setting = setting_of(given)
+    return _equations(setting, ROUTE, declared_pair(setting), ())
+
+
+def derive_found(given: Spec | Setting) -> Equations:
+    """Equations of motion by the pair that `coadjoint.derive.routes.manakov` finds.
+
+    Raises:
+        DerivationError: There is none.
+    """
+    setting = setting_of(given)
+    return _equations(setting, manakov.ROUTE, manakov.find_pair(setting), _search(setting))
+
+
+def _equations(setting: Setting, route: str, pair: LaxPair, search: tuple[Step, ...]) -> Equations:
+    """Equations by a pair; the energy gives nothing but the velocities that M names."""
+    h, solves = hamiltonian(setting)
+    definitions = velocities_of(setting, h, solves)
+    rates = rates_of(setting, pair, route)
+    tensor = poisson_structure(setting).tensor
+    exact = Exact(definitions, rates, h, observables(setting, h), tensor, solves)
+    steps = (*search, *_steps(setting, pair, definitions, rates))
+    return replace(Equations(setting, route, exact, steps), pair=pair)
+
+
+def _search(setting: Setting) -> tuple[Step, ...]:
+    """What Manakov's equations were solved for."""
+    body = manakov.body_of(setting)
+    return (
+        Step(
+            "Inertia in the planes",
+            "M_ij = I_ij Omega_ij",
+            r"M_{ij} = I_{ij} \Omega_{ij}",
+            tuple((symbol(f"I{i + 1}{j + 1}"), value) for (i, j), value in body.inertia.items()),
+        ),
+        Step(
+            "Manakov's equations",
+            "[B, Omega] + [M, A] = 0: I_ij (a_i - a_j) = b_i - b_j, solved for A and B",
+            r"[B, \Omega] + [M, A] = 0: \quad I_{ij} (a_i - a_j) = b_i - b_j",
+        ),
+    )
+
+
+def _steps(
+    setting: Setting,
+    pair: LaxPair,
+    definitions: tuple[tuple[str, Element], ...],
+    rates: tuple[Element, ...],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    texts = f"L = {pair.texts[0]},  M = {pair.texts[1]}"
+    return (
+        Step(
+            "Velocities",
+            "xi = dh/dmu",
+            r"\xi = \partial h / \partial \mu",
+            tuple((symbol(name), value) for name, value in definitions),
+        ),
+        Step("Lax pair", texts, "L(\\lambda), M(\\lambda)", _entries(pair)),
+        Step(
+            "Lax equation, power by power",
+            f"dL/dt = L M - M L for every {pair.spectral}",
+            r"\dot L = L M - M L",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+        _integrals(setting),
+    )
+
+
+def _entries(pair: LaxPair) -> tuple[tuple[Left, Element], ...]:
+    """The entries of L and of M that are not zero."""
+    return tuple(
+        (symbol(f"{name}_{i}_{j}" if len(matrix) > 9 else f"{name}_{i}{j}"), entry)
+        for name, matrix in (("L", pair.L), ("M", pair.M))
+        for i, row in enumerate(matrix, 1)
+        for j, entry in enumerate(row, 1)
+        if entry != 0
+    )
+
+
+def _integrals(setting: Setting) -> Step:
+    """The integrals that are emitted."""
+    found = setting.integrals
+    assert found is not None, "there is a pair"
+    words = ", ".join(
+        f"integral{n} from tr L^{each.trace} at {found.pair.spectral}^{each.power}"
+        for n, each in enumerate(found.emitted, 1)
+    )
+    return Step(
+        "Integrals beside the energy and the claimed Casimirs",
+        f"coefficients of tr L^k: {words or 'none'}",
+        r"\mathrm{tr}\, L^k = \mathrm{const}",
+        tuple((symbol(name), value) for name, value in found.named),
+    )

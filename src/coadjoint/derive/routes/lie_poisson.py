@@ -1,0 +1,59 @@
+r"""The Lie-Poisson route: from a Hamiltonian on the dual of a (semidirect product) Lie algebra.
+
+Theorem (Holm 2011, sections 2.5.2 and 9.4): with the bracket
+
+.. math::
+    \{f, h\}_\mp(x) = \mp \langle x, [\partial f/\partial x, \partial h/\partial x] \rangle
+
+of the semidirect product that holds momenta and advected quantities, minus for left-invariant and
+plus for right-invariant systems, the motion is :math:`\dot x = \{x, h\}`, as in
+`coadjoint.derive.routes.poisson`.
+Comes in: a Setting with a Hamiltonian, or with a Lagrangian whose Legendre transform gives one.
+Goes out: Equations, with the velocities :math:`\xi = \partial h/\partial\mu` as definitions where
+the spec names them. Read next: `coadjoint.prove.equivalence`.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.legendre import legendre_transform
+from coadjoint.derive.mechanics.solver import Solve
+from coadjoint.derive.routes.poisson import hamiltonian_equations
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.structure import momentum_algebra
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by the Lie-Poisson bracket.
+
+    Raises:
+        DerivationError: Neither a Hamiltonian nor an invertible Legendre transform is there.
+    """
+    setting = setting_of(given)
+    sign = "-" if setting.sign == 1 else ""
+    law = (
+        f"Lie-Poisson bracket on the dual of {momentum_algebra(setting).name}",
+        f"{{x_i, x_j}} = {sign}c_ij^k x_k",
+        rf"\{{x_i, x_j\}} = {sign}c_{{ij}}^k x_k",
+    )
+    h, solves = hamiltonian(setting)
+    return hamiltonian_equations(setting, "lie-poisson", h, law, solves)
+
+
+def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
+    """The declared Hamiltonian, or the Legendre transform of the declared Lagrangian.
+
+    Returns:
+        h, and what the kernel solves for velocities, which keep their names in h. Partial
+        derivatives of such an h at fixed velocities are those of h, since ``<mu, xi> - l`` is
+        stationary in xi.
+    """
+    spec = setting.spec
+    if spec.hamiltonian is not None:
+        return setting.formula(spec.hamiltonian), ()
+    assert spec.lagrangian is not None, "the reader asks for a Hamiltonian or a Lagrangian"
+    transform = legendre_transform(setting, setting.formula(spec.lagrangian))
+    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
+    return setting.field.substitute(transform.energy, velocities), transform.solves

@@ -1,0 +1,131 @@
+r"""Poincare's route of 1901: quasi-velocities, structure constants and vector fields.
+
+Theorem (Holm 2011, appendix D; Poincare, C. R. Acad. Sci. 132 (1901) 369): let the fields
+:math:`X_s` with :math:`[e_k, e_s] = c_{ks}^i e_i` act transitively on the configurations, with
+:math:`\dot f = \eta_s X_s f`. Then with the kinetic energy T and the force function U
+
+.. math::
+    \frac{d}{dt} \frac{\partial T}{\partial \eta_s}
+        = \sum_{k, i} c_{ks}^i \eta_k \frac{\partial T}{\partial \eta_i} + X_s (T + U).
+
+Configurations are seen through the advected quantities, on which a left-invariant system has
+:math:`X_s a = -\rho(e_s) a`; T + U is the Lagrangian. A right-invariant one has the opposite sign
+of both sums. Every sum is written out here; coadjoint operators and diamonds are not used.
+Comes in: a Setting with a Lagrangian. Goes out: Equations whose rates are in quasi-velocities.
+Read next: `coadjoint.derive.routes.hamilton_pontryagin`.
+"""
+
+from __future__ import annotations
+
+from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
+from coadjoint.derive.mechanics.emission import emission, lagrangian_of
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by Poincare's theorem.
+
+    Raises:
+        DerivationError: The Lagrangian has no invertible Legendre transform.
+    """
+    setting = setting_of(given)
+    lagrangian = lagrangian_of(setting)
+    transform = legendre_transform(setting, lagrangian)
+    fields = _vector_fields(setting)
+    inertial, forces = _inertial(setting, transform.momenta), _along(setting, fields, lagrangian)
+    momentum = [a + b for a, b in zip(inertial, forces, strict=True)]
+    rates = setting.in_state_order(momentum, _advection(setting, fields))
+    exact = emission(setting, transform, rates)
+    steps = _steps(setting, lagrangian, transform, forces, rates)
+    return Equations(setting, "poincare", exact, steps)
+
+
+#: X_s of every component of the advected quantities, by name, for each s.
+_Fields = list[dict[str, Element]]
+
+
+def _vector_fields(setting: Setting) -> _Fields:
+    """``X_s a = -+ rho(e_s) a``."""
+    fields: _Fields = [{} for _ in setting.algebra.basis]
+    for variable in setting.advected:
+        a = setting.elements(variable.components)
+        for X, matrix in zip(fields, setting.actions[variable.name].matrices, strict=True):
+            for (row, column), entry in sorted(matrix.items()):
+                name = variable.components[row]
+                X[name] = X.get(name, setting.field.zero) - setting.sign * entry * a[column]
+    return fields
+
+
+def _inertial(setting: Setting, slopes: tuple[Element, ...]) -> list[Element]:
+    """``sum c_ks^i eta_k dT/deta_i`` for every s, each constant used for both of its orders."""
+    eta = setting.elements(setting.velocities)
+    found = [setting.field.zero for _ in slopes]
+    for (k, s), row in setting.algebra.constants.items():
+        for i, c in row.items():
+            found[s] += setting.sign * c * eta[k] * slopes[i]
+            found[k] -= setting.sign * c * eta[s] * slopes[i]
+    return found
+
+
+def _along(setting: Setting, fields: _Fields, function: Element) -> list[Element]:
+    """``X_s f`` for every s."""
+    field = setting.field
+    moving = sorted({name for X in fields for name in X})
+    slopes = dict(zip(moving, field.gradient(function, moving), strict=True))
+    return [field.sum(slopes[name] * value for name, value in X.items()) for X in fields]
+
+
+def _advection(setting: Setting, fields: _Fields) -> dict[str, list[Element]]:
+    """``da/dt = eta_s X_s a``."""
+    field, eta = setting.field, setting.elements(setting.velocities)
+
+    def carried(name: str) -> Element:
+        return field.sum(n * X[name] for n, X in zip(eta, fields, strict=True) if name in X)
+
+    return {each.name: [carried(name) for name in each.components] for each in setting.advected}
+
+
+def _steps(
+    setting: Setting,
+    lagrangian: Element,
+    transform: LegendreTransform,
+    forces: list[Element],
+    rates: tuple[Element, ...],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    momenta = (partial("T", velocity) for velocity in setting.velocities)
+    basis = setting.algebra.basis
+    sign = "" if setting.sign == 1 else "-"
+    return (
+        Step("Kinetic energy and force function", "T + U", "T + U", ((symbol("L"), lagrangian),)),
+        Step(
+            "Momenta of the quasi-velocities",
+            "p_s = dT/deta_s",
+            r"p_s = \partial T / \partial \eta_s",
+            tuple(zip(momenta, transform.momenta, strict=True)),
+        ),
+        Step(
+            "Quasi-velocities",
+            "eta solved from p = dT/deta",
+            r"\eta = \eta(p, a)",
+            tuple((symbol(name), value) for name, value in transform.definitions),
+        ),
+        Step(
+            "Forces",
+            "X_s (T + U)",
+            "X_s (T + U)",
+            tuple((symbol(f"X_{name}"), force) for name, force in zip(basis, forces, strict=True)),
+        ),
+        Step(
+            "Poincare's equations",
+            f"d/dt dT/deta_s = {sign}sum c_ks^i eta_k dT/deta_i + X_s (T + U),  "
+            "da/dt = eta_s X_s a",
+            r"\frac{d}{dt} \frac{\partial T}{\partial \eta_s} = "
+            rf"{sign}\sum c_{{ks}}^i \eta_k \frac{{\partial T}}{{\partial \eta_i}} + X_s (T + U), "
+            r"\qquad \dot a = \eta_s X_s a",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+    )

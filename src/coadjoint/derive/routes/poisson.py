@@ -1,0 +1,120 @@
+r"""The Poisson route: from a Hamiltonian and any Poisson bracket of the state.
+
+Theorem (Holm 2011, section 2.5.1): with a bracket that is bilinear, antisymmetric, a derivation and
+satisfies the Jacobi identity, the motion of every function is :math:`\dot f = \{f, h\}`, so
+:math:`\dot x_i = \{x_i, x_j\}\, \partial h / \partial x_j`.
+Comes in: a Setting with a Hamiltonian and a declared bracket. Goes out: Equations.
+Read next: `coadjoint.derive.routes.lie_poisson`, where an algebra gives the bracket.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+from coadjoint.derive.equations import Equations, Exact, Step, bracket, partial, rate, symbol
+from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
+from coadjoint.derive.observables import observables
+from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.structure import poisson_structure
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+#: Title, text and LaTeX of the step that states the bracket.
+Law = tuple[str, str, str]
+
+
+def derive(given: Spec | Setting) -> Equations:
+    """Equations of motion by the declared bracket.
+
+    Raises:
+        DerivationError: A formula divides by zero.
+    """
+    setting = setting_of(given)
+    formula = setting.spec.hamiltonian
+    assert formula is not None, "the reader asks for a Hamiltonian on this route"
+    law = ("Poisson bracket of the coordinates", "{x_i, x_j}", r"\{x_i, x_j\}")
+    return hamiltonian_equations(setting, "poisson", setting.formula(formula), law)
+
+
+def hamiltonian_equations(
+    setting: Setting, route: str, h: Element, law: Law, solves: tuple[Solve, ...] = ()
+) -> Equations:
+    """``dx/dt = {x, h}`` by the bracket of the state.
+
+    Where the spec names velocities, ``xi = dh/dmu`` are definitions that the rates use.
+
+    Args:
+        setting: The spec and the field.
+        route: Name of the route.
+        h: The Hamiltonian, stationary in the velocities that it names.
+        law: What the step says that states the bracket.
+        solves: What the kernel solves for these velocities.
+    """
+    field, tensor = setting.field, poisson_structure(setting).tensor
+    gradient = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
+    given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
+    pairs = dict(zip(setting.momenta, given, strict=bool(given)))
+    weights = dict(zip(setting.momenta, setting.weights, strict=True))
+    definitions = velocities_of(setting, h, solves)
+    named = gradient | {mu: field[xi] * (1 / weights[mu]) for mu, xi in pairs.items()}
+    slopes = [named[x] for x in setting.state]
+    rates = field.vector(
+        sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
+        for row in tensor
+    )
+    exact = Exact(definitions, rates, h, observables(setting, h), tensor, solves)
+    brackets = tuple(
+        (bracket(a, b), tensor[i][j])
+        for (i, a), (j, b) in combinations(enumerate(setting.state), 2)
+        if tensor[i][j] != 0
+    )
+    steps = (
+        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), h),)),
+        Step(*law, brackets),
+        *_motion(setting, gradient, rates),
+    )
+    return Equations(setting, route, exact, steps)
+
+
+def velocities_of(
+    setting: Setting, h: Element, solves: tuple[Solve, ...] = ()
+) -> tuple[Definition, ...]:
+    """``xi = dh/dmu`` for the velocities that the spec names, or what the kernel solves for them.
+
+    Args:
+        setting: The spec and the field.
+        h: The Hamiltonian, stationary in the velocities that it names.
+        solves: What the kernel solves for these.
+    """
+    field = setting.field
+    given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
+    solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    known = {name for name, _ in solved}
+    return (
+        *solved,
+        *(
+            (xi, weight * field.derivative(h, mu))
+            for mu, weight, xi in zip(setting.momenta, setting.weights, given, strict=bool(given))
+            if xi not in known
+        ),
+    )
+
+
+def _motion(
+    setting: Setting, gradient: dict[str, Element], rates: tuple[Element, ...]
+) -> tuple[Step, ...]:
+    """How the motion follows from Hamiltonian and bracket."""
+    return (
+        Step(
+            "Derivatives of the Hamiltonian",
+            "dh/dx",
+            r"\partial h / \partial x",
+            tuple((partial("h", name), value) for name, value in gradient.items()),
+        ),
+        Step(
+            "Hamilton's equations",
+            "dx/dt = {x, h}",
+            r"\dot x = \{x, h\}",
+            tuple(zip(map(rate, setting.state), rates, strict=True)),
+        ),
+    )

@@ -1,0 +1,249 @@
+"""Coefficients: structure constants and matrix entries, numbers or polynomials of parameters.
+
+Comes in: texts such as ``-2*e1 + a*e3/2`` of a bracket and ``a^2/2`` of a matrix. Goes out: exact
+coefficients: fractions, and where a parameter occurs elements of the field of all parameters, which
+decide the Jacobi identity for every value of them at once. SymPy is loaded then and not before.
+Read next: `coadjoint.spec.sections.algebras`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from coadjoint.limits import PARAMETRIC_TERMS
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError, fault_at
+from coadjoint.spec.core.formulas import ROLES
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.shapes import shape_of
+from coadjoint.spec.core.sizes import check_size
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, walk, walk_up
+from coadjoint.spec.model import Input, Parameter, Shape, Time, unpacked
+
+if TYPE_CHECKING:
+    from coadjoint.exact import Field
+
+#: A fraction, or an element of the field of the parameters.
+Coefficient = Any
+_Linear = dict[int | None, Coefficient]  # of each basis vector; None for the part without one
+
+_COMBINATION = (
+    "a linear combination of the basis",
+    ("sums of basis names times numbers or polynomials of parameters, such as -2*e1 + e3/2, or 0"),
+)
+_POLYNOMIAL = "a polynomial of parameters", "numbers and parameters with + - * and powers"
+
+
+class Scalars:
+    """The components of the parameters, as exact values from the first use on.
+
+    Args:
+        parameters: All of the spec, with names that differ.
+        driving: Inputs and time, which no constant may name.
+    """
+
+    def __init__(
+        self, parameters: Sequence[Parameter] = (), driving: Sequence[Input | Time] = ()
+    ) -> None:
+        self._driving = {
+            name: each.role for each in driving for name in (each.name, *each.components)
+        }
+        self.shapes: dict[str, Shape] = {}
+        self._components: dict[tuple[str, tuple[int, ...]], tuple[str, int]] = {}  # with signs
+        self._positive: list[str] = []
+        self._terms = 0  # in the coefficients read so far
+        for parameter in parameters:
+            self.shapes |= {parameter.name: parameter.value_shape}
+            for name in parameter.components:
+                self.shapes[name] = ()
+                self._components[name, ()] = name, 1
+            for indices, entry in _entries(parameter).items():
+                self._components[parameter.name, indices] = entry
+            self._positive += parameter.components if parameter.positive else ()
+
+    def value(self, name: str, indices: tuple[int, ...] = ()) -> Coefficient | None:
+        """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
+        component, sign = self._components.get((name, indices), ("", 0))
+        if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
+            return Fraction(0) if component else None
+        return sign * self._field[component]
+
+    def check_names(self, tree: Node) -> None:
+        """Refuse what is no constant of the system.
+
+        Raises:
+            ExpressionError: An input or the time is named.
+        """
+        for node in walk(tree):
+            if isinstance(node, Name | Index) and node.name in self._driving:
+                raise fault_at(
+                    node,
+                    f"{node.name!r} is {ROLES[self._driving[node.name]]}",
+                    found=node.name,
+                    expected="constants of the algebra in terms of numbers and parameters",
+                )
+
+    def check_terms(self, tree: Node, terms: int) -> None:
+        """Count the terms of a coefficient with parameters: elimination among many takes for ever.
+
+        Raises:
+            ExpressionError: There are too many in the spec.
+        """
+        if not any(isinstance(n, (Name, Index)) and n.name in self.shapes for n in walk(tree)):
+            return
+        self._terms += terms
+        if self._terms > PARAMETRIC_TERMS:
+            raise ExpressionError(
+                f"with this one, coefficients have {self._terms} terms that hold parameters",
+                tree.start,
+                tree.end,
+                found=str(self._terms),
+                expected=f"at most {PARAMETRIC_TERMS} (PARAMETRIC_TERMS)",
+                hint="Put numbers for some of the parameters.",
+                limit="PARAMETRIC_TERMS",
+            )
+
+    @cached_property
+    def _field(self) -> Field:
+        from coadjoint.exact import Field  # loads SymPy, which specs with plain numbers never need
+
+        names = [name for name, indices in self._components if not indices]
+        return Field(names, positive=self._positive)
+
+
+def _entries(parameter: Parameter) -> dict[tuple[int, ...], tuple[str, int]]:
+    """The component, and its sign, that each entry of a parameter is."""
+    names, shape = parameter.components, parameter.value_shape
+    places = list(product(*(range(1, length + 1) for length in shape)))
+    kept: Sequence[int] = range(1, len(names) + 1)
+    if parameter.form:
+        kept = [entry for row in unpacked(kept, parameter.form) for entry in row]
+    return {
+        place: (names[abs(n) - 1], (n > 0) - (n < 0)) for place, n in zip(places, kept, strict=True)
+    }
+
+
+def read_combination(
+    source: Source, key: KeyPath, text: str, basis: Sequence[str], scalars: Scalars
+) -> dict[int, Coefficient]:
+    """A linear combination of basis names, such as ``-2*e1 + a*e3/2``, by place in the basis.
+
+    Raises:
+        SpecError: A syntax error, an unknown name, or no linear combination.
+    """
+    try:
+        total = _Reading(basis, scalars, _COMBINATION).read(text)
+    except ExpressionError as error:
+        raise source.expression_fault(key, error) from None
+    return {place: value for place, value in total.items() if place is not None}
+
+
+def read_coefficient(
+    source: Source, key: KeyPath, entry: Fraction | str, scalars: Scalars
+) -> Coefficient:
+    """A number as it is, or the value of a text such as ``a^2/2``.
+
+    Raises:
+        SpecError: A syntax error, an unknown name, or no polynomial of the parameters.
+    """
+    if isinstance(entry, Fraction):
+        return entry
+    try:
+        return _Reading((), scalars, _POLYNOMIAL).read(entry).get(None, Fraction(0))
+    except ExpressionError as error:
+        raise source.expression_fault(key, error) from None
+
+
+class _Reading:
+    """The reading of one text as a combination of basis vectors, or as a coefficient."""
+
+    def __init__(self, basis: Sequence[str], scalars: Scalars, wanted: tuple[str, str]) -> None:
+        self.places = {name: place for place, name in enumerate(basis)}
+        self.scalars, self.wanted = scalars, wanted
+
+    def read(self, text: str) -> _Linear:
+        """The coefficients of the vectors, or of 1 where the basis is empty."""
+        tree = read_expression(text)
+        self.scalars.check_names(tree)
+        scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
+        shape_of(tree, scope)
+        self.scalars.check_terms(tree, check_size(tree, scope))
+        found: dict[int, _Linear] = {}
+        for node in walk_up(tree):
+            result = self._value(node, found)
+            found[id(node)] = {place: value for place, value in result.items() if value != 0}
+        total = found[id(tree)]
+        if self.places and None in total:
+            raise self._refusal(tree)
+        return total
+
+    def _value(self, node: Node, found: Mapping[int, _Linear]) -> _Linear:
+        match node:
+            case Number(value=value):
+                return {None: value}
+            case Name(name=name) if name in self.places:
+                return {self.places[self._single(node, name)]: Fraction(1)}
+            case Name(name=name):
+                return self._scalar(node, name)
+            case Index(name=name, indices=indices):
+                return self._scalar(node, name, indices)
+            case Negate(operand=operand):
+                return _times(found[id(operand)], Fraction(-1))
+            case Power(base=base, exponent=exponent) if exponent >= 0:
+                self._check_constant(node, found[id(base)])
+                return {None: found[id(base)].get(None, Fraction(0)) ** exponent}
+            case Binary(operator=operator, left=left, right=right):
+                return self._joined(node, operator, found[id(left)], found[id(right)])
+        raise self._refusal(node)
+
+    def _single(self, node: Node, name: str) -> str:
+        """The name of a basis vector that is not also that of a parameter."""
+        if name in self.scalars.shapes:
+            raise ExpressionError(
+                f"{name!r} is both a parameter and in the basis",
+                node.start,
+                node.end,
+                found=name,
+                expected="names that differ",
+                hint="Rename the parameter.",
+            )
+        return name
+
+    def _scalar(self, node: Node, name: str, indices: tuple[int, ...] = ()) -> _Linear:
+        value = self.scalars.value(name, indices)
+        if value is None:
+            raise self._refusal(node)
+        return {None: value}
+
+    def _joined(self, node: Node, operator: str, a: _Linear, b: _Linear) -> _Linear:
+        if operator in "+-":
+            sign = 1 if operator == "+" else -1
+            return {p: a.get(p, Fraction(0)) + sign * b.get(p, Fraction(0)) for p in a | b}
+        if operator == "*" and not b.keys() <= {None}:
+            a, b = b, a
+        self._check_constant(node, b)
+        factor = b.get(None, Fraction(0))
+        if operator == "*":
+            return _times(a, factor)
+        if not isinstance(factor, Fraction) or factor == 0:
+            raise self._refusal(node)  # a quotient of parameters, which may be 0
+        return _times(a, 1 / factor)
+
+    def _check_constant(self, node: Node, value: _Linear) -> None:
+        if not value.keys() <= {None}:
+            raise self._refusal(node)
+
+    def _refusal(self, node: Node) -> ExpressionError:
+        what, expected = self.wanted
+        return ExpressionError(
+            f"this is no {what.removeprefix('a ')}", node.start, node.end, expected=expected
+        )
+
+
+def _times(a: _Linear, factor: Coefficient) -> _Linear:
+    return {place: value * factor for place, value in a.items()}

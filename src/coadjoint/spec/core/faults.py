@@ -1,0 +1,67 @@
+"""A fault at a place of an expression, before anybody knows in which file the expression stands.
+
+Comes in: nothing. Goes out: the exception that the steps on expressions raise, which
+`coadjoint.spec.core.source` turns into a `SpecError` with file, line, column and a caret.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from coadjoint.spec.core.tree import Node
+
+
+class ExpressionError(Exception):
+    """An expression is not what it may be.
+
+    Attributes:
+        problem: What was found, as a clause: ``'Omgea' is not declared``.
+        start: Offset of the guilty characters in the expression.
+        end: Offset after them.
+        found: The guilty text.
+        expected: What would have been accepted.
+        hint: The likely fix, as a sentence.
+        limit: Name of the constant in `coadjoint.limits` that was passed, or "".
+    """
+
+    def __init__(
+        self,
+        problem: str,
+        start: int,
+        end: int,
+        *,
+        found: str = "",
+        expected: str = "",
+        hint: str = "",
+        limit: str = "",
+    ) -> None:
+        super().__init__(problem)
+        self.problem, self.start, self.end = problem, start, end
+        self.found, self.expected, self.hint, self.limit = found, expected, hint, limit
+
+
+def fault_at(node: Node, problem: str, **parts: str) -> ExpressionError:
+    """A fault at a node; where a definition was put in, it is the definition that has it."""
+    where = f"in the definition of {node.within}: " if node.within else ""
+    return ExpressionError(where + problem, node.start, node.end, **parts)
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """A sentence with the known name nearest to a wrong one, if one is near.
+
+    >>> did_you_mean("Omgea", ["Gamma", "Omega"])
+    "Did you mean 'Omega'?"
+    """
+    near = get_close_matches(name, sorted(known), n=1)
+    return f"Did you mean {near[0]!r}?" if near else otherwise
+
+
+def listed(names: Iterable[str], most: int = 12) -> str:
+    """Names for a message, in the given order and not too many.
+
+    >>> listed(["a", "b"])
+    'a, b'
+    """
+    found = list(names)
+    return ", ".join(found[:most]) + (", ..." if len(found) > most else "")

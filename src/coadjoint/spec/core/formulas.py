@@ -1,0 +1,149 @@
+"""Formulas: expressions read where the names that may occur in them are known.
+
+Comes in: the text at a key of a spec, and a scope. Goes out: a `Formula` whose tree has been
+checked for names, shapes and size. Read next: `coadjoint.spec.consistency`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.shapes import shape_of, words
+from coadjoint.spec.core.sizes import check_size
+from coadjoint.spec.core.source import Source, dotted
+from coadjoint.spec.core.tree import Index, Name, Node, walk
+from coadjoint.spec.model import Definition, Formula, Input, Parameter, Shape, Time, Variable
+from coadjoint.spec.sections.definitions import expand, functions
+
+#: What a spec declares and a formula may use.
+Quantity = Variable | Parameter | Input | Time | Definition
+#: What the variables of each role are called together.
+PLURALS = {
+    "velocity": "velocities",
+    "momentum": "momenta",
+    "advected": "advected quantities",
+    "coordinate": "coordinates",
+    "input": "inputs",
+    "time": "time",
+}
+#: Roles that few kinds of formulas may use: what acts on the motion, or is measured along it.
+DRIVING = ("input", "time")
+#: What each role is called where it is out of place.
+ROLES = {
+    "velocity": "a velocity",
+    "momentum": "a momentum",
+    "advected": "an advected quantity",
+    "coordinate": "a coordinate",
+    "parameter": "a parameter",
+    "input": "an input",
+    "time": "the time",
+}
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The names that one kind of formula may use.
+
+    Attributes:
+        kind: ``a Lagrangian``, for messages.
+        takes: What it is a function of, in words.
+        shapes: Shape of each name in scope, whole quantities and components.
+        outside: Names that the spec declares and this kind of formula may not use, with their role.
+        definitions: What may be put in, by name.
+    """
+
+    kind: str
+    takes: str
+    shapes: Mapping[str, Shape]
+    outside: Mapping[str, str]
+    definitions: Mapping[str, Definition] = field(default_factory=dict)
+
+
+def make_scope(
+    kind: str,
+    roles: tuple[str, ...],
+    quantities: Iterable[Quantity],
+    others: Mapping[str, Shape] | Iterable[str] = (),
+    *,
+    driven: Sequence[str] = (),
+) -> Scope:
+    """The scope of a kind of formula.
+
+    Args:
+        kind: ``a Lagrangian``, for messages.
+        roles: Roles of variables that it may use; parameters it always may.
+        quantities: Everything the spec declares.
+        others: Further names with their shapes, or of scalars.
+        driven: Which of `DRIVING` it may use.
+    """
+    shapes = dict(others) if isinstance(others, Mapping) else dict.fromkeys(others, ())
+    outside: dict[str, str] = {}
+    definitions: dict[str, Definition] = {}
+    present: dict[str, None] = {}
+    for quantity in quantities:
+        if isinstance(quantity, Definition):
+            definitions[quantity.name] = quantity
+            continue
+        role = quantity.role
+        if role in driven:
+            present[role] = None
+        if role in present or role == "parameter" or role in roles:
+            shapes |= dict.fromkeys(quantity.components, ())
+            shapes[quantity.name] = quantity.value_shape
+        else:
+            outside |= dict.fromkeys((quantity.name, *quantity.components), role)
+    plurals = [PLURALS[role] for role in roles]
+    plurals += ["parameters", *(PLURALS[role] for role in present)]
+    takes = " and ".join(filter(None, [", ".join(plurals[:-1]), plurals[-1]]))
+    return Scope(kind, takes, shapes, outside, definitions)
+
+
+def read_formula(
+    source: Source, key: KeyPath, text: str, scope: Scope, *, any_shape: bool = False
+) -> Formula:
+    """The formula at a key, with its definitions put in.
+
+    Args:
+        source: The text of the spec.
+        key: Where the expression stands.
+        text: The expression.
+        scope: The names that it may use.
+        any_shape: Whether it may be a vector or a matrix, too.
+
+    Raises:
+        SpecError: A syntax error, a name out of scope, shapes that do not fit, or no scalar.
+        LimitError: The expression is too large.
+    """
+    try:
+        typed = read_expression(text, functions(scope.definitions))
+        tree = expand(typed, scope.definitions, source.spent)
+        _check_roles(tree, scope)
+        shape = shape_of(tree, scope.shapes)
+        check_size(tree, scope.shapes)
+        if shape != () and not any_shape:
+            hint = "Write dot(a, a) for the square of a vector." if len(shape) == 1 else ""
+            problem = f"the value is {words(shape)}"
+            raise ExpressionError(
+                problem, 0, len(text), found=words(shape), expected="a scalar", hint=hint
+            )
+    except ExpressionError as error:
+        raise source.expression_fault(key, error) from None
+    line = source.line(source.positions.value(key))
+    return Formula(text, tree, shape, dotted(key), line)
+
+
+def _check_roles(tree: Node, scope: Scope) -> None:
+    """Refuse a declared name that this kind of formula may not use, saying why."""
+    for node in walk(tree):
+        if isinstance(node, (Name, Index)) and node.name in scope.outside:
+            raise fault_at(
+                node,
+                f"{node.name!r} is {ROLES[scope.outside[node.name]]}",
+                found=node.name,
+                expected=f"{scope.kind} in terms of {scope.takes}",
+                hint=did_you_mean(node.name, scope.shapes),
+            )

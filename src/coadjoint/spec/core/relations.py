@@ -1,0 +1,76 @@
+"""Relations: equations and inequalities between two expressions, such as ``Y == cross(Omega, s)``.
+
+Comes in: the text at a key, and the scope of its formulas. Goes out: both sides as formulas of one
+shape, and the sign between them. The language of expressions itself knows no relation.
+Read next: `coadjoint.spec.sections.constraints`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from coadjoint.errors import CoadjointError
+from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.formulas import Scope, read_formula
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.shapes import words
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.tree import Number
+from coadjoint.spec.model import Formula
+
+EQUATION = ("==",)
+INEQUALITIES = (">", ">=", "<", "<=")
+_SIGN = re.compile(r"==|>=|<=|!=|=|>|<")
+
+
+def read_relation(
+    source: Source, key: KeyPath, text: str, signs: tuple[str, ...], scope: Scope
+) -> tuple[Formula, str, Formula]:
+    """The two sides of a relation and its sign.
+
+    A side that is the number 0 has the shape of the other one.
+
+    Raises:
+        SpecError: No sign of those allowed, or two; sides of different shapes, or a fault in one.
+    """
+    found = list(_SIGN.finditer(text))
+    if len(found) != 1 or found[0].group() not in signs:
+        raise _no_relation(source, key, text, signs, found)
+    sign = found[0]
+    left, right = (
+        read_formula(source, key, side, scope, any_shape=True)
+        for side in (text[: sign.start()], " " * sign.end() + text[sign.end() :])
+    )
+    left, right = (
+        replace(side, text=text, shape=other.shape)
+        if isinstance(side.tree, Number) and side.tree.value == 0
+        else replace(side, text=text)
+        for side, other in ((left, right), (right, left))
+    )
+    if left.shape != right.shape:
+        raise source.fault(
+            key,
+            f"the left side is {words(left.shape)} and the right side {words(right.shape)}",
+            found=text,
+            expected="two sides of one shape, or 0 on one of them",
+            at=source.within(key, sign.start(), sign.end()),
+        )
+    return left, sign.group(), right
+
+
+def _no_relation(
+    source: Source, key: KeyPath, text: str, signs: tuple[str, ...], found: list[re.Match[str]]
+) -> CoadjointError:
+    """Why a text is no relation."""
+    wanted = found[1] if len(found) > 1 else found[0] if found else None
+    problem = "there are two signs" if len(found) > 1 else f"there is no {listed(signs)}"
+    example = "Y == cross(Omega, s)" if signs == EQUATION else "1 - Gamma3^2 > 0"
+    return source.fault(
+        key,
+        problem,
+        found=wanted.group() if wanted else text,
+        expected=f"two expressions with {listed(signs)} between them",
+        hint=f"Write for instance {example!r}.",
+        at=source.within(key, *(wanted.span() if wanted else (0, len(text)))),
+    )

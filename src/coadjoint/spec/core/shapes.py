@@ -1,0 +1,286 @@
+"""Shapes: what the functions and operators of the expression language accept and return.
+
+Comes in: a tree and the shapes of its names. Goes out: the shape of its value, or an
+`ExpressionError` that says both shapes in words. A shape is ``()`` for a scalar, ``(n,)`` for a
+vector, ``(n, m)`` for a matrix. Read next: `coadjoint.spec.core.sizes`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, listed
+from coadjoint.spec.core.tree import (
+    Binary,
+    Call,
+    Component,
+    Index,
+    Name,
+    Negate,
+    Node,
+    Number,
+    Power,
+    children,
+    walk_up,
+)
+from coadjoint.spec.model import Shape
+
+#: The functions that are adjoined to the field, by their own names.
+ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")
+#: Determinants and inverses are written out; larger systems are solved inside the kernel.
+LARGEST_INVERSE = 3
+
+
+def _dot(a: Shape, b: Shape) -> Shape | None:
+    return () if len(a) == 1 and a == b else None
+
+
+def _cross(a: Shape, b: Shape) -> Shape | None:
+    return (3,) if a == b == (3,) else None
+
+
+def _commutator(a: Shape, b: Shape) -> Shape | None:
+    return a if _is_square(a) and a == b else None
+
+
+def _trace(a: Shape) -> Shape | None:
+    return () if _is_square(a) else None
+
+
+def _transpose(a: Shape) -> Shape | None:
+    return a[::-1] if len(a) == 2 else None
+
+
+def _det(a: Shape) -> Shape | None:
+    return () if _is_small_square(a) else None
+
+
+def _inverse(a: Shape) -> Shape | None:
+    return a if _is_small_square(a) else None
+
+
+def _hat(a: Shape) -> Shape | None:
+    return (3, 3) if a == (3,) else None
+
+
+def _diag(a: Shape) -> Shape | None:
+    if len(a) == 1:
+        return a * 2
+    return a[:1] if _is_square(a) else None
+
+
+def _norm(a: Shape) -> Shape | None:
+    return () if len(a) == 1 else None
+
+
+def _outer(a: Shape, b: Shape) -> Shape | None:
+    return a + b if len(a) == len(b) == 1 else None
+
+
+def _rows(*rows: Shape) -> Shape | None:
+    return (len(rows), *rows[0]) if len(rows[0]) == 1 and set(rows) == {rows[0]} else None
+
+
+def _vector(*components: Shape) -> Shape | None:
+    return None if any(components) else (len(components),)
+
+
+def _elementary(a: Shape) -> Shape | None:
+    return () if a == () else None
+
+
+def _is_square(a: Shape) -> bool:
+    return len(a) == 2 and a[0] == a[1]
+
+
+def _is_small_square(a: Shape) -> bool:
+    return _is_square(a) and a[0] <= LARGEST_INVERSE
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of the expression language.
+
+    Attributes:
+        arity: Number of arguments; 0 for any number but none.
+        rule: Shape of the value from the shapes of the arguments; None if they do not fit.
+        takes: The arguments that fit, in words.
+        meaning: What it is, for documents.
+    """
+
+    arity: int
+    rule: Callable[..., Shape | None]
+    takes: str
+    meaning: str
+
+
+_SMALL = f"a square matrix of at most {LARGEST_INVERSE} by {LARGEST_INVERSE}"
+FUNCTIONS: Mapping[str, Function] = MappingProxyType(
+    {
+        "dot": Function(2, _dot, "two vectors of one length", "a_i b_i"),
+        "cross": Function(2, _cross, "two 3-vectors", "a x b"),
+        "commutator": Function(2, _commutator, "two square matrices of one size", "AB - BA"),
+        "trace": Function(1, _trace, "a square matrix", "A_ii"),
+        "transpose": Function(1, _transpose, "a matrix", "A_ji"),
+        "det": Function(1, _det, _SMALL, "determinant"),
+        "inverse": Function(1, _inverse, _SMALL, "inverse matrix"),
+        "hat": Function(1, _hat, "a 3-vector", "the matrix with hat(a)*b = a x b"),
+        "diag": Function(
+            1, _diag, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"
+        ),
+        "outer": Function(2, _outer, "two vectors", "matrix a_i b_j"),
+        "vector": Function(0, _vector, "scalars", "vector of these components"),
+        "rows": Function(0, _rows, "vectors of one length", "matrix with these rows"),
+        "norm": Function(1, _norm, "a vector", "sqrt(dot(a, a))"),
+        "sqrt": Function(1, _elementary, "a scalar", "square root"),
+        "sin": Function(1, _elementary, "a scalar", "sine"),
+        "cos": Function(1, _elementary, "a scalar", "cosine"),
+        "tan": Function(1, _elementary, "a scalar", "tangent"),
+        "exp": Function(1, _elementary, "a scalar", "exponential"),
+        "log": Function(1, _elementary, "a scalar", "natural logarithm"),
+    }
+)
+
+
+def words(shape: Shape) -> str:
+    """A shape as a person says it.
+
+    >>> words(()), words((3,)), words((8, 2))
+    ('a scalar', 'a 3-vector', 'an 8 by 2 matrix')
+    """
+    if not shape:
+        return "a scalar"
+    article = "an" if str(shape[0]).startswith("8") or shape[0] in (11, 18) else "a"
+    if len(shape) == 1:
+        return f"{article} {shape[0]}-vector"
+    return f"{article} {shape[0]} by {shape[1]} matrix"
+
+
+def shape_of(tree: Node, scope: Mapping[str, Shape]) -> Shape:
+    """The shape of an expression; every part of it is checked.
+
+    Args:
+        tree: What `coadjoint.spec.core.expressions.read_expression` returned.
+        scope: Shape of every name that may occur, whole quantities and components alike.
+
+    Raises:
+        ExpressionError: A name is not in scope, or shapes do not fit.
+
+    >>> from coadjoint.spec.core.expressions import read_expression
+    >>> shape_of(read_expression("diag(I)*Omega"), {"I": (3,), "Omega": (3,)})
+    (3,)
+    """
+    return shapes(tree, scope)[id(tree)]
+
+
+def shapes(tree: Node, scope: Mapping[str, Shape]) -> dict[int, Shape]:
+    """The shape of every node of a tree, by ``id``."""
+    found: dict[int, Shape] = {}
+    for node in walk_up(tree):
+        found[id(node)] = _shape(node, [found[id(child)] for child in children(node)], scope)
+    return found
+
+
+def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
+    """The shape of one node from those of its children."""
+    match node:
+        case Number():
+            return ()
+        case Name(name=name):
+            return _declared(node, name, scope)
+        case Index(name=name, indices=indices):
+            return _component(node, name, indices, _declared(node, name, scope))
+        case Component(name=name, indices=indices):
+            return _component(node, name, indices, below[0])
+        case Negate():
+            return below[0]
+        case Power():
+            return _power(node, below[0])
+        case Binary(operator=operator):
+            return _binary(node, operator, *below)
+        case Call():
+            return _call(node, below)
+    raise AssertionError(node)
+
+
+def _declared(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
+    if name in scope:
+        return scope[name]
+    raise _fault(
+        node,
+        f"{name!r} is not declared",
+        name,
+        "a variable or parameter of this spec",
+        did_you_mean(name, scope, f"Declared are {listed(scope)}." if scope else ""),
+    )
+
+
+def _component(node: Node, name: str, indices: tuple[int, ...], shape: Shape) -> Shape:
+    """What is left of a shape behind its subscripts: a scalar, or a row of a matrix."""
+    text = f"{name}[{', '.join(map(str, indices))}]"
+    if len(shape) < len(indices):
+        expected = f"{name}[1]" if shape else f"{name} without a subscript"
+        raise _fault(node, f"{name} is {words(shape)}, found {text}", text, expected)
+    for index, length in zip(indices, shape, strict=False):
+        if not 1 <= index <= length:
+            hint = "Components are counted from 1." if index == 0 else ""
+            problem = f"the subscript of {text} is out of range"
+            raise _fault(node, problem, text, f"1 to {length}", hint)
+    return shape[len(indices) :]
+
+
+def _power(node: Power, base: Shape) -> Shape:
+    if base == ():
+        return base
+    if not _is_square(base):
+        hint = "The square of a vector is dot(a, a)." if len(base) == 1 else ""
+        problem = f"{words(base)} has no power"
+        raise _fault(node, problem, words(base), "a scalar or a square matrix", hint)
+    if node.exponent < 0 and not _is_small_square(base):
+        raise _fault(node, f"{words(base)} is inverted", words(base), _SMALL)
+    return base
+
+
+def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
+    if operator in "+-":
+        if left == right:
+            return left
+        problem = f"{words(left)} {operator} {words(right)} do not fit"
+        raise _fault(node, problem, problem, f"two of one shape around {operator}")
+    if operator == "/":
+        if right == ():
+            return left
+        hint = "Write inverse(A)*x." if len(right) == 2 else ""
+        raise _fault(node, f"division by {words(right)}", words(right), "a scalar divisor", hint)
+    if left == () or right == ():
+        return left + right
+    if len(left) == 2 and left[1] == right[0]:
+        return (left[0], *right[1:])
+    problem, hint = f"{words(left)} * {words(right)} do not fit", ""
+    if len(left) == len(right) == 1:
+        hint = "Write dot(a, b) for the scalar product, cross(a, b) for the vector product."
+    elif len(left) == 1:
+        hint = "Write transpose(A)*a for a row vector times a matrix."
+    raise _fault(node, problem, problem, "matching sizes around *", hint)
+
+
+def _call(node: Call, arguments: list[Shape]) -> Shape:
+    function, name = FUNCTIONS[node.function], node.function
+    if function.arity not in (0, len(arguments)):
+        given = f"{len(arguments)} argument{'s' * (len(arguments) != 1)}"
+        raise _fault(node, f"{name} is given {given}", given, function.takes)
+    shape = function.rule(*arguments)
+    if shape is not None:
+        return shape
+    found, hint = " and ".join(map(words, arguments)), ""
+    if name == "dot" and [len(a) for a in arguments] == [2, 2]:
+        hint = "The product of matrices is trace(transpose(A)*B)."
+    if name in ("det", "inverse") and _is_square(arguments[0]):
+        hint = "Larger systems are solved inside the kernels: give the Lagrangian instead."
+    raise _fault(node, f"{name} is given {found}", found, function.takes, hint)
+
+
+def _fault(node: Node, problem: str, found: str, expected: str, hint: str = "") -> ExpressionError:
+    return fault_at(node, problem, found=found, expected=expected, hint=hint)

@@ -1,0 +1,253 @@
+"""Sizes: how large an expression would grow if it were multiplied out, estimated before it is.
+
+Comes in: a tree whose shapes fit. Goes out: nothing, or an `ExpressionError` that names the limit.
+The estimate is of the most terms, the highest degree and the longest coefficient of any component;
+a quotient counts as a product with the inverse of its divisor as a new name. What it lets through
+and is still too much ends at the time limit of the derivation.
+Read next: `coadjoint.spec.reader`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import comb, factorial
+
+from coadjoint import limits
+from coadjoint.spec.core.faults import ExpressionError, fault_at
+from coadjoint.spec.core.shapes import ELEMENTARY, shapes
+from coadjoint.spec.core.tree import (
+    Binary,
+    Call,
+    Component,
+    Negate,
+    Node,
+    Number,
+    Power,
+    children,
+    walk_up,
+)
+from coadjoint.spec.model import Shape
+
+
+@dataclass(frozen=True)
+class Size:
+    """The estimate for one node.
+
+    Attributes:
+        terms: Terms of the largest component.
+        degree: Degree in all names together.
+        bits: Bits of numerator and denominator of the longest coefficient.
+        diagonal: Whether the value is a diagonal matrix.
+        constant: Exact value of a constant, or None.
+        fixed: Whether no name occurs in it; ``sqrt(2)`` is fixed and has no exact value.
+    """
+
+    terms: int = 1
+    degree: int = 0
+    bits: int = 0
+    diagonal: bool = False
+    constant: Fraction | None = None
+    fixed: bool = False
+
+
+def check_size(tree: Node, scope: Mapping[str, Shape]) -> int:
+    """Refuse an expression that would grow beyond the limits.
+
+    Returns:
+        The terms that it has after multiplying out, estimated.
+
+    Raises:
+        ExpressionError: A limit is passed, a constant is divided by zero, or a function is applied
+            to a constant where it has no value.
+
+    >>> from coadjoint.spec.core.expressions import read_expression
+    >>> check_size(read_expression("(x + 1)^32"), {"x": ()})
+    33
+    """
+    shape, size = shapes(tree, scope), dict[int, Size]()
+    for node in walk_up(tree):
+        below = children(node)
+        found = _size(node, [size[id(c)] for c in below], [shape[id(c)] for c in below])
+        _check(node, found)
+        size[id(node)] = found
+    return size[id(tree)].terms
+
+
+def _check(node: Node, size: Size) -> None:
+    for value, limit, what in (
+        (size.terms, "EXPANDED_TERMS", "terms after multiplying out"),
+        (size.degree, "EXPANDED_DEGREE", "as degree after multiplying out"),
+        (size.bits, "CONSTANT_BITS", "bits in a constant"),
+    ):
+        if value > getattr(limits, limit):
+            known = str(value) if value < 10**12 else "over 10^12"
+            raise _refusal(node, limit, f"the expression has about {known} {what}")
+
+
+def _size(node: Node, below: list[Size], shape: list[Shape]) -> Size:
+    """The size of a node from sizes and shapes of its children."""
+    match node:
+        case Number(value=value):
+            return _constant(value)
+        case Negate():
+            return _negative(below[0])
+        case Power(exponent=exponent):
+            return _power(node, below[0], exponent, shape[0])
+        case Binary(operator="*"):
+            return _product(below[0], below[1], _summed(below, shape))
+        case Binary(operator="/"):
+            return _quotient(node, *below)
+        case Binary(operator=operator):
+            return _sum(below[0], _negative(below[1]) if operator == "-" else below[1])
+        case Component():
+            return replace(below[0], diagonal=False, constant=None)
+        case Call(function=function) if function in ELEMENTARY:
+            return _function(node, function, below[0])
+        case Call(function=function):
+            return _tensor(node, function, below, shape)
+    return Size(degree=1)
+
+
+def _constant(value: Fraction) -> Size:
+    bits = value.numerator.bit_length() + value.denominator.bit_length()
+    return Size(bits=bits, constant=value, fixed=True)
+
+
+def _negative(a: Size) -> Size:
+    return a if a.constant is None else _constant(-a.constant)
+
+
+def _sum(a: Size, b: Size) -> Size:
+    if a.constant is not None and b.constant is not None:
+        return _constant(a.constant + b.constant)
+    return Size(
+        a.terms + b.terms,
+        max(a.degree, b.degree),
+        max(a.bits, b.bits) + 1,
+        a.diagonal and b.diagonal,
+        fixed=a.fixed and b.fixed,
+    )
+
+
+def _product(a: Size, b: Size, summed: int = 1) -> Size:
+    """A product that adds up ``summed`` products of components."""
+    if a.constant is not None and b.constant is not None:
+        return _constant(a.constant * b.constant)
+    return Size(
+        summed * a.terms * b.terms,
+        a.degree + b.degree,
+        a.bits + b.bits + summed.bit_length() - 1,
+        a.diagonal and b.diagonal,
+        fixed=a.fixed and b.fixed,
+    )
+
+
+def _summed(below: list[Size], shape: list[Shape]) -> int:
+    """How many products of components a component of a product adds up."""
+    left, right = shape
+    return left[1] if left and right and not any(part.diagonal for part in below) else 1
+
+
+def _quotient(node: Node, a: Size, b: Size) -> Size:
+    if b.constant is None:
+        return _product(a, Size(1, b.degree, b.bits, fixed=b.fixed))
+    if b.constant == 0:
+        raise _no_value(node, "the expression divides by zero", "a divisor other than 0")
+    return _product(a, _constant(1 / b.constant))
+
+
+def _power(node: Node, base: Size, exponent: int, shape: Shape) -> Size:
+    if base.constant is not None:
+        if base.constant == 0 and exponent < 0:
+            raise _no_value(node, "the expression divides by zero", "a base other than 0")
+        if base.bits * abs(exponent) > 2 * limits.CONSTANT_BITS:  # too long to be worked out
+            return Size(bits=base.bits * abs(exponent))
+        return _constant(base.constant**exponent)
+    n = abs(exponent)
+    if shape and not base.diagonal:
+        terms = (shape[0] ** max(n - 1, 0)) * base.terms**n
+        if exponent < 0:
+            terms *= factorial(shape[0])
+    else:
+        terms = comb(n + base.terms - 1, n)
+    carries = base.terms.bit_length() if base.terms > 1 else 0
+    bits = n * (base.bits + carries)
+    return Size(terms, n * base.degree, bits, base.diagonal, fixed=base.fixed)
+
+
+def _function(node: Node, function: str, argument: Size) -> Size:
+    """An elementary function: a new name, unless its argument is a constant out of bounds."""
+    if argument.fixed:
+        value = argument.constant
+        if value is None or abs(value) > limits.FUNCTION_ARGUMENT:
+            raise _refusal(
+                node, "FUNCTION_ARGUMENT", f"{function} of a constant that is no small rational"
+            )
+        if (value < 0 and function == "sqrt") or (value <= 0 and function == "log"):
+            problem = f"{function} of {value} is no real number"
+            raise _no_value(node, problem, "a positive argument")
+        return Size(fixed=True)
+    return Size(degree=1)
+
+
+def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) -> Size:
+    """A function that is made of sums and products."""
+    a, n = below[0], (*shape[0], 1)[0]
+    match function:
+        case "dot":
+            return _product(a, below[1], n)
+        case "outer":
+            return _product(a, below[1])
+        case "rows" | "vector":
+            return _largest(below)
+        case "cross":
+            return _product(a, below[1], 2)
+        case "commutator":
+            products = _product(a, below[1], _summed(below, shape))
+            return _sum(products, products)
+        case "trace":
+            return Size(n * a.terms, a.degree, a.bits + n.bit_length())
+        case "diag":
+            return Size(a.terms, a.degree, a.bits, diagonal=len(shape[0]) == 1)
+        case "transpose":
+            return a
+        case "hat":
+            return Size(a.terms, a.degree, a.bits)
+        case "norm":
+            _check(node, _product(a, a, n))
+            return Size(degree=1)
+        case "det":
+            return _determinant(a, n)
+        case "inverse":
+            _check(node, _determinant(a, n))
+            cofactor = _determinant(a, n - 1) if not a.diagonal else Size()
+            return Size(
+                cofactor.terms, n * a.degree, n * a.bits + n.bit_length(), diagonal=a.diagonal
+            )
+    raise AssertionError(function)
+
+
+def _largest(parts: list[Size]) -> Size:
+    """The size of what is put together without being reckoned with."""
+    return Size(
+        max(part.terms for part in parts),
+        max(part.degree for part in parts),
+        max(part.bits for part in parts),
+        fixed=all(part.fixed for part in parts),
+    )
+
+
+def _determinant(a: Size, n: int) -> Size:
+    products = 1 if a.diagonal else factorial(n)
+    return Size(products * a.terms**n, n * a.degree, n * a.bits + products.bit_length())
+
+
+def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:
+    expected = f"at most {getattr(limits, limit)} ({limit})"
+    return fault_at(node, problem, found=problem, expected=expected, limit=limit)
+
+
+def _no_value(node: Node, problem: str, expected: str) -> ExpressionError:
+    return fault_at(node, problem, found=problem, expected=expected)

@@ -1,0 +1,178 @@
+"""Source: a spec's text with its positions, and how to point at the guilty characters in it.
+
+Comes in: a file path and its text. Goes out: errors of one form,
+
+    derivations/top.toml:12:10: lagrangian.l: 'Omgea' is not declared; expected a velocity, ...
+        l = "dot(Omgea, Omega)/2"
+                 ^^^^^
+
+with the parts as attributes. Read next: `coadjoint.spec.schema`, the first step that needs it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.positions import KeyPath, Positions, Span
+
+#: Characters of a source line that a message shows at the most.
+_SHOWN = 96
+
+
+def dotted(path: KeyPath) -> str:
+    """A path as messages write it, array entries counted from 1.
+
+    >>> dotted(("claims", "casimirs", 0))
+    'claims.casimirs[1]'
+    """
+    text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{_key(part)}" for part in path)
+    return text.removeprefix(".") or "the file"
+
+
+def _key(part: str) -> str:
+    """A key for a message; one with control characters could draw on the reader's terminal."""
+    return part if part.isascii() and part.isprintable() and len(part) <= 60 else shown(part)
+
+
+def shown(value: object, most: int = 60) -> str:
+    r"""A found value for a message, on one line and cut where it is long.
+
+    >>> shown("spin\nner"), shown(True), shown("x" * 99, most=8)
+    ("'spin\\nner'", 'true', "'xxxx...")
+    """
+    if isinstance(value, int) and value.bit_length() > 1000:
+        return f"an integer of {value.bit_length()} bits"
+    if isinstance(value, (dict, list)):
+        kind = "table" if isinstance(value, dict) else "list"
+        return f"a {kind} of {len(value)}" if value else f"an empty {kind}"
+    text = str(value).lower() if isinstance(value, bool) else ascii(value)
+    text = str(value) if type(value).__name__ in ("Decimal", "Fraction") else text
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def _plain(found: object) -> object:
+    """A found value as JSON can carry it."""
+    short = isinstance(found, int) and found.bit_length() <= 64
+    return found if short or isinstance(found, str) else shown(found)
+
+
+@dataclass(frozen=True)
+class Source:
+    """The text of a spec.
+
+    Attributes:
+        path: The file as the user named it.
+        text: Its text with plain newlines.
+        positions: Where its keys and values stand.
+        spent: What its formulas took so far of limits that hold for all of them together.
+    """
+
+    path: str
+    text: str
+    positions: Positions
+    spent: Counter[str] = field(default_factory=Counter, compare=False)
+
+    def line(self, span: Span) -> int:
+        """Line of a place, counted from 1."""
+        return self.text.count("\n", 0, span[0]) + 1
+
+    def fault(
+        self,
+        key: KeyPath,
+        problem: str,
+        *,
+        found: Any = "",
+        expected: str = "",
+        hint: str = "",
+        at: Span | None = None,
+        kind: type[CoadjointError] = SpecError,
+        **parts: Any,
+    ) -> CoadjointError:
+        """An error that points into the file.
+
+        Args:
+            key: The key concerned.
+            problem: What was found, as a clause.
+            found: The guilty value.
+            expected: What would have been accepted.
+            hint: The likely fix, as a sentence.
+            at: The guilty characters; by default the value of the key.
+            kind: Class of the error.
+            parts: Further attributes.
+        """
+        span = self.positions.value(key) if at is None else at
+        line = self.line(span)
+        column = span[0] - self.text.rfind("\n", 0, span[0])
+        message = f"{self.path}:{line}:{column}: {dotted(key)}: {problem}"
+        message += f"; expected {expected}." if expected else "." * (problem[-1] not in ".?")
+        message += f" {hint}" if hint else ""
+        return kind(
+            f"{message}\n{self._excerpt(span)}".rstrip(),
+            path=self.path,
+            line=line,
+            column=column,
+            key=dotted(key),
+            found=_plain(found),
+            expected=expected,
+            hint=hint,
+            **parts,
+        )
+
+    def expression_fault(self, key: KeyPath, error: ExpressionError) -> CoadjointError:
+        """The error that a fault inside the expression at ``key`` is."""
+        return self.fault(
+            key,
+            error.problem,
+            found=error.found,
+            expected=error.expected,
+            hint=error.hint,
+            at=self.within(key, error.start, error.end),
+            kind=LimitError if error.limit else SpecError,
+            limit=error.limit,
+        )
+
+    def claim_key(self, key: KeyPath) -> KeyPath:
+        """Where the expression of a claim stands: at its key, or in the table there."""
+        inner = ((*key, name) for name in ("claim", "integral"))  # integral: its former name
+        return next((each for each in inner if each in self.positions.values), key)
+
+    def within(self, key: KeyPath, start: int, end: int) -> Span:
+        """Where the characters ``start`` to ``end`` of a string's value stand in the file."""
+        characters = self.positions.characters.get(key)
+        if characters is None:
+            return self.positions.value(key)
+        first = min(start, len(characters) - 1)
+        last = min(max(end - 1, first), len(characters) - 1)
+        return characters[first], characters[last] + 1
+
+    def _excerpt(self, span: Span) -> str:
+        """The line of a place, and a caret line under it."""
+        first = self.text.rfind("\n", 0, span[0]) + 1
+        last = self.text.find("\n", first)
+        line = self.text[first:] if last < 0 else self.text[first:last]
+        column = span[0] - first
+        cut = max(0, column - _SHOWN // 2) if len(line) > _SHOWN else 0
+        window = "".join(c if c.isprintable() else " " for c in line[cut : cut + _SHOWN])
+        carets = max(1, min(span[1] - span[0], len(window) - (column - cut)))
+        indent = len(window) - len(window.lstrip())  # the line is shown without its indentation
+        return f"    {window.strip()}\n    {' ' * (column - cut - indent)}{'^' * carets}"
+
+
+def joined(faults: Sequence[CoadjointError], more: int = 0) -> CoadjointError:
+    """Several errors as one: every message, the parts of the first, and all parts as ``faults``.
+
+    Args:
+        faults: At least one error.
+        more: How many further faults there are that are not shown.
+    """
+    first = faults[0]
+    if len(faults) == 1:
+        return first
+    messages = [str(fault) for fault in faults] + [f"... and {more} more faults."] * (more > 0)
+    kept = [fault.parts for fault in faults]
+    return type(first)("\n".join(messages), **first.parts, faults=kept)

@@ -1,0 +1,141 @@
+"""Plain expression trees: what the reader makes of text, and what the derivation reads.
+
+Comes in: nothing. Goes out: frozen nodes that carry their place in the text (``start``, ``end``,
+offsets from 0, end exclusive), so that a later step can still point at the guilty characters.
+No SymPy here, and no text of a spec survives in a node except declared names.
+Read next: `coadjoint.spec.core.expressions`, which makes these, and `coadjoint.derive.interpret`,
+which turns them into exact field elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+
+@dataclass(frozen=True)
+class Node:
+    """A piece of an expression and its place in the text (which equality ignores).
+
+    Attributes:
+        start: Offset of its first character.
+        end: Offset after its last one.
+        within: The definition whose text it comes from, if that is not the text of the formula.
+    """
+
+    start: int = field(compare=False, kw_only=True, default=0)
+    end: int = field(compare=False, kw_only=True, default=0)
+    within: str = field(compare=False, kw_only=True, default="", repr=False)
+
+
+@dataclass(frozen=True)
+class Number(Node):
+    """An exact decimal: ``0.1`` is one tenth."""
+
+    value: Fraction
+
+
+@dataclass(frozen=True)
+class Name(Node):
+    """A declared name: a whole quantity (``Omega``) or one of its components (``Omega1``)."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Index(Node):
+    """A component, counted from 1 as books do: ``Omega[1]``, ``A[1, 2]``; ``A[1]`` is a row."""
+
+    name: str
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Component(Node):
+    """A component of an expression that a name stands for: ``u[1]`` for ``u = "A*b"``."""
+
+    name: str
+    operand: Node
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Negate(Node):
+    """``-operand``."""
+
+    operand: Node
+
+
+@dataclass(frozen=True)
+class Binary(Node):
+    """``left operator right`` with operator one of ``+ - * /``."""
+
+    operator: str
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True)
+class Power(Node):
+    """``base ^ exponent`` with a literal integer exponent, possibly negative."""
+
+    base: Node
+    exponent: int
+
+
+@dataclass(frozen=True)
+class Call(Node):
+    """``function(arguments)`` for a function of `coadjoint.spec.core.shapes.FUNCTIONS`."""
+
+    function: str
+    arguments: tuple[Node, ...]
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """The nodes directly below ``node``, in reading order."""
+    match node:
+        case Negate(operand=operand) | Component(operand=operand):
+            return (operand,)
+        case Binary(left=left, right=right):
+            return (left, right)
+        case Power(base=base):
+            return (base,)
+        case Call(arguments=arguments):
+            return arguments
+    return ()
+
+
+def rebuilt(node: Node, below: Sequence[Node]) -> Node:
+    """``node`` with other nodes directly below it, as many as it has."""
+    match node:
+        case Negate() | Component():
+            return replace(node, operand=below[0])
+        case Binary():
+            return replace(node, left=below[0], right=below[1])
+        case Power():
+            return replace(node, base=below[0])
+        case Call():
+            return replace(node, arguments=tuple(below))
+    return node
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """``node`` and every node below it, parents first; a sum of 500 terms is 500 levels deep."""
+    pending = [node]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending.extend(reversed(children(node)))
+
+
+def walk_up(node: Node) -> Iterator[Node]:
+    """Every node below ``node`` and itself, children first and from left to right."""
+    pending = [(node, False)]
+    while pending:
+        node, seen = pending.pop()
+        if seen:
+            yield node
+        else:
+            pending.append((node, True))
+            pending.extend((child, False) for child in reversed(children(node)))

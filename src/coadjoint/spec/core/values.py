@@ -1,0 +1,119 @@
+"""Values: what may stand at the keys of a spec, for the validator and for editors.
+
+Comes in: single values as tomllib read them. Goes out: annotated types that check them; numbers
+become exact fractions. Read next: `coadjoint.spec.schema`, which puts them into tables.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field, PlainValidator, WithJsonSchema
+
+from coadjoint.limits import STATE_COMPONENTS, TITLE_CHARACTERS, UNIT_CHARACTERS
+from coadjoint.spec.core.decimals import NUMBER_SCHEMA, is_number_text, read_number
+
+NAME_PATTERN = "^[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*$"
+# Printed in comments of generated code: no text that opens or closes one.
+_UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.()-]+", re.ASCII)
+_LICENSE = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*", re.ASCII)
+#: Keys such as ``[e1, e2]`` of a bracket in an algebra, ``{X1, X2}`` of one of functions.
+BRACKET_PATTERN = r"^\[ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\]$"
+#: Keys such as ``u`` and ``V(s, d)`` of definitions.
+DEFINITION_PATTERN = r"^[A-Za-z]\w*( *\( *[A-Za-z]\w*( *, *[A-Za-z]\w*)* *\))?$"
+POISSON_PATTERN = r"^\{ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\}$"
+
+
+def _is_printable(text: str) -> str:
+    if not text.isprintable():
+        raise ValueError("one line of printable text")
+    return text
+
+
+def _is_prose(text: str) -> str:
+    if not all(line.isprintable() for line in text.replace("\t", " ").split("\n")):
+        raise ValueError("printable text, in one line or several")
+    return text
+
+
+def _is_unit(text: str) -> str:
+    if not _UNIT.fullmatch(text):
+        raise ValueError("letters, digits, space and ^ / * . ( ) -, as in 'kg m^2/s'")
+    return text
+
+
+def _is_license(text: str) -> str:
+    if text and not _LICENSE.fullmatch(text):
+        raise ValueError("an SPDX expression such as 'BSD-3-Clause'")
+    return text
+
+
+def is_unique(names: list[str]) -> list[str]:
+    """The names, if they differ."""
+    if len(set(names)) != len(names):
+        raise ValueError("no entry twice")
+    return names
+
+
+def _number(value: object) -> Fraction:
+    try:
+        return read_number(value)
+    except ValueError as error:
+        raise ValueError(f"an exact number such as 2, 0.5 or '1/3'; this one {error}") from None
+
+
+def _entry(value: object) -> Fraction | str:
+    """A number, or a text that a later step reads as a formula of the parameters."""
+    if isinstance(value, str) and not is_number_text(value):
+        return value
+    return _number(value)
+
+
+def _numbers(value: object) -> Any:
+    """A number, or lists of numbers, nested at most twice."""
+    if isinstance(value, list):
+        return [
+            [_number(entry) for entry in part] if isinstance(part, list) else _number(part)
+            for part in value
+        ]
+    return _number(value)
+
+
+def _block(value: object) -> str | list[str]:
+    names = [value] if isinstance(value, str) else value
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names) or not names:
+        raise ValueError("the name of a block, or a list of names of the algebra's basis")
+    return value if isinstance(value, str) else list(names)
+
+
+_NUMBER_OR_LISTS: dict[str, Any] = {
+    "anyOf": [
+        *NUMBER_SCHEMA["anyOf"],
+        {
+            "type": "array",
+            "items": {
+                "anyOf": [
+                    *NUMBER_SCHEMA["anyOf"],
+                    {"type": "array", "items": NUMBER_SCHEMA},
+                ]
+            },
+        },
+    ]
+}
+_NUMBER_OR_TEXT: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+_TEXTS: dict[str, Any] = {
+    "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]
+}
+
+Entry = Annotated[Any, PlainValidator(_entry), WithJsonSchema(_NUMBER_OR_TEXT)]
+Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_NUMBER_OR_LISTS)]
+Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]
+Matrix = list[list[Entry]]
+Prose = Annotated[str, AfterValidator(_is_prose)]
+Unit = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_unit)]
+Names = Annotated[list[str], Field(min_length=1), AfterValidator(is_unique)]
+Length = Annotated[int, Field(ge=1, le=STATE_COMPONENTS)]
+Title = Annotated[str, Field(max_length=TITLE_CHARACTERS), AfterValidator(_is_printable)]
+License = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_license)]

@@ -1,0 +1,301 @@
+"""Algebras: the Lie algebra that a spec declares, built from its parts, and representations of it.
+
+Comes in: the validated table [algebra], which may hold further algebras, and the parameters that
+its constants may depend on. Goes out: an exact `LieAlgebra` and the declared representations; or an
+error with file, line, key and counter-example. Read next: `coadjoint.spec.sections.structure`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from coadjoint.algebra import (
+    LieAlgebra,
+    Representation,
+    algebra_by_name,
+    central_extension,
+    complexification,
+    direct_sum,
+    from_bracket,
+    from_brackets,
+    from_matrices,
+    leibniz_extension,
+    semidirect_product,
+    semidirect_sum,
+    subalgebra,
+)
+from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.limits import STATE_COMPONENTS
+from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.values import BRACKET_PATTERN
+from coadjoint.spec.sections.algebra_schema import (
+    WAYS,
+    ActionPart,
+    AlgebraPart,
+    ExtensionPart,
+    LeibnizPart,
+    OperandPart,
+    SemidirectPart,
+    SubalgebraPart,
+)
+from coadjoint.spec.sections.matrix_brackets import read_bracket
+from coadjoint.spec.sections.representations import (
+    by_matrices,
+    check_basis_names,
+    located,
+    places_of,
+    read_matrices,
+    representation_of,
+)
+
+_BRACKET = re.compile(BRACKET_PATTERN, re.ASCII)
+
+
+def read_algebra(
+    source: Source,
+    part: AlgebraPart | OperandPart,
+    system: str,
+    scalars: Scalars | None = None,
+    key: KeyPath = ("algebra",),
+) -> LieAlgebra:
+    """An algebra of a spec; one declared by brackets or matrices takes the system's name.
+
+    Args:
+        source: The text of the spec.
+        part: The table, such as [algebra].
+        system: Name of the system.
+        scalars: The parameters that constants may depend on.
+        key: Where the table stands.
+
+    Raises:
+        AlgebraError: What is declared makes no Lie algebra, or the name is unknown.
+        SpecError: A name of the basis is unknown, or a matrix has the wrong size.
+    """
+    return _Algebras(source, system, scalars or Scalars()).algebra(part, key)
+
+
+class _Algebras:
+    """The building of one algebra from its parts, each at its key in the file."""
+
+    def __init__(self, source: Source, system: str, scalars: Scalars) -> None:
+        self.source, self.system, self.scalars = source, system, scalars
+
+    def algebra(self, part: AlgebraPart | OperandPart, key: KeyPath) -> LieAlgebra:
+        """The algebra of a table, or of a name in quotes."""
+        (way,) = [way for way in WAYS if getattr(part, way) is not None]
+        declared, inner = getattr(part, way), (*key, way)
+        if way == "name":
+            return self._by_name(declared, key)
+        if way in ("brackets", "matrices"):
+            basis = tuple(part.basis or declared)
+            check_basis_names(self.source, (*key, "basis"), basis)
+            algebra = (
+                self._by_brackets(declared, inner, basis)
+                if way == "brackets"
+                else self._by_matrices(declared, inner, basis, part.bracket)
+            )
+        else:
+            algebra = getattr(self, f"_{way}")(declared, inner)
+            self._check_single(algebra, inner)
+        return self._with_blocks(algebra, part.blocks or {}, key)
+
+    def _by_name(self, name: str, key: KeyPath) -> LieAlgebra:
+        key = self._or_text(key, "name")
+        with located(self.source, key):
+            return algebra_by_name(name, most=STATE_COMPONENTS)
+
+    def _or_text(self, key: KeyPath, inner: str) -> KeyPath:
+        """The key of a name, which may stand for the whole table."""
+        return (*key, inner) if (*key, inner) in self.source.positions.values else key
+
+    def _with_blocks(
+        self, algebra: LieAlgebra, declared: Mapping[str, list[str]], key: KeyPath
+    ) -> LieAlgebra:
+        """The algebra with the declared blocks beside its own."""
+        if not declared:
+            return algebra
+        blocks = {
+            name: places_of(self.source, (*key, "blocks", name), names, algebra.basis)
+            for name, names in declared.items()
+        }
+        return replace(algebra, blocks={**algebra.blocks, **blocks})
+
+    # -- by brackets and by matrices ----------------------------------------------------
+
+    def _by_brackets(
+        self, texts: Mapping[str, str], key: KeyPath, basis: tuple[str, ...]
+    ) -> LieAlgebra:
+        brackets = {
+            pair: read_combination(self.source, (*key, text), texts[text], basis, self.scalars)
+            for pair, text in self._pairs(texts, key, basis).items()
+        }
+        with located(self.source, key):
+            return from_brackets(self.system, basis, brackets)
+
+    def _pairs(
+        self, texts: Iterable[str], key: KeyPath, basis: Sequence[str]
+    ) -> dict[tuple[int, int], str]:
+        """The keys ``[e1, e2]`` of a table by the places of their pairs, each pair once."""
+        pairs: dict[tuple[int, int], str] = {}
+        for text in texts:
+            i, j = self._pair(text, (*key, text), basis)
+            if i == j or (i, j) in pairs or (j, i) in pairs:
+                problem = f"the pair of {basis[i]} and {basis[j]} is declared twice"
+                if i == j:
+                    problem = f"{text} is declared, the bracket of {basis[i]} with itself"
+                raise self.source.fault(
+                    (*key, text),
+                    problem,
+                    found=text,
+                    expected="each pair of different vectors once, in either order",
+                    hint="Remove it.",
+                    at=self.source.positions.key((*key, text)),
+                    kind=AlgebraError,
+                )
+            pairs[i, j] = text
+        return pairs
+
+    def _pair(self, text: str, key: KeyPath, basis: Sequence[str]) -> tuple[int, int]:
+        """The places of e1 and e2 in a key ``[e1, e2]``."""
+        found = _BRACKET.fullmatch(text)
+        unknown = [name for name in found.groups() if name not in basis] if found else [text]
+        if found is None or unknown:
+            raise self.source.fault(
+                key,
+                f"{text!a} is no bracket of the basis",
+                found=unknown[0],
+                expected="a key such as '[e1, e2]' with names of the basis",
+                hint=did_you_mean(unknown[0], basis),
+                at=self.source.positions.key(key),
+            )
+        return basis.index(found[1]), basis.index(found[2])
+
+    def _by_matrices(
+        self,
+        tables: Mapping[str, list[list[Any]]],
+        key: KeyPath,
+        basis: tuple[str, ...],
+        bracket: str | None,
+    ) -> LieAlgebra:
+        matrices, size = read_matrices(self.source, key, tables, basis, self.scalars)
+        for name in basis:
+            if name not in matrices:
+                raise self.source.fault(
+                    key,
+                    f"the matrix of {name!r} is missing",
+                    found=name,
+                    expected=f"a matrix for each of {listed(basis)}",
+                    hint=f"Write {name} = [[...], [...]] among the matrices.",
+                )
+        chosen = [matrices[name] for name in basis]
+        if bracket is None:
+            with located(self.source, key):
+                return from_matrices(self.system, basis, chosen)
+        inner = (*key[:-1], "bracket")
+        of_two = read_bracket(self.source, inner, bracket, size, self.scalars)
+        with located(self.source, inner):
+            return from_bracket(self.system, basis, chosen, of_two)
+
+    # -- products -----------------------------------------------------------------------
+
+    def _direct_sum(self, parts: Sequence[OperandPart], key: KeyPath) -> LieAlgebra:
+        summands: list[LieAlgebra] = []
+        for place, part in enumerate(parts):
+            summands.append(self.algebra(part, (*key, place)))
+            self._check_dimension(sum(summand.dimension for summand in summands), key)
+        with located(self.source, key):
+            return direct_sum(summands)
+
+    def _semidirect(self, part: SemidirectPart, key: KeyPath) -> LieAlgebra:
+        acting = self.algebra(part.algebra, (*key, "algebra"))
+        if part.ideal is not None and part.action is not None:
+            ideal = self.algebra(part.ideal, (*key, "ideal"))
+            self._check_dimension(acting.dimension + ideal.dimension, key)
+            inner = (*key, "action")
+            action = self._action(acting, part.action, inner, "action")
+            with located(self.source, inner):
+                return semidirect_sum(acting, ideal, action)
+        spaces: list[tuple[str, Representation]] = []
+        for prefix, space in (part.representations or {}).items():
+            inner = (*key, "representations", prefix)
+            check_basis_names(self.source, inner, (prefix,))
+            spaces.append((prefix, self._action(acting, space, inner, prefix)))
+            self._check_dimension(acting.dimension + sum(s.dimension for _, s in spaces), key)
+        with located(self.source, key):
+            return semidirect_product(acting, spaces)
+
+    def _action(
+        self, algebra: LieAlgebra, part: ActionPart, key: KeyPath, name: str
+    ) -> Representation:
+        """The representation of a name, or by matrices."""
+        if part.name is not None:
+            return representation_of(self.source, self._or_text(key, "name"), algebra, part.name)
+        inner = (*key, "matrices")
+        return by_matrices(self.source, inner, algebra, name, part.matrices or {}, self.scalars)
+
+    def _extension(self, part: ExtensionPart, key: KeyPath) -> LieAlgebra:
+        algebra = self.algebra(part.algebra, (*key, "algebra"))
+        check_basis_names(self.source, (*key, "center"), (part.center,))
+        inner = (*key, "cocycle")
+        cocycle = {
+            pair: read_coefficient(self.source, (*inner, text), part.cocycle[text], self.scalars)
+            for pair, text in self._pairs(part.cocycle, inner, algebra.basis).items()
+        }
+        with located(self.source, inner):
+            return central_extension(algebra, cocycle, part.center)
+
+    def _leibniz(self, part: LeibnizPart, key: KeyPath) -> LieAlgebra:
+        algebra = self.algebra(part.algebra, (*key, "algebra"))
+        self._check_dimension(algebra.dimension * part.order, key)
+        with located(self.source, key):
+            return leibniz_extension(algebra, part.order)
+
+    def _complexification(self, part: OperandPart, key: KeyPath) -> LieAlgebra:
+        algebra = self.algebra(part, key)
+        self._check_dimension(2 * algebra.dimension, key)
+        with located(self.source, key):
+            return complexification(algebra)
+
+    def _subalgebra(self, part: SubalgebraPart, key: KeyPath) -> LieAlgebra:
+        algebra, inner = self.algebra(part.algebra, (*key, "algebra")), (*key, "basis")
+        vectors = {}
+        for name, text in part.basis.items():
+            check_basis_names(self.source, (*inner, name), (name,))
+            found = read_combination(self.source, (*inner, name), text, algebra.basis, self.scalars)
+            places = range(algebra.dimension)
+            vectors[name] = tuple(found.get(place, Fraction(0)) for place in places)
+        with located(self.source, inner):
+            return subalgebra(algebra, vectors)
+
+    # -- what any product must be -------------------------------------------------------
+
+    def _check_dimension(self, dimension: int, key: KeyPath) -> None:
+        """Refuse a product that would be too large before it is built."""
+        if dimension > STATE_COMPONENTS:
+            raise self.source.fault(
+                key,
+                f"the algebra would have {dimension} dimensions",
+                found=dimension,
+                expected=f"at most {STATE_COMPONENTS} (STATE_COMPONENTS)",
+                kind=LimitError,
+                limit="STATE_COMPONENTS",
+            )
+
+    def _check_single(self, algebra: LieAlgebra, key: KeyPath) -> None:
+        """Refuse a product whose parts bring one name twice."""
+        for place, name in enumerate(algebra.basis):
+            if name in algebra.basis[:place]:
+                raise self.source.fault(
+                    key,
+                    f"the basis would have two vectors {name!r}",
+                    found=name,
+                    expected="names that differ",
+                    hint="Choose another name here.",
+                )
