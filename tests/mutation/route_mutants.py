@@ -6,7 +6,10 @@ Read next: `tests.mutation.routes`, the list, and `tests.mutation.route_judge`, 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
+
+ROOT = Path(__file__).parents[2]
+DERIVE = ROOT / "src" / "coadjoint" / "derive"
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,9 @@ def of(
     *changes: Change,
     tests: tuple[str, ...] = (),
 ) -> tuple[RouteMutant, ...]:
-    """Changes of one module of ``derive/``, judged by the same systems and tests."""
-    file = f"src/coadjoint/derive/{module}.py"
+    """Changes of one module somewhere in ``derive/``, judged by the same systems and tests."""
+    (path,) = DERIVE.rglob(f"{module}.py")
+    file = path.relative_to(ROOT).as_posix()
     return tuple(
         RouteMutant(route, file, change[0], change[1], systems, tests, *change[2:])
         for change in changes
