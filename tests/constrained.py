@@ -193,6 +193,35 @@ along = "vx == a*cos(psi)*vphi"
 across = "vy == a*sin(psi)*vphi"
 thread = "vz == b*vphi"
 """
+#: Painleve's (1895): a rod slides with one end on a rough floor, its slip speed regularised by eps.
+ROD = """
+title = "A rod on a rough floor"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+theta = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+w = { role = "velocity", of = "y" }
+om = { role = "velocity", of = "theta" }
+[parameters]
+m = { positive = true, default = 1 }
+I = { positive = true, default = "1/3" }
+l = { positive = true, default = 1 }
+g = { default = 1 }
+mu = { positive = true, default = 3 }
+eps = { positive = true, default = 1 }
+[definitions]
+slip = "u + l*sin(theta)*om"
+F = "-mu*floor_reaction*slip/sqrt(slip^2 + eps^2)"
+[lagrangian]
+l = "m*(u^2 + w^2)/2 + I*om^2/2 - m*g*y"
+[constraints]
+floor = "w - l*cos(theta)*om == 0"
+[forces]
+u = "F"
+om = "F*l*sin(theta)"
+"""
 
 
 @cache

@@ -115,10 +115,16 @@ FAULTS = [
         "expected a scalar, as 'u' is",
     ),
     (
-        (CLAIMS, '[forces]\nu = "blade_reaction"\n[claims]'),
+        (CLAIMS, '[forces]\nu = "edge_reaction"\n[claims]'),
         "forces.u",
-        "blade_reaction",
-        "'blade_reaction' is not declared",
+        "edge_reaction",
+        "'edge_reaction' is not declared",
+    ),
+    (
+        (BLADE, BLADE + '\nslow = "u == pull*v"\n[definitions]\npull = "blade_reaction"'),
+        "constraints.slow",
+        "pull",
+        "Write pull without reactions, or use it in [forces] alone.",
     ),
     (
         (CLAIMS, '[dissipation]\nR = "vector(u, v)"\n[claims]'),

@@ -121,24 +121,25 @@ class ReducedBracket:
         Fields that move themselves, ``dD/dt``, add ``<p, dD/dt>``.
         """
         setting, velocities = self.found.setting, self.found.frame.velocities
-        forces = [self.basis.closed(f) for f in external_forces(setting, velocities)]
+        forces = external_forces(setting, velocities)
         slopes = self.field.gradient(self.lagrangian, velocities)
-        p = [self.basis.closed(slope) for slope in slopes]
-        driven = {
-            name: self.field.sum(
+        defects = []
+        for name, row in zip(self.names, self.tensor, strict=True):
+            along = self.basis.fields.get(name, ())
+            driven = self.field.sum(
                 [
-                    *(a * f for a, f in zip(along, forces, strict=True) if a and f),
-                    *(explicit(setting, a) * x for a, x in zip(along, p, strict=True)),
+                    *(a * f for a, f in zip(along, forces, strict=bool(along)) if a and f),
+                    *(explicit(setting, a) * x for a, x in zip(along, slopes, strict=bool(along))),
                 ]
             )
-            for name, along in self.basis.fields.items()
-        }
-        return [
-            motion.rate(self.momenta.get(name, self.field[name]))
-            - self.field.sum(a * b for a, b in zip(row, self.slopes, strict=True) if a and b)
-            - driven.get(name, self.field.zero)
-            for name, row in zip(self.names, self.tensor, strict=True)
-        ]
+            moved = (
+                momenta_along(self.found, self.lagrangian, [along])[0]
+                if along
+                else self.field[name]
+            )
+            turned = self.field.sum(a * b for a, b in zip(row, self.slopes, strict=True) if a and b)
+            defects.append(motion.balance(moved, driven, along) - turned)
+        return defects
 
     # -- the Jacobi identity ------------------------------------------------------------
 

@@ -60,7 +60,11 @@ from coadjoint.spec.schema import (
 )
 from coadjoint.spec.sections.algebras import read_algebra
 from coadjoint.spec.sections.constrained import reaction_shapes
-from coadjoint.spec.sections.constraints import ConstraintReader, solved_velocities
+from coadjoint.spec.sections.constraints import (
+    ConstraintReader,
+    definitions_without_reactions,
+    solved_velocities,
+)
 from coadjoint.spec.sections.definitions import defined_names, read_definitions
 from coadjoint.spec.sections.followed import FollowedReader
 from coadjoint.spec.sections.lax import read_lax
@@ -142,7 +146,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     defined = defined_names(source, file.definitions)
     named: dict[KeyPath, str] = {("observables", each): each for each in file.observables}
     check_names(source, variables, given, (), defined | named)
-    definitions = read_definitions(source, file.definitions, (*variables, *given))
+    declared = (*variables, *given)
+    definitions = read_definitions(source, definitions_without_reactions(file), declared)
     if algebra is not None:
         check_blocks(source, variables, algebra)
     poisson = None
@@ -152,9 +157,14 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     check_routes(source, file)
     check_covered(source, file, variables, algebra)
     check_claims(source, file, variables)
-    quantities: tuple[Quantity, ...] = (*variables, *given, *definitions)
+    quantities: tuple[Quantity, ...] = (*declared, *definitions)
     constrained = ConstraintReader(source, file, variables, quantities)
     constraints = constrained.constraints()
+    if len(definitions) < len(file.definitions):
+        reactions = reaction_shapes(constraints)
+        definitions = read_definitions(source, file.definitions, declared, reactions)
+        quantities = (*declared, *definitions)
+        constrained = ConstraintReader(source, file, variables, quantities)
     formulas = _Formulas(source, file, variables, quantities)
     observables = formulas.observables(constraints)
     actions = SymmetryReader(source, state_of(variables), formulas.quantities, observables)
@@ -193,8 +203,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         transformations=actions.transformations(file.transformations),
         brackets=actions.brackets(file.claims.brackets),
         constraints=constraints,
-        forces=constrained.forces(),
-        dissipation=constrained.dissipation(),
+        forces=constrained.forces(constraints),
+        dissipation=constrained.dissipation(constraints),
         domain=constrained.domain(constraints),
         relaxation=constrained.relaxation(),
         rolling=rolling,

@@ -26,6 +26,7 @@ from coadjoint.derive.equations import Equations, Step, rate, symbol
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import applied, mechanics
 from coadjoint.derive.mechanics.legendre import Matrix
+from coadjoint.derive.mechanics.parts import in_parts, slopes
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -51,8 +52,8 @@ def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Elemen
     field, spec = setting.field, setting.spec
     found = dict.fromkeys(velocities, field.zero) | _declared(setting, "velocity")
     if spec.dissipation is not None:
-        slopes = field.gradient(setting.formula(spec.dissipation), velocities)
-        found = {name: found[name] - s for name, s in zip(velocities, slopes, strict=True)}
+        lost = slopes(setting, spec.dissipation, velocities)
+        found = {name: found[name] - s for name, s in zip(velocities, lost, strict=True)}
     return tuple(found[name] for name in velocities)
 
 
@@ -64,7 +65,7 @@ def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
         if variable.name in setting.spec.forces and variable.role in roles
         for name, part in zip(
             variable.components,
-            setting.components(setting.spec.forces[variable.name]),
+            in_parts(setting, setting.spec.forces[variable.name]),
             strict=True,
         )
     }

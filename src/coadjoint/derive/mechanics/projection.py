@@ -46,7 +46,7 @@ def projected(equations: Equations) -> Equations | None:
     sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(equations))}
     solves = tuple(
         Solve(
-            solve.matrix,
+            solve.mirrored,  # without what forces add that are proportional to reactions
             [sides.get(name, field.zero) for name in solve.names],
             solve.block,
             [shifts.get(name, name) for name in solve.names],

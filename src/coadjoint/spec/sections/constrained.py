@@ -50,7 +50,7 @@ class Constraint:
     @property
     def reaction(self) -> str:
         """Name of its multiplier."""
-        return f"{self.name}_reaction"
+        return reaction_name(self.name)
 
     @property
     def reactions(self) -> tuple[str, ...]:
@@ -61,6 +61,15 @@ class Constraint:
     def in_one_line(self) -> str:
         """The equation without its line breaks."""
         return self.left.in_one_line
+
+
+def reaction_name(constraint: str) -> str:
+    """Name of the multiplier of a constraint.
+
+    >>> reaction_name("plane")
+    'plane_reaction'
+    """
+    return f"{constraint}_reaction"
 
 
 def reaction_shapes(constraints: Sequence[Constraint]) -> dict[str, Shape]:

@@ -9,7 +9,7 @@ Read next: `coadjoint.derive.mechanics.distribution`.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.expressions import read_expression
@@ -29,6 +29,7 @@ from coadjoint.spec.sections.constrained import (
     Constraint,
     Relaxation,
     Section,
+    reaction_name,
     reaction_shapes,
 )
 from coadjoint.spec.sections.quantities import state_of
@@ -41,7 +42,8 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
     """The velocities that constraints give, each with its constraint and the side it stands on.
 
     A constraint gives a velocity if one side is that velocity alone and the other one does not
-    depend on it, also not through velocities that earlier constraints give.
+    depend on it, also not through velocities that earlier constraints give; and if no force names
+    its reaction, which is then solved for together with the accelerations.
 
     Args:
         file: The validated tables; formulas that cannot be read yet are passed over.
@@ -55,9 +57,10 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
     velocities = {name for name, part in file.variables.items() if part.role == "velocity"}
     found: dict[str, tuple[str, int]] = {}
     reached: dict[str, set[str]] = {}
+    pressing = constraints_named(file, _texts_of_forces(file))
     for constraint, text in (file.constraints or {}).items():
         sides = [_parsed(side, file) for side in text.split("==")]
-        if len(sides) != _SIDES:
+        if len(sides) != _SIDES or constraint in pressing:
             continue
         left, right = sides
         for own, other, sign in ((left, right, 1), (right, left, -1)):
@@ -75,6 +78,24 @@ def solved_velocities(file: SpecFile) -> Mapping[str, tuple[str, int]] | None:
                 reached[own.name] = names
                 break
     return found
+
+
+def constraints_named(file: SpecFile, texts: Iterable[str]) -> set[str]:
+    """The constraints whose reactions are named in some texts, also through definitions."""
+    trees = (tree for text in texts if (tree := _parsed(text, file)) is not None)
+    names = set[str]().union(*(_names(tree, file) for tree in trees))
+    return {name for name in file.constraints or {} if reaction_name(name) in names}
+
+
+def definitions_without_reactions(file: SpecFile) -> dict[str, str]:
+    """The definitions that constraints may use: those that name no reaction."""
+    texts = file.definitions.items()
+    return {key: text for key, text in texts if not constraints_named(file, [text])}
+
+
+def _texts_of_forces(file: SpecFile) -> list[str]:
+    """What acts beside the Lagrangian: forces and Rayleigh's function."""
+    return [*file.forces.values(), *([file.dissipation.R] if file.dissipation else [])]
 
 
 def _parsed(text: str, file: SpecFile) -> Node | None:
@@ -95,6 +116,7 @@ def _names(node: Node, file: SpecFile) -> set[str]:
             name = str(getattr(part, "name", "") or getattr(part, "function", ""))
             if name in defined and name not in seen:
                 seen.add(name)
+                found.add(name)
                 inner = _parsed(defined[name], file)
                 pending += [] if inner is None else [inner]
             elif isinstance(part, Name | Index):
@@ -143,19 +165,39 @@ class ConstraintReader:
         found = []
         for name, text in (self.file.constraints or {}).items():
             key: KeyPath = ("constraints", name)
+            self._check_names_no_reaction(key, text)
             left, _, right = read_relation(self.source, key, text, EQUATION, scope)
             found.append(Constraint(name, left, right, *solved.get(name, ())))
         return tuple(found)
 
-    def forces(self) -> dict[str, Formula]:
+    def _check_names_no_reaction(self, key: KeyPath, text: str) -> None:
+        """A constraint rests on no definition that names a reaction."""
+        trees = (_parsed(side, self.file) for side in text.split("=="))
+        named = set[str]().union(*(_names(tree, self.file) for tree in trees if tree is not None))
+        defined = {name.split("(")[0].strip() for name in self.file.definitions}
+        defined -= {name.split("(")[0].strip() for name in definitions_without_reactions(self.file)}
+        for name in sorted(named & defined):
+            raise self.source.fault(
+                key,
+                f"the constraint rests on {name}, which names a reaction",
+                found=name,
+                expected="an equation between velocities, which no reaction enters",
+                hint=f"Write {name} without reactions, or use it in [forces] alone.",
+            )
+
+    def forces(self, constraints: Sequence[Constraint]) -> dict[str, Formula]:
         """The declared forces by what they act along.
+
+        Args:
+            constraints: Those whose reactions may be named, as by friction.
 
         Raises:
             SpecError: There is no such variable, a momentum is named whose velocity has a
                 Lagrangian, the force has another shape, or the motion is restricted.
         """
         self._check_whole("forces")
-        scope = make_scope("a force", self.motion, self.quantities, driven=DRIVING)
+        reactions = reaction_shapes(constraints)
+        scope = make_scope("a force", self.motion, self.quantities, reactions, driven=DRIVING)
         return {
             name: self._along(("forces", name), text, scope, self._forced)
             for name, text in self.file.forces.items()
@@ -174,8 +216,11 @@ class ConstraintReader:
             roles |= {"coordinate"} if self.file.poisson is not None else set()
         return {each.name: each for each in self.variables if each.role in roles}
 
-    def dissipation(self) -> Formula | None:
+    def dissipation(self, constraints: Sequence[Constraint]) -> Formula | None:
         """Rayleigh's function.
+
+        Args:
+            constraints: Those whose reactions may be named, as by friction.
 
         Raises:
             SpecError: It is no formula of velocities, or the motion is restricted.
@@ -184,7 +229,8 @@ class ConstraintReader:
             return None
         self._check_whole("dissipation")
         key: KeyPath = ("dissipation", "R")
-        scope = make_scope("a dissipation", self.motion, self.quantities, driven=DRIVING)
+        reactions = reaction_shapes(constraints)
+        scope = make_scope("a dissipation", self.motion, self.quantities, reactions, driven=DRIVING)
         formula = read_formula(self.source, key, self.file.dissipation.R, scope)
         owners = {part: each.name for each in self.velocities.values() for part in each.components}
         named = {getattr(node, "name", "") for node in walk(formula.tree)}

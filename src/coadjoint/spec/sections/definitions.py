@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from coadjoint import limits
 from coadjoint.spec.core.expressions import read_expression
@@ -53,6 +54,7 @@ def read_definitions(
     source: Source,
     texts: Mapping[str, str],
     quantities: Sequence[Variable | Parameter | Input | Time],
+    reactions: Mapping[str, Shape] = MappingProxyType({}),
 ) -> tuple[Definition, ...]:
     """The definitions in order; each may use those before it.
 
@@ -60,12 +62,13 @@ def read_definitions(
         source: The text of the spec.
         texts: The table [definitions]; its names have been found free.
         quantities: All variables, parameters, inputs and the time.
+        reactions: Shapes of the multipliers of constraints, by name.
 
     Raises:
         SpecError: A key or an expression is none, or a name in it is unknown.
         LimitError: With the earlier definitions put in, an expression is too large.
     """
-    shapes: dict[str, Shape] = {}
+    shapes: dict[str, Shape] = dict(reactions)
     for quantity in quantities:
         shapes |= {**dict.fromkeys(quantity.components, ()), quantity.name: quantity.value_shape}
     known: dict[str, Definition] = {}
