@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.algebra.linear import Span
 from coadjoint.exact import Field
+from coadjoint.exact.linear import Span
 from coadjoint.groups import MatrixGroup, matrix_group
 from coadjoint.groups.matrix import complex_multiple, determinant, identity
 from tests.groups.exactly import random_point, same

@@ -304,7 +304,11 @@ MUTANTS = (
         "equations.exact.energy) - energy]",
         "equations.exact.energy) + energy]",
     ),
-    Mutant(POISSON + "casimirs.py", "== len(slopes) + 1", ">= len(slopes)"),
+    Mutant(
+        POISSON + "casimirs.py",
+        "independent_rows(structure.field, slopes)",
+        "range(len(slopes))",
+    ),
     Mutant(POISSON + "casimirs.py", "if len(given) >= expected:", "if given:"),
     Mutant(POISSON + "summands.py", "(i, j, *reached[id(entry)])", "(i, j)"),
     Mutant(POISSON + "summands.py", "c if a < b else -c", "c"),
@@ -340,14 +344,14 @@ MUTANTS = (
     Mutant(PROVE + "charts.py", "met = len(relations) == missing", "met = bool(relations)"),
     # ranks, points of constrained motions, integrals that are counted
     Mutant(
-        "src/coadjoint/poisson/ranks.py",
+        "src/coadjoint/exact/ranks.py",
         "for column, value in row.items() if value.sign}",
         "for column, value in row.items()}",
     ),
     Mutant(
-        "src/coadjoint/poisson/ranks.py",
+        "src/coadjoint/exact/ranks.py",
         "islice(primes(), TRIES)",
-        "[PRIME] * TRIES",
+        "[2**61 - 1] * TRIES",
     ),
     Mutant(PROVE + "functions.py", "None if moves else self._turn(group)", "None"),
     Mutant(PROVE + "functions.py", "turn if multiple > 0 else _inverse(turn)", "turn"),

@@ -34,7 +34,7 @@ JUDGES = {
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",
     ),
-    "src/coadjoint/poisson/ranks": ("tests/poisson/test_ranks.py",),
+    "src/coadjoint/exact/ranks": ("tests/exact/test_ranks.py",),
     "src/coadjoint/poisson/casimirs": (
         "tests/poisson/test_casimirs.py",
         "tests/prove/test_completeness.py",

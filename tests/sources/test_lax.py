@@ -16,7 +16,7 @@ from coadjoint.derive.routes.manakov import find_pair
 from coadjoint.derive.setting import make_setting as with_symbols
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Field
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.lax import lax_decision
 from tests.specs import RIGID_BODY, shipped, spec

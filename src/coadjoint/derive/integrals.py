@@ -22,7 +22,7 @@ from coadjoint.derive.routes.lie_poisson import hamiltonian
 from coadjoint.derive.routes.manakov import find_pair
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, Field
-from coadjoint.poisson.ranks import independent_rows
+from coadjoint.exact.ranks import independent_rows
 
 
 @dataclass(frozen=True)

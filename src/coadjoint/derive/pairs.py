@@ -12,11 +12,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from coadjoint.algebra.linear import Span
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, Field
+from coadjoint.exact.linear import Span
 from coadjoint.spec.core.faults import listed
 
 Matrix = tuple[tuple[Element, ...], ...]

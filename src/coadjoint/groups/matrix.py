@@ -12,8 +12,8 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any
 
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
+from coadjoint.exact.linear import Span
 
 #: A square matrix as a tuple of rows.
 Matrix = tuple[tuple[Any, ...], ...]

@@ -15,8 +15,8 @@ from typing import Any
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra import matrices as sparse
-from coadjoint.algebra.linear import Span, nullspace
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.linear import Span, nullspace
 from coadjoint.groups.matrix import Matrix, combination
 
 #: Whether the form transposes mu, and the number in front of the trace.

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.witness import is_nonzero
 from coadjoint.poisson.generating import generating
 from coadjoint.poisson.jacobi import Triple, schouten_bracket, slopes_by
-from coadjoint.poisson.ranks import generic_rank
 
 if TYPE_CHECKING:
     from coadjoint.poisson.casimirs import CasimirSearch

@@ -25,8 +25,8 @@ from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
 from coadjoint.derive.mechanics.legendre import LARGEST_BLOCK
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.ranks import generic_rank, source_of_ranks
 from coadjoint.exact.witness import is_entire
-from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal

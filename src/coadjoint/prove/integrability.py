@@ -21,8 +21,8 @@ from coadjoint.derive import Equations
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.exact import Element, Field
+from coadjoint.exact.ranks import independent_rows
 from coadjoint.exact.witness import is_entire, is_nonzero
-from coadjoint.poisson.ranks import independent_rows
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST, IN_PART
 from coadjoint.prove.findings import (

@@ -20,12 +20,12 @@ from collections.abc import Sequence
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra.attitudes import has_fixed_row
 from coadjoint.algebra.catalogue import inverse_by
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
 from coadjoint.derive.equations import Relation
 from coadjoint.derive.interpret import Matrix, inverse
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
+from coadjoint.exact.linear import Span
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.groups.vectors import apply, matmul, scale, transpose
 

@@ -20,7 +20,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
 from coadjoint.derive.mechanics.legendre import mass_matrix
 from coadjoint.derive.pairs import LaxPair, Matrix, combined, diagonal
@@ -28,6 +27,7 @@ from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, element_text
+from coadjoint.exact.linear import Span
 from coadjoint.spec import Spec
 from coadjoint.spec.core.faults import listed
 

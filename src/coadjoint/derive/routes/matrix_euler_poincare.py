@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
 from coadjoint.derive.equations import Equations, Step, partial, rate, signed
 from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
@@ -28,6 +27,7 @@ from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, setting_of, weighted
 from coadjoint.exact import Element, Field
+from coadjoint.exact.linear import Span
 from coadjoint.spec import Spec
 from coadjoint.spec.core.faults import listed
 from coadjoint.spec.model import Variable, unpacked
