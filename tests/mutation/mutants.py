@@ -218,7 +218,7 @@ MUTANTS = (
     ),
     Mutant(EXACT + "element.py", "Quotient(-q.numer, q.powers)", "Quotient(q.numer, q.powers)"),
     # groups
-    Mutant(GROUPS + "vectors.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
+    Mutant(EXACT + "dense.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
     Mutant(
         GROUPS + "group.py",
         "product(g, self.matrix(eta), self.inverse(g))",
@@ -237,7 +237,7 @@ MUTANTS = (
         "right_translation(group.matrix(xi))",
     ),
     Mutant(
-        GROUPS + "maps.py", "-HALF * trace(matmul(mu, xi)).re", "HALF * trace(matmul(mu, xi)).re"
+        GROUPS + "maps.py", "-HALF * trace(product(mu, xi)).re", "HALF * trace(product(mu, xi)).re"
     ),
     Mutant(GROUPS + "maps.py", "HALF * (mu[k][j] - mu[j][k])", "HALF * (mu[j][k] - mu[k][j])"),
     Mutant(GROUPS + "maps.py", "((zero, -a3, a2), (a3", "((zero, a3, a2), (a3"),
@@ -261,10 +261,14 @@ MUTANTS = (
     # Poisson brackets
     Mutant(
         POISSON + "brackets.py",
-        "density * minor * (-1) ** (i + j)",
-        "density * minor * (-1) ** (i + j + 1)",
+        "density * value * (-1) ** (i + j)",
+        "density * value * (-1) ** (i + j + 1)",
     ),
-    Mutant(POISSON + "brackets.py", "(-1) ** place * rows[0][k]", "rows[0][k]"),
+    Mutant(EXACT + "dense.py", "(-1) ** j * x * determinant", "x * determinant"),
+    Mutant(EXACT + "dense.py", "(-1) ** (i + j) * determinant", "determinant"),
+    Mutant(EXACT + "dense.py", "_join(operator.sub, a, b)", "_join(operator.add, a, b)"),
+    Mutant(EXACT + "linear.py", "prime, equations, lambda", "prime, equations[1:], lambda"),
+    Mutant(EXACT + "ansatz.py", "if last in solved:", "if last not in solved:"),
     Mutant(POISSON + "brackets.py", "(a, n + a): scale[a] for", "(a, n + a): -scale[a] for"),
     Mutant(
         POISSON + "brackets.py", "entries[n + a, n + b] = value", "entries[n + a, n + b] = -value"
@@ -291,7 +295,7 @@ MUTANTS = (
     ),
     # proofs
     Mutant(PROVE + "identities.py", "tensor[i][j] + tensor[j][i]", "tensor[i][j] - tensor[j][i]"),
-    Mutant(PROVE + "identities.py", "rate - _dot(field, in_vel", "rate + _dot(field, in_vel"),
+    Mutant(PROVE + "identities.py", "rate - dot(in_vel", "rate + dot(in_vel"),
     Mutant(
         PROVE + "claims.py",
         "first.closed(a) - other.closed(b)",

@@ -32,9 +32,9 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
-from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import solve_with_right_side
+from coadjoint.exact.dense import determinant
 from coadjoint.exact.linear import SpanModulo
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
