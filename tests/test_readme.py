@@ -103,7 +103,10 @@ def test_the_example_of_a_spec_is_the_one_that_ships():
 
 def test_what_a_command_prints_is_what_it_printed():
     """Each console block is a command with the output of today."""
-    shown = [block.removeprefix("$ coadjoint ").split("\n", 1) for block in blocks("console", PAGES["algebras"])]
+    shown = [
+        block.removeprefix("$ coadjoint ").split("\n", 1)
+        for block in blocks("console", PAGES["algebras"])
+    ]
     assert shown
     for command, output in shown:
         result = CliRunner().invoke(main, shlex.split(command))
@@ -176,7 +179,9 @@ def test_tables_are_complete():
 def test_every_shipped_system_is_listed():
     """The table of systems names those that ship, and no others; the README counts them."""
     assert f"[{len(SYSTEMS)} of them](docs/systems.md)" in README
-    lines = [line for line in PAGES["systems"].splitlines() if line.startswith("| ") and "_" in line]
+    lines = [
+        line for line in PAGES["systems"].splitlines() if line.startswith("| ") and "_" in line
+    ]
     named = {name for line in lines for name in re.findall(r"`([a-z0-9_]+)`", line)}
     assert named == set(SYSTEMS)
 
