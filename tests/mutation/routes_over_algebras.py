@@ -246,7 +246,7 @@ PAIRS = (
     ),
     *of(
         "manakov",
-        "manakov",
+        "planes",
         ("rigid_body",),
         ("return a, tuple(x**2 for x in a)", "return a, a"),
         ("(turn * spectral, diagonal(field, a))", "(-turn * spectral, diagonal(field, a))"),
@@ -254,13 +254,13 @@ PAIRS = (
     ),
     *of(
         "manakov",
-        "manakov",
+        "planes",
         ("quadratic_potential_so3",),
         ("[(-share, body.field)", "[(share, body.field)", "the potential +S in the pair found"),
     ),
     *of(
         "manakov",
-        "manakov",
+        "planes",
         (),  # another pair is found then, which is right, too, but not the book's
         ("- inertia[1, 2]) / 2", "+ inertia[1, 2]) / 2"),
         ("inertia[0, j] - first for j", "inertia[0, j] + first for j"),

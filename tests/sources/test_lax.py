@@ -11,8 +11,8 @@ import pytest
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.derive.integrals import expanded_traces, lax_integrals, pair_of, slope_row
+from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair, bracket, combined, diagonal, multiplied
-from coadjoint.derive.routes.manakov import find_pair
 from coadjoint.derive.setting import make_setting as with_symbols
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Field

@@ -17,9 +17,9 @@ from fractions import Fraction
 from functools import cache
 from math import gcd, lcm
 
+from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair, Matrix, declared_pair, diagonal, multiplied
 from coadjoint.derive.routes.lie_poisson import hamiltonian
-from coadjoint.derive.routes.manakov import find_pair
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, Field
 from coadjoint.poisson.ranks import independent_rows

@@ -245,15 +245,6 @@ class Setting:
         return self.field.vector(by_name[name] for name in self.state)
 
 
-def setting_of(given: Spec | Setting) -> Setting:
-    """What routes start from, so that each takes a Spec, too."""
-    if isinstance(given, Setting):
-        return given
-    from coadjoint.derive import make_setting as with_symbols_of_routes
-
-    return with_symbols_of_routes(given)
-
-
 def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     """The Setting of a Spec: symbols for all its components, room for all its function calls.
 

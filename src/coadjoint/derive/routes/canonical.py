@@ -31,7 +31,7 @@ from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel
 from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
@@ -43,14 +43,13 @@ Pair = tuple[str, str, Fraction]
 Magnetic = Mapping[tuple[str, str], Element]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Hamilton's equations.
 
     Raises:
         DerivationError: The Legendre transform cannot be inverted, or nothing says what the momenta
             of a declared Hamiltonian are.
     """
-    setting = setting_of(given)
     if setting.spec.poisson is None and not setting.momenta:
         return _in_own_momenta(setting)
     h, solves = _hamiltonian(setting)

@@ -35,7 +35,7 @@ from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, 
 from coadjoint.derive.mechanics.emission import emission, lagrangian_of
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
@@ -88,13 +88,12 @@ class _Body:
         return HALF * self.product(self.q, self.omega)
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Lagrange's equations for unit quaternions.
 
     Raises:
         DerivationError: The algebra is not so(3), or what is advected is no vector.
     """
-    setting = setting_of(given)
     check_rotations(setting)
     lagrangian = lagrangian_of(setting)
     body = _body(setting)

@@ -30,7 +30,7 @@ from coadjoint.algebra.representation import adjoint
 from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
 from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.legendre import legendre_transform
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -78,13 +78,12 @@ def _pairs(setting: Setting) -> list[_Pair]:
     return pairs
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion of a canonical pair by Clebsch's principle.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
     field, lagrangian, pairs = setting.field, lagrangian_of(setting), _pairs(setting)
     q = tuple(name for each, _, _ in pairs for name in each)
     p = tuple(name for _, each, _ in pairs for name in each)

@@ -26,24 +26,22 @@ from coadjoint.algebra import LieAlgebra, complexification, same_constants
 from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
 from coadjoint.derive.observables import observables
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.groups.complex_numbers import Complex
 from coadjoint.groups.vectors import identity
-from coadjoint.spec import Spec
 
 ROUTE = "complexification"
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion as real and imaginary parts of complex ones.
 
     Raises:
         DerivationError: The algebra is no complexification, something is advected, or the
             Hamiltonian calls functions that complex numbers here do not have.
     """
-    setting = setting_of(given)
     real = real_algebra(setting)
     formula = setting.spec.hamiltonian
     assert formula is not None, "the reader asks for a Hamiltonian on this route"

@@ -26,10 +26,9 @@ from coadjoint.derive.mechanics.configuration import Mechanics, applied, in_stat
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
 from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 #: ``table[c][a][b]``.
 Table = tuple[tuple[tuple[Element, ...], ...], ...]
@@ -38,13 +37,12 @@ _LATEX = r"\frac{d}{dt} \frac{\partial l}{\partial v} = \frac{\partial l}{\parti
 _LATEX += r"\dot q = v"
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Hamilton's principle.
 
     Raises:
         DerivationError: The mass matrix is singular, or velocities cannot be solved for.
     """
-    setting = setting_of(given)
     known = mechanics(setting)
     return _in_momenta(known) if setting.momenta else _in_velocities(known)
 

@@ -23,19 +23,19 @@ from coadjoint.derive.mechanics.distribution import Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
-from coadjoint.derive.mechanics.kinematics import Matrix
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.mechanics.kinematics import Matrix, symbols
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
+
+__all__ = ["derive", "symbols"]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Hamel's equations.
 
     Raises:
         DerivationError: As on the route nonholonomic.
     """
-    setting = setting_of(given)
     found = distribution(setting)
     motion = ConstrainedMotion(found)
     lagrangian = lagrangian_of(setting)

@@ -36,7 +36,7 @@ from coadjoint.derive.equations import (
 from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vectors import Vector, add, dot, scale, subtract
@@ -53,13 +53,12 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return fresh(spec, wanted)
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion as geodesics with cyclic coordinates.
 
     Raises:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
     """
-    setting = setting_of(given)
     lagrangian, names = lagrangian_of(setting), _advected(setting)
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)

@@ -19,19 +19,17 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.routes.poisson import hamiltonian_equations
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by the Lie-Poisson bracket.
 
     Raises:
         DerivationError: Neither a Hamiltonian nor an invertible Legendre transform is there.
     """
-    setting = setting_of(given)
     sign = "-" if setting.sign == 1 else ""
     law = (
         f"Lie-Poisson bracket on the dual of {momentum_algebra(setting).name}",

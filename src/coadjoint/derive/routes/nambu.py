@@ -28,23 +28,21 @@ from coadjoint.derive.interpret import determinant
 from coadjoint.derive.observables import observables
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.routes.lie_poisson import hamiltonian
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.errors import CoadjointError
 from coadjoint.exact import Element
 from coadjoint.groups.vectors import dot
 from coadjoint.poisson.casimirs import casimirs
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by gradients alone.
 
     Raises:
         DerivationError: A formula divides by zero, the dual of the algebra has not three
             dimensions, or no distinguished function of it was found.
     """
-    setting = setting_of(given)
     spec, names = setting.spec, setting.state
     if spec.poisson is None:
         h, _ = hamiltonian(setting)

@@ -28,7 +28,7 @@ from coadjoint.derive.equations import Equations, Step, rate, symbol
 from coadjoint.derive.mechanics.emission import emission, lagrangian_of
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform, mass_matrix
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vectors import (
     Matrix,
@@ -41,7 +41,6 @@ from coadjoint.groups.vectors import (
     subtract,
     trace,
 )
-from coadjoint.spec import Spec
 
 ROUTE = "newton-euler"
 AXES: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -72,14 +71,13 @@ class MassPoints:
         )
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Newton's law for the points of the body.
 
     Raises:
         DerivationError: The algebra is neither so(3) nor se(3), the system is not left-invariant,
             or no body of mass points has this kinetic energy.
     """
-    setting = setting_of(given)
     _check_motions(setting)
     lagrangian = lagrangian_of(setting)
     transform = legendre_transform(setting, lagrangian)

@@ -46,26 +46,26 @@ from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.frames import Frame
-from coadjoint.derive.mechanics.kinematics import Matrix
+from coadjoint.derive.mechanics.kinematics import Matrix, symbols
 from coadjoint.derive.mechanics.solver import Definition
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.roots import lifted
-from coadjoint.spec import Spec
+
+__all__ = ["derive", "symbols"]
 
 #: Terms of a bracket up to which the document shows it.
 SHOWN = 8
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Lagrange and d'Alembert's principle.
 
     Raises:
         DerivationError: A constraint is not linear in the velocities or not independent of the
             others, the Lagrangian is not quadratic, or its reduced mass matrix is singular.
     """
-    setting = setting_of(given)
     motion = ConstrainedMotion(distribution(setting))
     lagrangian = lagrangian_of(setting)
     mass = mass_matrix(motion.frame, lagrangian)

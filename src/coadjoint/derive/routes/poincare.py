@@ -20,18 +20,16 @@ from __future__ import annotations
 from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
 from coadjoint.derive.mechanics.emission import emission, lagrangian_of
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Poincare's theorem.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
     lagrangian = lagrangian_of(setting)
     transform = legendre_transform(setting, lagrangian)
     fields = _vector_fields(setting)
