@@ -25,6 +25,7 @@ from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.reference import Reference
 from coadjoint.derive.setting import Declared
 from coadjoint.exact import Element
@@ -179,7 +180,7 @@ def _followed(spec: Spec, each: Reconstructed) -> Quantity:
 
 def _observables(equations: Equations) -> tuple[Quantity, ...]:
     """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
-    spec, found = equations.spec, equations.setting.integrals
+    spec, found = equations.spec, lax_integrals(equations.setting)
     stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
     energy = [
         _emitted("energy", _unit(spec, formula), conserved=keeps_energy(equations))

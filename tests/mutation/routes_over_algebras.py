@@ -60,16 +60,10 @@ REDUCED = (
     ),
     *of(
         "lie-poisson",
-        "lie_poisson",
+        "legendre",
         ("quadratic_potential_so3", "affine_line"),
-        (
-            "setting.field.substitute(transform.energy, velocities), transform.solves",
-            "setting.field.substitute(-transform.energy, velocities), transform.solves",
-        ),
-        (
-            "return setting.formula(spec.hamiltonian), ()",
-            "return setting.field.zero - setting.formula(spec.hamiltonian), ()",
-        ),
+        ("return transform.energy, transform", "return -transform.energy, transform"),
+        ("return setting.hamiltonian, ()", "return -setting.hamiltonian, ()"),
     ),
     *of(
         "hamilton-pontryagin",

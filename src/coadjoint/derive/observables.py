@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
+from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.mechanics.reconstruction import spatial_momentum
 from coadjoint.derive.setting import Setting
@@ -52,7 +53,8 @@ def observables(
         for symmetry in spec.symmetries
         for part in zip(symmetry.components, values[symmetry.name], strict=True)
     ]
-    of_pair = setting.integrals.named if setting.integrals is not None else ()
+    pair = lax_integrals(setting)
+    of_pair = pair.named if pair is not None else ()
     first = () if energy is None else (("energy", energy),)
     of_space = _spatial(setting) if spec.spatial else ()
     return (

@@ -15,6 +15,7 @@ from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Quantity, entries
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.setting import Setting, shaped
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
@@ -233,11 +234,11 @@ def _pairs(setting: Setting) -> list[Pair]:
 
 def _covector(setting: Setting) -> dict[str, Element]:
     """What pairs with the velocity of each position; empty beside magnetic terms."""
-    field, formula = setting.field, setting.spec.lagrangian
+    field = setting.field
     pairs = _pairs(setting)
-    if pairs or setting.spec.poisson is not None or formula is None:
+    if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
         return {q: field[p] / weight for q, p, weight in pairs}
-    slopes = field.gradient(setting.formula(formula), setting.velocities)
+    slopes = mechanics(setting).momenta
     return dict(zip(setting.positions, slopes, strict=True))
 
 

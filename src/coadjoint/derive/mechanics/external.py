@@ -24,8 +24,7 @@ from dataclasses import replace
 
 from coadjoint.derive.equations import Equations, Step, rate, symbol
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.mechanics.configuration import applied, mechanics
-from coadjoint.derive.mechanics.legendre import Matrix
+from coadjoint.derive.mechanics.configuration import Matrix, applied, mechanics
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.spec import Spec

@@ -22,10 +22,10 @@ from itertools import combinations
 
 from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
-from coadjoint.derive.mechanics.legendre import mass_matrix
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.pairs import LaxPair, Matrix, combined, diagonal
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, element_text
 from coadjoint.spec.core.faults import listed
@@ -58,6 +58,7 @@ class Body:
     slopes: tuple[Element, ...]
 
 
+@once
 def find_pair(setting: Setting) -> LaxPair:
     """Manakov's pair of a system on so(n).
 
@@ -87,6 +88,7 @@ def find_pair(setting: Setting) -> LaxPair:
 # -- the system, as matrices ----------------------------------------------------------------------
 
 
+@once
 def body_of(setting: Setting) -> Body:
     """The system as a body in n dimensions.
 
@@ -142,11 +144,10 @@ def _inertia(setting: Setting, planes: Sequence[tuple[Plane, Element]]) -> dict[
     """``M_ij / Omega_ij``, read off the kinetic energy."""
     spec, field = setting.spec, setting.field
     if spec.lagrangian is not None:
-        names, energy = setting.velocities, setting.formula(spec.lagrangian)
-        second = mass_matrix(setting, energy)
+        names, energy = setting.velocities, setting.lagrangian
+        second = mechanics(setting).mass
     else:
-        assert spec.hamiltonian is not None, "the reader asks for a Lagrangian or a Hamiltonian"
-        names, energy = setting.momenta, setting.formula(spec.hamiltonian)
+        names, energy = setting.momenta, setting.hamiltonian
         second = tuple(field.gradient(slope, names) for slope in field.gradient(energy, names))
     rest = dict.fromkeys(names, field.zero)
     for place, (name, row) in enumerate(zip(names, second, strict=True)):
@@ -188,11 +189,10 @@ def _potential(setting: Setting, n: int) -> tuple[Matrix | None, tuple[Element, 
             "one advected symmetric matrix, or nothing advected",
             'Write representation = "symmetric", or declare a pair under [lax].',
         )
-    formula = spec.lagrangian or spec.hamiltonian
-    assert formula is not None, "the reader asks for a Lagrangian or a Hamiltonian"
     sign = -1 if spec.lagrangian is not None else 1
+    energy = setting.lagrangian if spec.lagrangian is not None else setting.hamiltonian
     places = [(i, j) for i in range(n) for j in range(i, n)]
-    gradient = field.gradient(setting.formula(formula), variable.components)
+    gradient = field.gradient(energy, variable.components)
     slopes = dict(zip(places, gradient, strict=True))
     for (i, j), slope in slopes.items():
         if (i != j and slope != 0) or not field.reach(slope) <= {*setting.parameters}:

@@ -24,12 +24,13 @@ from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
 from coadjoint.derive.equations import Relation
 from coadjoint.derive.interpret import Matrix, inverse
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.groups.vectors import apply, matmul, scale, transpose
 
 
+@once
 def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     """``Ad*_{g^-1} mu`` along the basis; ``Ad*_g mu`` if the motion is right-invariant."""
     attitude = setting.spec.attitude

@@ -43,9 +43,7 @@ def derive(setting: Setting) -> Equations:
             Hamiltonian calls functions that complex numbers here do not have.
     """
     real = real_algebra(setting)
-    formula = setting.spec.hamiltonian
-    assert formula is not None, "the reader asks for a Hamiltonian on this route"
-    h = _at_real(setting, setting.formula(formula), real)
+    h = _at_real(setting, setting.hamiltonian, real)
     L = _momenta(setting, real)
     slopes = setting.field.gradient(h, setting.momenta[: real.dimension])
     zeta = tuple(_continued(setting, slope, L) for slope in slopes)

@@ -24,7 +24,7 @@ from fractions import Fraction
 from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.mechanics.configuration import Mechanics, applied, in_state_order, mechanics
 from coadjoint.derive.mechanics.driving import explicit_rate
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.observables import observables
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
@@ -64,17 +64,15 @@ def _in_velocities(known: Mechanics) -> Equations:
 
 def _in_momenta(known: Mechanics) -> Equations:
     """``dq/dt = v, dp/dt = dl/dq`` with v from ``p = dl/dv``."""
-    setting, field = known.setting, known.setting.field
-    transform = legendre_transform(setting, known.lagrangian)
+    setting = known.setting
+    transform = legendre(setting)
     pairs = zip(setting.momenta, known.slopes, setting.weights, strict=True)
     named = dict(zip(setting.positions, setting.elements(setting.velocities), strict=True))
     named |= {p: slope * weight for p, slope, weight in pairs}
     rates = in_state_order(setting, named)
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = field.substitute(transform.energy, velocities)
     tensor = poisson_structure(setting).tensor
-    values = observables(setting, energy)
-    exact = Exact(transform.definitions, rates, energy, values, tensor, transform.solves)
+    h, values = transform.energy, observables(setting, transform.energy)
+    exact = Exact(transform.definitions, rates, h, values, tensor, transform.solves)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates, transform))
 
 

@@ -27,8 +27,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.mechanics.emission import emission, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
@@ -48,11 +48,11 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    lagrangian = lagrangian_of(setting)
+    lagrangian = setting.lagrangian
     action = _action(setting, lagrangian)
-    transform = legendre_transform(setting, lagrangian)
+    transform = legendre(setting)
     rates = setting.in_state_order(_momentum_equation(setting, action), _advection(setting, action))
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     steps = _steps(setting, action, transform, rates)
     return Equations(setting, "hamilton-pontryagin", exact, steps)
 

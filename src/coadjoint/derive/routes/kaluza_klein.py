@@ -33,7 +33,7 @@ from coadjoint.derive.equations import (
     signed,
     symbol,
 )
-from coadjoint.derive.mechanics.emission import lagrangian_of
+from coadjoint.derive.mechanics.configuration import Mechanics
 from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
@@ -59,7 +59,7 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
     """
-    lagrangian, names = lagrangian_of(setting), _advected(setting)
+    lagrangian, names = setting.lagrangian, _advected(setting)
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)
     velocities, momenta = _cyclic(setting)
@@ -70,7 +70,7 @@ def derive(setting: Setting) -> Equations:
     slopes = field.gradient(whole, velocities)
     solved = dict(zip(velocities, subtract(p, subtract(slopes, qdot)), strict=True))
     forces = [field.substitute(slope, solved) for slope in field.gradient(whole, names)]
-    transform = legendre_transform(setting, kinetic)
+    transform = legendre_transform(Mechanics(setting, kinetic))
     inner = dict(zip(setting.velocities, transform.velocities, strict=True))
     mu, xi = setting.elements(setting.momenta), setting.elements(setting.velocities)
     energy = field.substitute(dot(mu, xi) + dot(p, qdot) - whole, inner | solved)

@@ -12,9 +12,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from coadjoint.derive.equations import Equations, Exact, Left, Step, rate, symbol
+from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.observables import observables
 from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
-from coadjoint.derive.routes.lie_poisson import hamiltonian
 from coadjoint.derive.routes.poisson import velocities_of
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
@@ -97,7 +98,7 @@ def _entries(pair: LaxPair) -> tuple[tuple[Left, Element], ...]:
 
 def _integrals(setting: Setting) -> Step:
     """The integrals that are emitted."""
-    found = setting.integrals
+    found = lax_integrals(setting)
     assert found is not None, "there is a pair"
     words = ", ".join(
         f"integral{n} from tr L^{each.trace} at {found.pair.spectral}^{each.power}"

@@ -22,8 +22,8 @@ from collections.abc import Callable, Sequence
 from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
 from coadjoint.derive.equations import Equations, Step, partial, rate, signed
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.mechanics.emission import emission, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, weighted
@@ -44,10 +44,10 @@ def derive(setting: Setting) -> Equations:
             way, or the Lagrangian has no invertible Legendre transform.
     """
     _check_matrices(setting)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     rates = _rates(setting, lagrangian)
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, rates))
 
 

@@ -25,9 +25,9 @@ from itertools import combinations
 
 from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.interpret import determinant
+from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.observables import observables
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.routes.lie_poisson import hamiltonian
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.errors import CoadjointError
@@ -49,8 +49,7 @@ def derive(setting: Setting) -> Equations:
         found = distinguished_function(setting)
         functions, multiplier = [found.function], found.multiplier
     else:
-        assert spec.hamiltonian is not None, "the reader asks for a Hamiltonian on this route"
-        h, multiplier = setting.formula(spec.hamiltonian), setting.field.one
+        h, multiplier = setting.hamiltonian, setting.field.one
         functions = [setting.formula(c) for c in spec.poisson.functions]
     gradients = [setting.field.gradient(function, names) for function in (*functions, h)]
     velocities = _velocities(setting)

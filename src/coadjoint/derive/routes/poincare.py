@@ -18,8 +18,8 @@ Read next: `coadjoint.derive.routes.hamilton_pontryagin`.
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.mechanics.emission import emission
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
@@ -30,13 +30,13 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     fields = _vector_fields(setting)
     inertial, forces = _inertial(setting, transform.momenta), _along(setting, fields, lagrangian)
     momentum = [a + b for a, b in zip(inertial, forces, strict=True)]
     rates = setting.in_state_order(momentum, _advection(setting, fields))
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     steps = _steps(setting, lagrangian, transform, forces, rates)
     return Equations(setting, "poincare", exact, steps)
 

@@ -28,10 +28,8 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: A formula divides by zero.
     """
-    formula = setting.spec.hamiltonian
-    assert formula is not None, "the reader asks for a Hamiltonian on this route"
     law = ("Poisson bracket of the coordinates", "{x_i, x_j}", r"\{x_i, x_j\}")
-    return hamiltonian_equations(setting, "poisson", setting.formula(formula), law)
+    return hamiltonian_equations(setting, "poisson", setting.hamiltonian, law)
 
 
 def hamiltonian_equations(
