@@ -6,8 +6,9 @@ Routes share the algebra and the Setting, never each other's results: their agre
 
 from coadjoint.callable_module import make_callable
 from coadjoint.derive import reductions
-from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics import external
+from coadjoint.derive.records import Chart, Exact, Relation, Step
 from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError

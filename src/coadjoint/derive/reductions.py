@@ -11,9 +11,10 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from coadjoint.derive.equations import Equations, Exact, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting

@@ -17,6 +17,7 @@ from coadjoint.spec.core.faults import listed
 from coadjoint.spec.core.names import derived_names, refusal
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.kinds import is_in_frame, kinds_of
 from coadjoint.spec.model import (
     Constraint,
     Input,
@@ -31,7 +32,7 @@ from coadjoint.spec.model import (
     Variable,
     state_of,
 )
-from coadjoint.spec.routes import ROUTES, energies_of, is_in_frame, kinds_of
+from coadjoint.spec.routes import ROUTES, energies_of
 from coadjoint.spec.schema import SpecFile
 
 #: How a missing table is written.

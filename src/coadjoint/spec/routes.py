@@ -12,10 +12,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from coadjoint.spec.schema import SpecFile
 
 
 @dataclass(frozen=True)
@@ -24,7 +20,7 @@ class Route:
 
     Attributes:
         name: As specs write it.
-        kinds: The kinds of spec that it goes with, of those that `kinds_of` returns.
+        kinds: The kinds of spec that it goes with, of those that `coadjoint.spec.kinds` names.
         energies: The tables of which it takes one; empty if it takes none.
         table: A table of its own, without which it cannot start; "" if none.
         options: Tables of its own that may be left out.
@@ -101,28 +97,3 @@ def energies_of(route: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
     if "poisson" in kinds and "canonical" not in kinds:
         return tuple(each for each in energies if each != "lagrangian")
     return energies
-
-
-def is_in_frame(file: SpecFile) -> bool:
-    """Whether the state has velocities along a frame: what constraints bind, or their routes move.
-
-    >>> from coadjoint.spec.schema import SpecFile
-    >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
-    True
-    """
-    return file.constraints is not None or any(ROUTES[route].in_frame for route in file.routes)
-
-
-def kinds_of(file: SpecFile) -> tuple[str, ...]:
-    """The kinds that a spec is of: ``algebra``, ``configuration``, or ``poisson`` and its way.
-
-    >>> from coadjoint.spec.schema import SpecFile
-    >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None))
-    ('configuration',)
-    """
-    if file.algebra is not None:
-        return ("algebra",)
-    if file.poisson is None:
-        return ("configuration",)
-    ways = ("nambu", "brackets", "canonical")
-    return ("poisson", *(way for way in ways if getattr(file.poisson, way) is not None))

@@ -7,9 +7,9 @@ Read next: `coadjoint.derive.structure`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Exact, Step, symbol
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Step, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element

@@ -22,8 +22,8 @@ from coadjoint.algebra.attitudes import has_fixed_row
 from coadjoint.algebra.catalogue import inverse_by
 from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
-from coadjoint.derive.equations import Relation
 from coadjoint.derive.interpret import Matrix, inverse
+from coadjoint.derive.records import Relation
 from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion

@@ -16,9 +16,10 @@ Read next: `coadjoint.groups.quaternions`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
+from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element

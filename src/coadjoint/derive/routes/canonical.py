@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import (
     conjugates,
     fault,
@@ -30,6 +30,7 @@ from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.derive.symbols import fresh

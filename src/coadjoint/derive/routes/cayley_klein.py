@@ -31,9 +31,10 @@ from fractions import Fraction
 
 from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.algebra.representation import adjoint
-from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh

@@ -27,8 +27,9 @@ from itertools import islice
 
 from coadjoint.algebra import Representation, algebra_by_name
 from coadjoint.algebra.representation import adjoint
-from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element

@@ -23,8 +23,9 @@ from functools import reduce
 from operator import add
 
 from coadjoint.algebra import LieAlgebra, complexification, same_constants
-from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure

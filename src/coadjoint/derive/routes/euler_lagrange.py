@@ -21,11 +21,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics, applied, in_state_order, mechanics
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element

@@ -16,9 +16,10 @@ l/\partial\xi`, with the velocities as definitions. Read next:
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, partial, rate, signed, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission, velocities_step
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, signed, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 

@@ -17,13 +17,14 @@ Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, component, partial, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
 from coadjoint.derive.mechanics.distribution import Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.kinematics import Matrix, symbols
+from coadjoint.derive.records import Step, component, partial, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 

@@ -26,9 +26,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission, velocities_step
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element

@@ -22,9 +22,11 @@ Chart of momenta, advected quantities and p. Read next: `coadjoint.prove.charts`
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import (
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import Mechanics
+from coadjoint.derive.mechanics.legendre import legendre_transform
+from coadjoint.derive.records import (
     Chart,
-    Equations,
     Exact,
     Relation,
     Step,
@@ -33,8 +35,6 @@ from coadjoint.derive.equations import (
     signed,
     symbol,
 )
-from coadjoint.derive.mechanics.configuration import Mechanics
-from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.observables import observables
 from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
+from coadjoint.derive.records import Exact, Left, Step, rate, symbol
 from coadjoint.derive.routes.poisson import velocities_of
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure

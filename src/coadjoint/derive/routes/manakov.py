@@ -6,8 +6,9 @@ Read next: `coadjoint.derive.routes.lax`, for a pair that is declared.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.planes import ROUTE, SPECTRAL, body_of, find_pair
+from coadjoint.derive.records import Step, symbol
 from coadjoint.derive.routes.lax import equations_of_pair
 from coadjoint.derive.setting import Setting
 from coadjoint.spec import Spec

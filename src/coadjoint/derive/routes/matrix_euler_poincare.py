@@ -21,10 +21,11 @@ from collections.abc import Callable, Sequence
 
 from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
-from coadjoint.derive.equations import Equations, Step, partial, rate, signed
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission, velocities_step
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
+from coadjoint.derive.records import Step, partial, rate, signed
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, weighted
 from coadjoint.exact import Element, Field

@@ -23,10 +23,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra, poisson_structure

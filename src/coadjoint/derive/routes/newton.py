@@ -13,11 +13,12 @@ Read next: `coadjoint.prove.galilean`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import declared_energy, in_state_order
 from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Left, Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element

@@ -24,10 +24,11 @@ from dataclasses import dataclass
 from functools import reduce
 
 from coadjoint.algebra import algebra_by_name, same_constants
-from coadjoint.derive.equations import Equations, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.emission import emission
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text

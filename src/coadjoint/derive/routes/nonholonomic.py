@@ -29,16 +29,7 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from coadjoint.derive.equations import (
-    Equations,
-    Left,
-    Step,
-    bracket,
-    component,
-    partial,
-    rate,
-    symbol,
-)
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import Tensor
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
@@ -47,6 +38,7 @@ from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.kinematics import Matrix, symbols
 from coadjoint.derive.mechanics.solver import Definition
+from coadjoint.derive.records import Left, Step, bracket, component, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.roots import lifted

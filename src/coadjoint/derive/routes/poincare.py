@@ -17,9 +17,10 @@ Read next: `coadjoint.derive.routes.hamilton_pontryagin`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 

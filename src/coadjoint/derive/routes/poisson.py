@@ -11,9 +11,10 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from coadjoint.derive.equations import Equations, Exact, Step, bracket, partial, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact, Step, bracket, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
