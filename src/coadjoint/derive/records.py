@@ -8,13 +8,17 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from enum import Enum
 from functools import cache
 
 import sympy
 from sympy.printing.mathml import mathml
 
+from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.mechanics.solver import Solve
+from coadjoint.derive.setting import shaped
 from coadjoint.exact import Element
+from coadjoint.spec.model import Shape
 
 
 @dataclass(frozen=True)
@@ -110,6 +114,43 @@ class Step:
     lines: tuple[tuple[Left, Element], ...] = ()
 
 
+class Kept(Enum):
+    """When the motion conserves a quantity, as far as the spec and its kind tell."""
+
+    UNKNOWN = "unknown"
+    ALWAYS = "always"
+    AS_ENERGY = "where nothing acts that changes the energy"
+    UNLESS_WORKED_ON = "where the forces do not change it"
+
+
+@dataclass(frozen=True)
+class Emitted:
+    """A quantity that is emitted beside the dynamics.
+
+    Attributes:
+        name: As kernels and claims call it.
+        shape: ``()``, ``(n,)`` or ``(n, m)``.
+        components: Names of the components, row by row.
+        unit: Unit text, "" where the declared units do not tell.
+        values: The components.
+        kept: When it is conserved.
+        form: What it is in formulas, where that is no array of its components.
+    """
+
+    name: str
+    shape: Shape
+    components: tuple[str, ...]
+    unit: str
+    values: tuple[Element, ...]
+    kept: Kept = Kept.UNKNOWN
+    form: Quantity | None = None
+
+    @property
+    def whole(self) -> Quantity:
+        """What its name stands for in formulas."""
+        return shaped(self.values, self.shape) if self.form is None else self.form
+
+
 @dataclass(frozen=True)
 class Exact:
     """The equations as field elements.
@@ -120,7 +161,7 @@ class Exact:
             are intermediates of a solve in the kernel (`coadjoint.derive.mechanics.solver`).
         rates: Time derivative of each state component.
         energy: The Hamiltonian, in terms of the state; None for forces without a potential.
-        observables: Name and value of each scalar emitted beside the dynamics, energy included.
+        emitted: What is emitted beside the dynamics, energy included.
         poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
         solves: Linear equations that definitions solve in the kernel, in that order.
         residuals: What vanishes on the constraints, by the names of these.
@@ -130,11 +171,18 @@ class Exact:
     definitions: tuple[tuple[str, Element], ...]
     rates: tuple[Element, ...]
     energy: Element | None
-    observables: tuple[tuple[str, Element], ...]
+    emitted: tuple[Emitted, ...]
     poisson_tensor: tuple[tuple[Element, ...], ...] | None
     solves: tuple[Solve, ...] = ()
     residuals: tuple[tuple[str, Element], ...] = ()
     forces: tuple[Element, ...] = ()
+
+    @property
+    def observables(self) -> tuple[tuple[str, Element], ...]:
+        """Name and value of each scalar that is emitted."""
+        return tuple(
+            pair for each in self.emitted for pair in zip(each.components, each.values, strict=True)
+        )
 
 
 @dataclass(frozen=True)

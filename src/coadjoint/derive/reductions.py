@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Exact, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
@@ -64,7 +64,7 @@ def restricted(setting: Setting, route: str) -> Equations:
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
     section = tuple(restriction.section.items())
-    exact = Exact(section, kept, energy, observables(setting, energy), None)
+    exact = Exact(section, kept, energy, emitted(setting, energy), None)
     return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
 
 

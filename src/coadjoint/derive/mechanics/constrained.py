@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
@@ -23,7 +24,6 @@ from coadjoint.derive.mechanics.kinematics import (
     rate_name,
 )
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Exact
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
@@ -163,7 +163,7 @@ def emission(
         (*definitions, *solved, *motion.computed(reactions)),
         rates,
         energy,
-        observables(setting, energy, along),
+        emitted(setting, energy, along),
         almost_poisson(setting),
         solves,
         residuals,

@@ -7,8 +7,8 @@ Read next: `coadjoint.derive.structure`.
 
 from __future__ import annotations
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Exact, Step, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
@@ -18,7 +18,7 @@ from coadjoint.exact import Element
 def emission(setting: Setting, rates: tuple[Element, ...]) -> Exact:
     """The equations in momenta, velocities as definitions."""
     transform = legendre(setting)
-    seen = observables(setting, transform.energy)
+    seen = emitted(setting, transform.energy)
     tensor = poisson_structure(setting).tensor
     return Exact(transform.definitions, rates, transform.energy, seen, tensor, transform.solves)
 

@@ -10,7 +10,7 @@ so that :math:`\mathrm{Ad}^*_{g^{-1}} \mu` is conserved where no torque acts; al
 right-invariant one :math:`\mathrm{Ad}^*_g \mu` is. Its components are
 :math:`\langle \mu, g^{-1} e_i g \rangle`: products of matrices or of quaternions.
 Comes in: a Setting with an attitude among its advected quantities. Goes out: these components.
-Read next: `coadjoint.derive.observables`.
+Read next: `coadjoint.derive.emitted`.
 """
 
 from __future__ import annotations

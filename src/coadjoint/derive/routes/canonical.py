@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import (
     conjugates,
@@ -29,7 +30,6 @@ from coadjoint.derive.mechanics.configuration import (
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
@@ -65,7 +65,7 @@ def derive(setting: Setting) -> Equations:
     named = {p: field[v] for p, v in velocities.items()}
     rates = in_state_order(setting, _hamilton(setting, pairs, slopes, named, _magnetic(setting)))
     tensor = poisson_structure(setting).tensor
-    exact = Exact((*solved, *written), rates, h, observables(setting, h), tensor, solves)
+    exact = Exact((*solved, *written), rates, h, emitted(setting, h), tensor, solves)
     return Equations(setting, "canonical", exact, _steps(setting.state, h, slopes, rates))
 
 

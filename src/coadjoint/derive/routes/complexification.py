@@ -23,8 +23,8 @@ from functools import reduce
 from operator import add
 
 from coadjoint.algebra import LieAlgebra, complexification, same_constants
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Exact, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
@@ -55,7 +55,7 @@ def derive(setting: Setting) -> Equations:
     halves = (*(z.re for z in zeta), *(-z.im for z in zeta))
     pairs = zip(setting.velocities, setting.field.vector(halves), strict=bool(setting.velocities))
     tensor = poisson_structure(setting).tensor
-    exact = Exact(tuple(pairs), rates, energy, observables(setting, energy), tensor)
+    exact = Exact(tuple(pairs), rates, energy, emitted(setting, energy), tensor)
     return Equations(setting, ROUTE, exact, _steps(setting, h, zeta, rates))
 
 

@@ -22,6 +22,7 @@ Chart of momenta, advected quantities and p. Read next: `coadjoint.prove.charts`
 
 from __future__ import annotations
 
+from coadjoint.derive.emitted import emitted_energy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics
 from coadjoint.derive.mechanics.legendre import legendre_transform
@@ -75,7 +76,7 @@ def derive(setting: Setting) -> Equations:
     mu, xi = setting.elements(setting.momenta), setting.elements(setting.velocities)
     energy = field.substitute(dot(mu, xi) + dot(p, qdot) - whole, inner | solved)
     rates = (*_rates(setting, forces), *(field.zero for _ in p))
-    exact = Exact(transform.definitions, rates, energy, (("energy", energy),), None)
+    exact = Exact(transform.definitions, rates, energy, (emitted_energy(setting, energy),), None)
     relations = tuple(
         Relation(f"{name} = {element_text(field, value)}", field[name] - value)
         for name, value in zip(momenta, level, strict=True)

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.legendre import hamiltonian
-from coadjoint.derive.observables import observables
 from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
 from coadjoint.derive.records import Exact, Left, Step, rate, symbol
 from coadjoint.derive.routes.poisson import velocities_of
@@ -55,7 +55,7 @@ def equations_of_pair(
     definitions = velocities_of(setting, h, solves)
     rates = rates_of(setting, pair, route)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, h, observables(setting, h), tensor, solves)
+    exact = Exact(definitions, rates, h, emitted(setting, h), tensor, solves)
     steps = (*search, *_steps(setting, pair, definitions, rates))
     return replace(Equations(setting, route, exact, steps), pair=pair)
 

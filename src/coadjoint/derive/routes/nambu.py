@@ -23,10 +23,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import determinant
 from coadjoint.derive.mechanics.legendre import hamiltonian
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
@@ -62,7 +62,7 @@ def derive(setting: Setting) -> Equations:
     slopes = dict(zip(names, gradients[-1], strict=True))
     definitions = tuple((xi, slopes[momentum]) for momentum, xi in velocities)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, h, observables(setting, h), tensor)
+    exact = Exact(definitions, rates, h, emitted(setting, h), tensor)
     steps = _steps(setting, [*functions, h], rates, gradients, multiplier)
     return Equations(setting, "nambu", exact, steps)
 

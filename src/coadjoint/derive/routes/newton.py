@@ -13,11 +13,11 @@ Read next: `coadjoint.prove.galilean`.
 
 from __future__ import annotations
 
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import declared_energy, in_state_order
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.observables import observables
 from coadjoint.derive.records import Exact, Left, Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import has_structure, poisson_structure
@@ -37,7 +37,7 @@ def derive(setting: Setting) -> Equations:
     rates = in_state_order(setting, named)
     energy = declared_energy(setting)
     tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    exact = Exact((), rates, energy, observables(setting, energy), tensor)
+    exact = Exact((), rates, energy, emitted(setting, energy), tensor)
     return Equations(setting, "newton", exact, _steps(setting, rates))
 
 
