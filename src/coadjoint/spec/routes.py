@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-
-from coadjoint.spec.schema import SpecFile
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -83,18 +82,20 @@ def energies_of(route: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
     return energies
 
 
-def is_in_frame(file: SpecFile) -> bool:
+def is_in_frame(file: Any) -> bool:
     """Whether the state has velocities along a frame: what constraints bind, or their routes move.
 
+    >>> from coadjoint.spec.schema import SpecFile
     >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
     True
     """
     return file.constraints is not None or any(STARTS[route].in_frame for route in file.routes)
 
 
-def kinds_of(file: SpecFile) -> tuple[str, ...]:
+def kinds_of(file: Any) -> tuple[str, ...]:
     """The kinds that a spec is of: ``algebra``, ``configuration``, or ``poisson`` and its way.
 
+    >>> from coadjoint.spec.schema import SpecFile
     >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None))
     ('configuration',)
     """

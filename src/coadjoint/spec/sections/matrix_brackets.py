@@ -20,6 +20,7 @@ from coadjoint.algebra.matrices import (
     transpose,
 )
 from coadjoint.spec.core.coefficients import Scalars
+from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.positions import KeyPath
@@ -38,7 +39,6 @@ from coadjoint.spec.core.tree import (
     children,
     walk_up,
 )
-from coadjoint.spec.model import Shape
 
 #: What the two matrices are called.
 PAIR = ("X", "Y")

@@ -1,0 +1,96 @@
+"""Forces: the table [forces], what acts beside the energy.
+
+Comes in: formulas by the names of what they act along. Goes out: a `Formula` for each.
+Read next: `coadjoint.spec.sections.dissipation`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import Field
+
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.formulas import Formula, Scope, misfit
+from coadjoint.spec.core.parts import named
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading, Table
+from coadjoint.spec.core.shapes import words
+from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
+
+
+def read_forces(reading: Reading) -> dict[str, Formula]:
+    """The declared forces by what they act along.
+
+    Raises:
+        SpecError: There is no such variable, a momentum is named whose velocity has a Lagrangian,
+            the force has another shape, or the motion is restricted.
+    """
+    check_whole(reading, "forces")
+    scope, forced = reading.scope("a force", motion_roles(reading)), _find_forced(reading)
+    return {
+        name: read_along(reading, ("forces", name), text, scope, forced)
+        for name, text in reading.file.forces.items()
+    }
+
+
+def _find_forced(reading: Reading) -> Mapping[str, Variable]:
+    """What forces may act along: velocities, and what only a Hamiltonian moves.
+
+    With a Lagrangian a force along a velocity says what it does; with a Hamiltonian momenta and the
+    coordinates of a declared bracket may have no velocities.
+    """
+    roles = {"velocity"}
+    if reading.file.lagrangian is None:
+        roles |= {"momentum"}
+        roles |= {"coordinate"} if reading.file.poisson is not None else set()
+    return {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
+
+
+def check_whole(reading: Reading, table: str) -> None:
+    """Nothing acts on a motion that is restricted to a submanifold."""
+    if getattr(reading.file, table) and reading.file.reduction is not None:
+        raise reading.source.fault(
+            (table,),
+            f"there is [{table}] beside [reduction]",
+            found=table,
+            expected="one of them",
+            hint=f"Write the equations on the submanifold without [reduction], or remove "
+            f"[{table}].",
+        )
+
+
+def read_along(
+    reading: Reading, key: KeyPath, text: str, scope: Scope, velocities: Mapping[str, Variable]
+) -> Formula:
+    """A formula of the shape of the velocity that its key names."""
+    name = str(key[-1])
+    if name not in velocities:
+        roles = {each.role for each in velocities.values()} or {"velocity"}
+        what = "velocity" if roles == {"velocity"} else "variable"
+        raise reading.at_key(
+            key,
+            f"there is no such {what} as {name!a}",
+            name,
+            f"one of {listed(velocities)}" if velocities else "a declared velocity",
+            did_you_mean(name, velocities),
+        )
+    formula = reading.formula(key, text, scope, any_shape=True)
+    wanted = velocities[name].shape
+    if formula.shape != wanted:
+        raise misfit(reading.source, key, formula, f"{words(wanted)}, as {name!r} is")
+    return formula
+
+
+FORCES = Table[dict[str, Formula]](
+    key="forces",
+    kind=dict[str, str],
+    field=Field(
+        {},
+        description="forces beside the energy, by the names of the velocities they work on",
+        json_schema_extra=named(),
+    ),
+    read=read_forces,
+    formulas=lambda forces: forces.values(),
+    acts=True,
+)
