@@ -5,9 +5,9 @@ import pytest
 from coadjoint import limits
 from coadjoint.derive import derive
 from coadjoint.errors import LimitError, SpecError
+from coadjoint.spec.core.definitions import expand
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.tree import walk
-from coadjoint.spec.core.definitions import expand
 from coadjoint.spec.sections.definitions import signature
 from tests.specs import RIGID_BODY, spec
 

@@ -27,7 +27,7 @@ from coadjoint.spec.core.shapes import ELEMENTARY
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
-from coadjoint.spec.uses import list_formulas
+from coadjoint.spec.tables import list_formulas
 
 if TYPE_CHECKING:
     from coadjoint.derive.integrals import Integrals

@@ -15,8 +15,7 @@ from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import STARTS, energies_of, kinds_of
-from coadjoint.spec.tables import TABLES, how_to_write
-from coadjoint.spec.uses import list_formulas
+from coadjoint.spec.tables import TABLES, how_to_write, list_formulas
 
 _ENERGIES = ("hamiltonian", "lagrangian")
 #: Routes whose matrices neither time nor inputs may change.
@@ -83,7 +82,7 @@ def check_routes(source: Source, file: Any) -> None:
                 found=route,
                 expected=f"one of {listed(others)}",
             )
-        if start.table and getattr(file, start.table) is None:
+        if start.table and not getattr(file, start.table):
             raise _missing(source, f"the route {route} has no table [{start.table}]", start.table)
         if route in UNDRIVEN and (file.inputs or file.time):
             raise source.fault(

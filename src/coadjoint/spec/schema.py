@@ -38,7 +38,7 @@ class Head(Part):
     ] = Field(description="routes to derive by; the first is emitted, the others proved equal")
 
 
-_FIELDS: dict[str, Any] = {table.key: (table.kind, table.field) for table in TABLES}
+_FIELDS: dict[str, Any] = {table.key: table.typed_field for table in TABLES}
 #: A declared system.
 SpecFile: type[Head] = create_model(
     "SpecFile",

@@ -7,10 +7,14 @@ Read next: `coadjoint.spec.schema`, then `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from types import MappingProxyType
 from typing import Any
 
+from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.algebra.representation import Representation
+from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.reading import Table
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.claims import CLAIMS
@@ -74,3 +78,17 @@ def how_to_write(table: str) -> str:
     """A sentence that shows how a table is written; "" for tables without an example."""
     example = BY_KEY[table].example
     return f"Write [{table}] and below it {example}." if example else ""
+
+
+def list_formulas(record: Any) -> Iterator[Formula]:
+    """Every formula of a `Spec`, or of a record or several in it, in the order of their fields."""
+    if isinstance(record, Formula):
+        yield record
+    elif isinstance(record, Mapping | tuple):
+        for each in record.values() if isinstance(record, Mapping) else record:
+            yield from list_formulas(each)
+    elif is_dataclass(record) and not isinstance(record, LieAlgebra | Representation):
+        whole = getattr(record, "whole", None)  # another system, which a submanifold is of
+        for each in fields(record):
+            value = getattr(record, each.name)
+            yield from () if value is whole else list_formulas(value)

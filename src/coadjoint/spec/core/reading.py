@@ -9,9 +9,11 @@ Read next: `coadjoint.spec.sections.time`, a short table, then `coadjoint.spec.t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Any, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
+
+from pydantic import Field
 
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.spec.core.components import Shape
@@ -26,8 +28,10 @@ from coadjoint.spec.core.formulas import (
     read_formula,
 )
 from coadjoint.spec.core.names import refusal
+from coadjoint.spec.core.parts import named
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.values import NAME_PATTERN
 
 Record = TypeVar("Record")
 
@@ -53,49 +57,53 @@ class Naming:
     allowed: str = ""
 
 
-def names_in(table: str) -> Callable[[Sequence[Any]], list[Naming]]:
-    """What names the records of a table declare, each at its own key."""
-    return lambda records: [
-        Naming((table, each.name), each.name, each.components) for each in records
-    ]
+def name_each(key: str, records: Sequence[Any]) -> list[Naming]:
+    """The names that the records of a table declare, each at its own key."""
+    return [Naming((key, each.name), each.name, each.components) for each in records]
 
 
-def if_present(formula: Formula | None) -> tuple[Formula, ...]:
-    """A formula, unless there is none."""
-    return () if formula is None else (formula,)
-
-
-def _nothing(record: Any) -> tuple[()]:
+def name_none(key: str, record: Any) -> tuple[()]:
+    """No names."""
     return ()
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Table(Generic[Record]):
-    """One table of a spec: its keys, its record, what it declares, and its formulas.
+    """One table of a spec: its keys, its record and what it declares.
 
     Attributes:
         key: Its name in a spec.
-        kind: What may stand there, as an annotation for pydantic.
-        field: Its default and description, a pydantic field.
-        read: The record, from all that has been read. It asks other tables by `of`.
+        part: The model of its keys or, of a table of named entries, of one entry.
+        description: What it is, for editors.
+        read: The record, from all that has been read and the checked keys. It asks other tables for
+            their records by `of`. A table that is left out has `absent` for a record.
+        many: Whether it is a table of named entries.
+        least: How many entries it has at least, if it is there.
+        pattern: What the names of its entries look like.
+        field: The annotation and the pydantic field of its key, where they are not the usual ones.
+        absent: The record of a table that is left out.
         attribute: The attribute of a `Spec` that is the record; by default the key. With None, the
             fields of the record are attributes themselves.
-        quantities: What formulas of other tables may name.
-        names: The names that the record declares.
-        formulas: Every formula of the record; with no attribute, of the `Spec`.
+        quantities: Whether formulas of other tables may name the record, or the records in it.
+        names: The names that the record declares, from the key and the record.
         routed: Whether it is there for routes alone, so that one of them must use it.
         acts: Whether it acts on the motion, so that every route must know it.
         example: A line of it, for messages; "" if messages show none.
     """
 
     key: str
-    kind: Any
-    field: Any
-    read: Callable[[Reading], Record]
+    part: Any
+    description: str
+    read: Callable[[Reading, Any], Record]
+    _: KW_ONLY
+    many: bool = False
+    least: int = 0
+    pattern: str = NAME_PATTERN
+    field: tuple[Any, Any] | None = None
+    absent: Any = None
     attribute: str | None = ""
-    quantities: Callable[[Record], Sequence[Declared]] | None = None
-    names: Callable[[Record], Iterable[Naming]] = _nothing
-    formulas: Callable[[Any], Iterable[Formula]] = _nothing
+    quantities: bool = False
+    names: Callable[[str, Record], Iterable[Naming]] = name_none
     routed: bool = False
     acts: bool = False
     example: str = ""
@@ -105,24 +113,31 @@ class Table(Generic[Record]):
         record: Record = reading.record(self)
         return record
 
-    def quantities_of(self, reading: Reading) -> Sequence[Declared]:
-        """What formulas of other tables may name; other tables are not read for it."""
-        return () if self.quantities is None else self.quantities(self.of(reading))
-
     @property
     def place(self) -> str | None:
         """The attribute of a `Spec` that is the record, or None."""
         return self.key if self.attribute == "" else self.attribute
 
-    def formulas_in(self, spec: Any) -> Iterable[Formula]:
-        """Every formula that a `Spec` has from this table."""
-        return self.formulas(self.in_spec(spec))
+    @property
+    def typed_field(self) -> tuple[Any, Any]:
+        """The annotation of its key and its pydantic field."""
+        if self.field is not None:
+            return self.field
+        if not self.many:
+            return self.part | None, Field(None, description=self.description)
+        kind: Any = dict[str, self.part]  # type: ignore[name-defined]
+        about: dict[str, Any] = {
+            "description": self.description,
+            "json_schema_extra": named(self.pattern),
+        }
+        if self.least:
+            return Annotated[kind, Field(min_length=self.least)] | None, Field(None, **about)
+        return kind, Field({}, **about)
 
-    def in_spec(self, spec: Any) -> Any:
-        """The record of this table in a `Spec`."""
-        if self.place is None:
-            return spec
-        return spec.records[self.key] if self.key in spec.records else getattr(spec, self.place)
+    def quantities_of(self, reading: Reading) -> tuple[Declared, ...]:
+        """What formulas of other tables may name; tables without quantities are not read for it."""
+        record: Any = self.of(reading) if self.quantities else ()
+        return record if isinstance(record, tuple) else tuple(filter(None, (record,)))
 
 
 class Reading:
@@ -146,10 +161,11 @@ class Reading:
         if table.key not in self._records:
             assert table.key not in self._open, (*self._open, table.key)
             self._open.append(table.key)
-            record = table.read(self)
+            part = getattr(self.file, table.key)
+            record = table.absent if part is None else table.read(self, part)
             self._records[table.key] = record
             self._open.pop()
-            for naming in table.names(record):
+            for naming in table.names(table.key, record):
                 self.declare(naming)
         return self._records[table.key]
 

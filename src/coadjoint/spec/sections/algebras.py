@@ -13,8 +13,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from pydantic import Field
-
 from coadjoint.algebra import (
     LieAlgebra,
     Representation,
@@ -78,15 +76,12 @@ class Structure:
     invariance: str = "left"
 
 
-def read_structure(reading: Reading) -> Structure:
-    """The Lie algebra of the velocities, if one is declared.
+def read_structure(reading: Reading, part: AlgebraPart) -> Structure:
+    """The Lie algebra of the velocities.
 
     Raises:
         SpecError, AlgebraError: As `read_algebra`.
     """
-    part = reading.file.algebra
-    if part is None:
-        return Structure()
     algebra = read_algebra(reading.source, part, reading.name, scalars_of(reading))
     return Structure(algebra, part.invariance)
 
@@ -338,9 +333,10 @@ class _Algebras:
 
 
 ALGEBRA = Table[Structure](
-    key="algebra",
-    kind=AlgebraPart | None,
-    field=Field(None, description="the Lie algebra of the velocities"),
-    read=read_structure,
+    "algebra",
+    AlgebraPart,
+    "the Lie algebra of the velocities",
+    read_structure,
+    absent=Structure(),
     attribute=None,
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -112,7 +112,7 @@ class Claims:
     galilean: bool = False
 
 
-def read_claims(reading: Reading) -> Claims:
+def read_claims(reading: Reading, part: ClaimsPart) -> Claims:
     """All claims.
 
     Raises:
@@ -120,14 +120,13 @@ def read_claims(reading: Reading) -> Claims:
             of particles is there.
     """
     _check_claims(reading)
-    claims = reading.file.claims
     return Claims(
         casimirs=_read_casimirs(reading),
         conserved=_read_conserved(reading),
         brackets=tuple(
-            _read_bracket(reading, text, part.claim) for text, part in claims.brackets.items()
+            _read_bracket(reading, text, each.claim) for text, each in part.brackets.items()
         ),
-        galilean=claims.galilean.claim,
+        galilean=part.galilean.claim,
     )
 
 
@@ -249,18 +248,12 @@ def _check_claims(reading: Reading) -> None:
         )
 
 
-def _list_formulas(claims: Any) -> list[Formula]:
-    """Every formula of a `Claims` or a `Spec`, which has the same fields."""
-    integrals = [f for claim in claims.conserved for f in (claim.formula, *claim.where)]
-    brackets = [f for each in claims.brackets for f in (each.left, each.right, each.value)]
-    return [*claims.casimirs, *integrals, *brackets]
-
-
+_ABOUT = "what is proved of the motion"
 CLAIMS = Table[Claims](
-    key="claims",
-    kind=ClaimsPart,
-    field=Field(default_factory=_no_claims, description="what is proved of the motion"),
-    read=read_claims,
+    "claims",
+    ClaimsPart,
+    _ABOUT,
+    read_claims,
+    field=(ClaimsPart, Field(default_factory=_no_claims, description=_ABOUT)),
     attribute=None,
-    formulas=_list_formulas,
 )

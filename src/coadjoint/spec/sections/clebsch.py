@@ -22,19 +22,19 @@ class ClebschPart(Part):
     representation: str = Field(description="how the algebra acts on it, such as 'adjoint'")
 
 
-def read_clebsch(reading: Reading) -> Representation | None:
-    """How the algebra acts on the pair, if one is declared."""
-    part, algebra = reading.file.clebsch, ALGEBRA.of(reading).algebra
-    if part is None or algebra is None:
+def read_clebsch(reading: Reading, part: ClebschPart) -> Representation | None:
+    """How the algebra acts on the pair; None where there is no algebra."""
+    algebra = ALGEBRA.of(reading).algebra
+    if algebra is None:
         return None
     at, declared = ("clebsch", "representation"), REPRESENTATIONS.of(reading)
     return representation_of(reading.source, at, algebra, part.representation, declared)
 
 
 CLEBSCH = Table[Representation | None](
-    key="clebsch",
-    kind=ClebschPart | None,
-    field=Field(None, description="a canonical pair of its own for the route clebsch"),
-    read=read_clebsch,
+    "clebsch",
+    ClebschPart,
+    "a canonical pair of its own for the route clebsch",
+    read_clebsch,
     routed=True,
 )

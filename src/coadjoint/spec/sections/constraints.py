@@ -7,20 +7,16 @@ Read next: `coadjoint.derive.mechanics.distribution`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
-
-from pydantic import Field
+from typing import Any
 
 from coadjoint.spec.core.components import Shape, component_names
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.parts import named
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.relations import EQUATION, read_relation
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.sections.solved import find_solved_velocities
 from coadjoint.spec.sections.variables import motion_roles
 
@@ -75,7 +71,7 @@ def reaction_shapes(constraints: Sequence[Constraint]) -> dict[str, Shape]:
     return {name: () for each in constraints for name in each.reactions} | names
 
 
-def read_constraints(reading: Reading) -> tuple[Constraint, ...]:
+def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constraint, ...]:
     """The constraints in declared order.
 
     Raises:
@@ -83,15 +79,14 @@ def read_constraints(reading: Reading) -> tuple[Constraint, ...]:
             motion does not have.
     """
     source, file = reading.source, reading.file
-    if is_in_frame(file):
-        _check_unasked(source, file)
+    _check_unasked(source, file)
     solved = {
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
     }
     scope = reading.scope("a constraint", motion_roles(reading))
     found = []
-    for name, text in (file.constraints or {}).items():
+    for name, text in texts.items():
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
         found.append(Constraint(name, left, right, *solved.get(name, ())))
     return tuple(found)
@@ -122,10 +117,10 @@ def _check_unasked(source: Source, file: Any) -> None:
             )
 
 
-def _name_all(constraints: Sequence[Constraint]) -> Iterator[Naming]:
+def _name_all(table: str, constraints: Sequence[Constraint]) -> Iterator[Naming]:
     """The names of constraints and of their multipliers."""
     for each in constraints:
-        key: KeyPath = ("constraints", each.name)
+        key: KeyPath = (table, each.name)
         why = (
             f"The multiplier of the constraint {each.name} is {each.reaction}: rename one of them."
         )
@@ -134,15 +129,13 @@ def _name_all(constraints: Sequence[Constraint]) -> Iterator[Naming]:
 
 
 CONSTRAINTS = Table[tuple[Constraint, ...]](
-    key="constraints",
-    kind=Annotated[dict[str, str], Field(min_length=1)] | None,
-    field=Field(
-        None,
-        description="equations between velocities, as rolling = 'Y == cross(Omega, s)'",
-        json_schema_extra=named(),
-    ),
-    read=read_constraints,
+    "constraints",
+    str,
+    "equations between velocities, as rolling = 'Y == cross(Omega, s)'",
+    read_constraints,
+    many=True,
+    least=1,
+    absent=(),
     names=_name_all,
-    formulas=lambda constraints: [side for each in constraints for side in (each.left, each.right)],
     acts=True,
 )

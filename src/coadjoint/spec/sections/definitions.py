@@ -10,15 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from pydantic import Field
-
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
 from coadjoint.spec.core.formulas import Quantity
 from coadjoint.spec.core.names import refusal
-from coadjoint.spec.core.parts import named
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.shapes import shape_of
@@ -44,14 +41,14 @@ def signature(key: str) -> tuple[str, tuple[str, ...]]:
     return name.strip(), tuple(part.strip() for part in rest.rstrip(") ").split(",") if rest)
 
 
-def read_definitions(reading: Reading) -> tuple[Definition, ...]:
+def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Definition, ...]:
     """The definitions in order; each may use those before it.
 
     Raises:
         SpecError: A key or an expression is none, or a name in it is unknown.
         LimitError: With the earlier definitions put in, an expression is too large.
     """
-    source, texts = reading.source, reading.file.definitions
+    source = reading.source
     given: list[Quantity] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
     shapes: dict[str, Shape] = {}
     for text in texts:
@@ -128,13 +125,11 @@ def _shape(
 
 
 DEFINITIONS = Table[tuple[Definition, ...]](
-    key="definitions",
-    kind=dict[str, str],
-    field=Field(
-        {},
-        description="short names for expressions, such as u = 'A*b' and 'V(s, d)' = 's^2 - d'",
-        json_schema_extra=named(DEFINITION_PATTERN),
-    ),
-    read=read_definitions,
-    quantities=lambda definitions: definitions,
+    "definitions",
+    str,
+    "short names for expressions, such as u = 'A*b' and 'V(s, d)' = 's^2 - d'",
+    read_definitions,
+    many=True,
+    pattern=DEFINITION_PATTERN,
+    quantities=True,
 )

@@ -11,7 +11,7 @@ from pydantic import Field
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
-from coadjoint.spec.core.reading import Reading, Table, if_present
+from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.forces import check_whole
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles
@@ -23,15 +23,12 @@ class DissipationPart(Part):
     R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
 
 
-def read_dissipation(reading: Reading) -> Formula | None:
-    """Rayleigh's function, if it is declared.
+def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
+    """Rayleigh's function.
 
     Raises:
         SpecError: It is no formula of velocities, or the motion is restricted.
     """
-    part = reading.file.dissipation
-    if part is None:
-        return None
     check_whole(reading, "dissipation")
     key: KeyPath = ("dissipation", "R")
     formula = reading.formula(key, part.R, reading.scope("a dissipation", motion_roles(reading)))
@@ -49,10 +46,5 @@ def read_dissipation(reading: Reading) -> Formula | None:
 
 
 DISSIPATION = Table[Formula | None](
-    key="dissipation",
-    kind=DissipationPart | None,
-    field=Field(None, description="dissipation by a function R"),
-    read=read_dissipation,
-    formulas=if_present,
-    acts=True,
+    "dissipation", DissipationPart, "dissipation by a function R", read_dissipation, acts=True
 )

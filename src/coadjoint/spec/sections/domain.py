@@ -6,13 +6,11 @@ Read next: `coadjoint.spec.sections.rolling`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-
-from pydantic import Field
 
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.names import refusal
-from coadjoint.spec.core.parts import named
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.relations import INEQUALITIES, read_relation
@@ -43,7 +41,7 @@ class Condition:
         return self.left.in_one_line
 
 
-def read_domain(reading: Reading) -> tuple[Condition, ...]:
+def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, ...]:
     """The declared inequalities, which may name reactions: a body leaves the plane.
 
     Raises:
@@ -52,7 +50,7 @@ def read_domain(reading: Reading) -> tuple[Condition, ...]:
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("a condition", motion_roles(reading), reactions)
     found = []
-    for name, text in reading.file.domain.items():
+    for name, text in texts.items():
         key: KeyPath = ("domain", name)
         refused = refusal(name)  # a label of rows alone: a variable may have the same name
         if refused is not None:
@@ -68,13 +66,5 @@ def read_domain(reading: Reading) -> tuple[Condition, ...]:
 
 
 DOMAIN = Table[tuple[Condition, ...]](
-    key="domain",
-    kind=dict[str, str],
-    field=Field(
-        {},
-        description="where the system is defined, as tilted = 'Gamma3^2 < 1'",
-        json_schema_extra=named(),
-    ),
-    read=read_domain,
-    formulas=lambda conditions: [side for each in conditions for side in (each.left, each.right)],
+    "domain", str, "where the system is defined, as tilted = 'Gamma3^2 < 1'", read_domain, many=True
 )

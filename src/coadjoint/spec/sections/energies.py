@@ -9,7 +9,7 @@ from pydantic import Field
 
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.parts import Part
-from coadjoint.spec.core.reading import Reading, Table, if_present
+from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.sections.variables import position_roles, state_roles
 
 
@@ -25,39 +25,31 @@ class HamiltonianPart(Part):
     h: str = Field(description="h of momenta, advected quantities or coordinates, and parameters")
 
 
-def read_lagrangian(reading: Reading) -> Formula | None:
-    """L of the velocities and positions, if it is declared."""
-    part = reading.file.lagrangian
-    if part is None:
-        return None
+def read_lagrangian(reading: Reading, part: LagrangianPart) -> Formula:
+    """Read l of the velocities and positions."""
     scope = reading.scope("a Lagrangian", ("velocity", *position_roles(reading)))
     return reading.formula(("lagrangian", "l"), part.l, scope)
 
 
-def read_hamiltonian(reading: Reading) -> Formula | None:
-    """H of the state, if it is declared."""
-    part = reading.file.hamiltonian
-    if part is None:
-        return None
+def read_hamiltonian(reading: Reading, part: HamiltonianPart) -> Formula:
+    """Read h of the state."""
     scope = reading.scope("a Hamiltonian", state_roles(reading))
     return reading.formula(("hamiltonian", "h"), part.h, scope)
 
 
 LAGRANGIAN = Table[Formula | None](
-    key="lagrangian",
-    kind=LagrangianPart | None,
-    field=Field(None, description="the reduced Lagrangian"),
-    read=read_lagrangian,
-    formulas=if_present,
+    "lagrangian",
+    LagrangianPart,
+    "the reduced Lagrangian",
+    read_lagrangian,
     routed=True,
     example='l = "dot(Omega, diag(I)*Omega)/2"',
 )
 HAMILTONIAN = Table[Formula | None](
-    key="hamiltonian",
-    kind=HamiltonianPart | None,
-    field=Field(None, description="the reduced Hamiltonian"),
-    read=read_hamiltonian,
-    formulas=if_present,
+    "hamiltonian",
+    HamiltonianPart,
+    "the reduced Hamiltonian",
+    read_hamiltonian,
     routed=True,
     example='h = "dot(Pi, inverse(diag(I))*Pi)/2"',
 )

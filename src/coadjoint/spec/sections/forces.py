@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pydantic import Field
-
 from coadjoint.spec.core.faults import did_you_mean, listed
 from coadjoint.spec.core.formulas import Formula, Scope, misfit
-from coadjoint.spec.core.parts import named
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
 
 
-def read_forces(reading: Reading) -> dict[str, Formula]:
+def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula]:
     """The declared forces by what they act along.
 
     Raises:
@@ -30,7 +27,7 @@ def read_forces(reading: Reading) -> dict[str, Formula]:
     scope, forced = reading.scope("a force", motion_roles(reading)), _find_forced(reading)
     return {
         name: read_along(reading, ("forces", name), text, scope, forced)
-        for name, text in reading.file.forces.items()
+        for name, text in texts.items()
     }
 
 
@@ -83,14 +80,10 @@ def read_along(
 
 
 FORCES = Table[dict[str, Formula]](
-    key="forces",
-    kind=dict[str, str],
-    field=Field(
-        {},
-        description="forces beside the energy, by the names of the velocities they work on",
-        json_schema_extra=named(),
-    ),
-    read=read_forces,
-    formulas=lambda forces: forces.values(),
+    "forces",
+    str,
+    "forces beside the energy, by the names of the velocities they work on",
+    read_forces,
+    many=True,
     acts=True,
 )

@@ -17,8 +17,8 @@ from coadjoint.limits import PARAMETER_COMPONENTS
 from coadjoint.spec.core.components import Shape, component_names
 from coadjoint.spec.core.defaults import read_default
 from coadjoint.spec.core.faults import did_you_mean, listed
-from coadjoint.spec.core.parts import Part, named
-from coadjoint.spec.core.reading import Reading, Table, names_in
+from coadjoint.spec.core.parts import Part
+from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import Length, Numbers, Prose, Unit
 
@@ -72,14 +72,14 @@ class Input:
         return self.shape
 
 
-def read_inputs(reading: Reading) -> tuple[Input, ...]:
+def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input, ...]:
     """The inputs with one exact default for each component, or none.
 
     Raises:
         SpecError: A default does not have the shape, or a rate is no input of the same shape.
         LimitError: There are too many.
     """
-    source, parts = reading.source, reading.file.inputs
+    source = reading.source
     found = []
     for name, part in parts.items():
         shape = tuple(part.shape)
@@ -115,10 +115,11 @@ def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> No
 
 
 INPUTS = Table[tuple[Input, ...]](
-    key="inputs",
-    kind=dict[str, InputPart],
-    field=Field({}, description="what drives the system, by name", json_schema_extra=named()),
-    read=read_inputs,
-    quantities=lambda inputs: inputs,
-    names=names_in("inputs"),
+    "inputs",
+    InputPart,
+    "what drives the system, by name",
+    read_inputs,
+    many=True,
+    quantities=True,
+    names=name_each,
 )

@@ -37,16 +37,13 @@ class Lax:
     M: Formula
 
 
-def read_lax(reading: Reading) -> Lax | None:
-    """The declared pair, if there is one.
+def read_lax(reading: Reading, part: LaxPart) -> Lax:
+    """The declared pair.
 
     Raises:
         SpecError: The spectral parameter has a taken name, or L and M are not square matrices of
             one size.
     """
-    part = reading.file.lax
-    if part is None:
-        return None
     others = {part.spectral: ()}
     of_state = reading.scope("L of a Lax pair", state_roles(reading), others, driven=())
     of_motion = reading.scope("M of a Lax pair", motion_roles(reading), others, driven=())
@@ -90,11 +87,10 @@ def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formu
 
 
 LAX = Table[Lax | None](
-    key="lax",
-    kind=LaxPart | None,
-    field=Field(None, description="a Lax pair of the motion"),
-    read=read_lax,
-    formulas=lambda lax: () if lax is None else (lax.L, lax.M),
+    "lax",
+    LaxPart,
+    "a Lax pair of the motion",
+    read_lax,
     routed=True,
-    example='L = "hat(Pi)", M = "hat(Omega)"',
+    example='L = "hat(Pi)" and M = "hat(Omega)"',
 )

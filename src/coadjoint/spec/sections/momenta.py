@@ -15,7 +15,7 @@ from pydantic import Field
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.parts import Part, named
-from coadjoint.spec.core.reading import Reading, Table, names_in
+from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.values import Prose, Unit
 from coadjoint.spec.sections.forces import read_along
 from coadjoint.spec.sections.variables import VARIABLES, position_roles
@@ -61,7 +61,7 @@ class Section:
         return (self.name,)
 
 
-def read_sections(reading: Reading) -> tuple[Section, ...]:
+def read_sections(reading: Reading, parts: Mapping[str, SectionPart]) -> tuple[Section, ...]:
     """The declared sections, each a formula for every velocity that it names.
 
     Raises:
@@ -81,20 +81,16 @@ def read_sections(reading: Reading) -> tuple[Section, ...]:
             part.unit,
             part.doc,
         )
-        for name, part in reading.file.momenta.items()
+        for name, part in parts.items()
     )
 
 
 MOMENTA = Table[tuple[Section, ...]](
-    key="momenta",
-    kind=dict[str, SectionPart],
-    field=Field(
-        {},
-        description="momenta along sections of the constraint distribution, by name",
-        json_schema_extra=named(),
-    ),
-    read=read_sections,
+    "momenta",
+    SectionPart,
+    "momenta along sections of the constraint distribution, by name",
+    read_sections,
+    many=True,
     attribute="sections",
-    names=names_in("momenta"),
-    formulas=lambda sections: [formula for each in sections for formula in each.section.values()],
+    names=name_each,
 )

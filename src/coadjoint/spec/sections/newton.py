@@ -6,13 +6,13 @@ Read next: `coadjoint.derive.routes.newton`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
 
 from pydantic import Field
 
 from coadjoint.spec.core.formulas import Formula, Scope, misfit, read_fitting
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
@@ -35,16 +35,14 @@ class Force:
     force: Formula
 
 
-def read_newton(reading: Reading) -> tuple[Force, ...]:
+def read_newton(reading: Reading, parts: Mapping[str, NewtonPart]) -> tuple[Force, ...]:
     """The laws of a spec, in the order of the coordinates.
 
     Raises:
         SpecError: A coordinate is unknown or has no law, a law has the wrong shape, or the state
             has no velocity of a coordinate.
     """
-    parts, variables = reading.file.newton, VARIABLES.of(reading)
-    if parts is None:
-        return ()
+    variables = VARIABLES.of(reading)
     coordinates = {each.name: each for each in variables if each.role == "coordinate"}
     for name in parts:
         if name not in coordinates:
@@ -107,15 +105,13 @@ def _read_mass(reading: Reading, variable: Variable, text: str, scope: Scope) ->
 
 
 NEWTON = Table[tuple[Force, ...]](
-    key="newton",
-    kind=Annotated[dict[str, NewtonPart], Field(min_length=1)] | None,
-    field=Field(
-        None,
-        description="Newton's law, by the names of coordinates",
-        json_schema_extra=named(),
-    ),
-    read=read_newton,
-    formulas=lambda laws: [formula for law in laws for formula in (law.mass, law.force)],
+    "newton",
+    NewtonPart,
+    "Newton's law, by the names of coordinates",
+    read_newton,
+    many=True,
+    least=1,
+    absent=(),
     routed=True,
     example='q = { mass = "m", force = "-k*q" }',
 )

@@ -6,14 +6,15 @@ Read next: `coadjoint.spec.sections.symmetries`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pydantic import Field
 
 from coadjoint.spec.core.components import Shape, component_names
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.parts import TextPart, named
-from coadjoint.spec.core.reading import Reading, Table, names_in
+from coadjoint.spec.core.parts import TextPart
+from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.values import Prose, Unit
 from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
 from coadjoint.spec.sections.variables import motion_roles
@@ -49,12 +50,14 @@ class Observable:
         return component_names(self.name, self.shape)
 
 
-def read_observables(reading: Reading) -> tuple[Observable, ...]:
+def read_observables(
+    reading: Reading, parts: Mapping[str, ObservablePart]
+) -> tuple[Observable, ...]:
     """The observables, which may name the multipliers of constraints."""
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("an observable", motion_roles(reading), reactions)
     found = []
-    for name, part in reading.file.observables.items():
+    for name, part in parts.items():
         key = reading.source.place_of(("observables", name), "expression")
         formula = reading.formula(key, part.expression, scope, any_shape=True)
         found.append(Observable(name, formula, part.unit, part.doc))
@@ -62,10 +65,10 @@ def read_observables(reading: Reading) -> tuple[Observable, ...]:
 
 
 OBSERVABLES = Table[tuple[Observable, ...]](
-    key="observables",
-    kind=dict[str, ObservablePart],
-    field=Field({}, description="what is emitted beside the dynamics", json_schema_extra=named()),
-    read=read_observables,
-    names=names_in("observables"),
-    formulas=lambda observables: [each.formula for each in observables],
+    "observables",
+    ObservablePart,
+    "what is emitted beside the dynamics",
+    read_observables,
+    many=True,
+    names=name_each,
 )

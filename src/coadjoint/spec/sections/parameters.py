@@ -6,6 +6,7 @@ Read next: `coadjoint.spec.sections.inputs`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
@@ -16,9 +17,9 @@ from pydantic import Field
 from coadjoint.limits import PARAMETER_COMPONENTS
 from coadjoint.spec.core.components import Shape, component_names, matrix_size
 from coadjoint.spec.core.defaults import misfit_form, read_default
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
-from coadjoint.spec.core.reading import Reading, Table, names_in
+from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import Length, Numbers, Prose, Unit
 
@@ -78,7 +79,7 @@ class Parameter:
         return self.shape if size is None else (size, size)
 
 
-def read_parameters(reading: Reading) -> tuple[Parameter, ...]:
+def read_parameters(reading: Reading, parts: Mapping[str, ParameterPart]) -> tuple[Parameter, ...]:
     """The parameters, in declared order.
 
     Raises:
@@ -86,8 +87,7 @@ def read_parameters(reading: Reading) -> tuple[Parameter, ...]:
             components fill no matrix of the form.
         LimitError: There are too many.
     """
-    parts = reading.file.parameters.items()
-    found = tuple(_read_parameter(reading.source, name, part) for name, part in parts)
+    found = tuple(_read_parameter(reading.source, name, part) for name, part in parts.items())
     limit = "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS
     reading.check_count("parameters", "parameters", found, *limit)
     return found
@@ -113,10 +113,11 @@ def _read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter
 
 
 PARAMETERS = Table[tuple[Parameter, ...]](
-    key="parameters",
-    kind=dict[str, ParameterPart],
-    field=Field({}, description="the parameters by name", json_schema_extra=named()),
-    read=read_parameters,
-    quantities=lambda parameters: parameters,
-    names=names_in("parameters"),
+    "parameters",
+    ParameterPart,
+    "the parameters by name",
+    read_parameters,
+    many=True,
+    quantities=True,
+    names=name_each,
 )

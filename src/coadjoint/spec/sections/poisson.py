@@ -77,14 +77,13 @@ class Poisson:
     weights: tuple[Fraction, ...] = ()
 
 
-def read_poisson(reading: Reading) -> Poisson | None:
-    """The bracket of a spec, if one is declared.
+def read_poisson(reading: Reading, part: PoissonPart) -> Poisson:
+    """The declared bracket.
 
     Raises:
         SpecError: A coordinate is unknown, a pair stands twice, or functions are too few or many.
     """
-    part = reading.file.poisson
-    return None if part is None else _Bracket(reading).poisson(part)
+    return _Bracket(reading).poisson(part)
 
 
 class _Bracket:
@@ -237,17 +236,9 @@ def pairing_weights(count: int, form: str) -> list[Fraction]:
     return [Fraction(1, 1 if n in diagonal else 2) for n in range(count)]
 
 
-def _list_formulas(poisson: Poisson | None) -> list[Formula]:
-    """The distinguished functions, and the brackets of components."""
-    if poisson is None:
-        return []
-    return [*poisson.functions, *(formula for *_, formula in poisson.entries)]
-
-
 POISSON = Table[Poisson | None](
-    key="poisson",
-    kind=PoissonPart | None,
-    field=Field(None, description="a Poisson bracket of coordinates, where there is no algebra"),
-    read=read_poisson,
-    formulas=_list_formulas,
+    "poisson",
+    PoissonPart,
+    "a Poisson bracket of coordinates, where there is no algebra",
+    read_poisson,
 )

@@ -7,7 +7,7 @@ Read next: `coadjoint.derive.mechanics.followed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -20,7 +20,7 @@ from coadjoint.spec.core.defaults import read_default
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula, Scope
 from coadjoint.spec.core.names import derived_names
-from coadjoint.spec.core.parts import TextPart, named
+from coadjoint.spec.core.parts import TextPart
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.units import parse_unit, unit_of, unit_text
@@ -80,13 +80,15 @@ class Reconstructed:
         return component_names(self.name, self.shape, self.attitude)
 
 
-def read_reconstruction(reading: Reading) -> tuple[Reconstructed, ...]:
+def read_reconstruction(
+    reading: Reading, parts: Mapping[str, ReconstructedPart]
+) -> tuple[Reconstructed, ...]:
     """The variables that follow from the motion; rates may name all of them.
 
     Raises:
         SpecError: A default has another shape, or an attitude has nothing that turns it.
     """
-    rolling, parts = ROLLING.of(reading), reading.file.reconstruction
+    rolling = ROLLING.of(reading)
     first = () if rolling is None else _follow_rolling(reading, rolling)
     blank = [
         Reconstructed(name, None, part.attitude or "", _shape(part)) for name, part in parts.items()
@@ -166,21 +168,19 @@ def _shape(part: ReconstructedPart) -> Shape:
     return (4,) if part.attitude else ()
 
 
-def _name_all(followed: Iterable[Reconstructed]) -> Iterator[Naming]:
+def _name_all(table: str, followed: Iterable[Reconstructed]) -> Iterator[Naming]:
     """The names of what follows, of its components and of their rates."""
     for each in followed:
-        key: KeyPath = ("rolling",) if each.of_rolling else ("reconstruction", each.name)
+        key: KeyPath = ("rolling",) if each.of_rolling else (table, each.name)
         rates = tuple(derived_names(each.components))
         yield Naming(key, each.name, each.components, rates)
 
 
 RECONSTRUCTION = Table[tuple[Reconstructed, ...]](
-    key="reconstruction",
-    kind=dict[str, ReconstructedPart],
-    field=Field(
-        {}, description="what follows from the motion, as x = 'v'", json_schema_extra=named()
-    ),
-    read=read_reconstruction,
+    "reconstruction",
+    ReconstructedPart,
+    "what follows from the motion, as x = 'v'",
+    read_reconstruction,
+    many=True,
     names=_name_all,
-    formulas=lambda followed: [each.rate for each in followed if each.rate is not None],
 )

@@ -43,16 +43,13 @@ class Submanifold:
     where: tuple[Formula, ...] = ()
 
 
-def read_reduction(reading: Reading) -> Submanifold | None:
-    """The submanifold, if one is declared.
+def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
+    """The declared submanifold.
 
     Raises:
         SpecError: What is restricted is no vector or scalar of the state, something is left of no
             variable, or the spec has what a restricted motion cannot.
     """
-    part = reading.file.reduction
-    if part is None:
-        return None
     variables = VARIABLES.of(reading)
     _check_alone(reading, variables)
     known = {variable.name: variable for variable in variables}
@@ -132,9 +129,5 @@ def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]
 
 
 REDUCTION = Table[Submanifold | None](
-    key="reduction",
-    kind=ReductionPart | None,
-    field=Field(None, description="the submanifold to which the motion is restricted"),
-    read=read_reduction,
-    formulas=lambda reduction: () if reduction is None else reduction.section.values(),
+    "reduction", ReductionPart, "the submanifold to which the motion is restricted", read_reduction
 )

@@ -6,9 +6,7 @@ semidefinite is proved later. Read next: `coadjoint.spec.sections.domain`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 
 from pydantic import Field
 
@@ -61,25 +59,21 @@ class Relaxation:
         return "P G P dh" if self.S is None else "G dS"
 
 
-def read_double_bracket(reading: Reading) -> Relaxation | None:
-    """Dissipation that keeps Casimirs, if it is declared.
+def read_double_bracket(reading: Reading, part: DoubleBracketPart) -> Relaxation:
+    """Dissipation that keeps Casimirs.
 
     Raises:
         SpecError: The motion is restricted, or G has another size than the state.
     """
-    part = reading.file.double_bracket
-    return None if part is None else Relaxation(_read_metric(reading, "double_bracket", part.G))
+    return Relaxation(_read_metric(reading, "double_bracket", part.G))
 
 
-def read_metriplectic(reading: Reading) -> Relaxation | None:
-    """Dissipation that keeps the energy, if it is declared.
+def read_metriplectic(reading: Reading, part: MetriplecticPart) -> Relaxation:
+    """Dissipation that keeps the energy.
 
     Raises:
         SpecError: As `read_double_bracket`, or both are declared.
     """
-    part = reading.file.metriplectic
-    if part is None:
-        return None
     if reading.file.double_bracket is not None:
         raise reading.source.fault(
             ("metriplectic",),
@@ -111,28 +105,19 @@ def _read_metric(reading: Reading, table: str, text: str) -> Formula:
     return G
 
 
-def _list_formulas(table: str, relaxation: Relaxation | None) -> Iterable[Formula]:
-    """G and S, for the table that declares them."""
-    if relaxation is None or relaxation.table != table:
-        return ()
-    return filter(None, (relaxation.G, relaxation.S))
-
-
 DOUBLE_BRACKET = Table[Relaxation | None](
-    key="double_bracket",
-    kind=DoubleBracketPart | None,
-    field=Field(None, description="dissipation that keeps Casimirs, dx/dt = P dh + P G P dh"),
-    read=read_double_bracket,
+    "double_bracket",
+    DoubleBracketPart,
+    "dissipation that keeps Casimirs, dx/dt = P dh + P G P dh",
+    read_double_bracket,
     attribute="relaxation",
-    formulas=partial(_list_formulas, "double_bracket"),
     acts=True,
 )
 METRIPLECTIC = Table[Relaxation | None](
-    key="metriplectic",
-    kind=MetriplecticPart | None,
-    field=Field(None, description="dissipation that keeps the energy, dx/dt = P dh + G dS"),
-    read=read_metriplectic,
+    "metriplectic",
+    MetriplecticPart,
+    "dissipation that keeps the energy, dx/dt = P dh + G dS",
+    read_metriplectic,
     attribute="relaxation",
-    formulas=partial(_list_formulas, "metriplectic"),
     acts=True,
 )

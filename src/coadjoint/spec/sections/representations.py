@@ -7,6 +7,7 @@ Read next: `coadjoint.spec.sections.variables`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import Field
@@ -41,18 +42,16 @@ class RepresentationPart(Part):
     )
 
 
-def read_representations(reading: Reading) -> dict[str, Representation]:
+def read_representations(
+    reading: Reading, parts: Mapping[str, RepresentationPart]
+) -> dict[str, Representation]:
     """The declared representations by name.
 
     Raises:
         AlgebraError: The matrices do not commute like the algebra.
         SpecError: A name is taken or unknown, or a matrix has the wrong size.
     """
-    source, parts, algebra = (
-        reading.source,
-        reading.file.representations,
-        ALGEBRA.of(reading).algebra,
-    )
+    source, algebra = reading.source, ALGEBRA.of(reading).algebra
     if algebra is None:
         return {}
     found, scalars = {}, scalars_of(reading)
@@ -127,8 +126,9 @@ def _own_matrices(
 
 
 REPRESENTATIONS = Table[dict[str, Representation]](
-    key="representations",
-    kind=dict[str, RepresentationPart],
-    field=Field({}, description="declared representations", json_schema_extra=named()),
-    read=read_representations,
+    "representations",
+    RepresentationPart,
+    "declared representations",
+    read_representations,
+    many=True,
 )

@@ -7,7 +7,6 @@ Read next: `coadjoint.derive.mechanics.followed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from pydantic import Field
@@ -53,17 +52,15 @@ class Rolling:
     velocity: str
 
 
-def read_rolling(reading: Reading) -> Rolling | None:
-    """How a body rolls, if it does.
+def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
+    """How a body rolls.
 
     Raises:
         SpecError: There is no body in space with an advected normal under constraints, or a name is
             taken that its attitude and point of contact have.
     """
-    part, key = reading.file.rolling, ("rolling",)
-    if part is None:
-        return None
-    if reading.file.constraints is None:
+    key = ("rolling",)
+    if not reading.file.constraints:
         raise reading.source.fault(
             key,
             "there are no constraints",
@@ -140,14 +137,6 @@ def _check_free(reading: Reading, key: KeyPath) -> None:
         )
 
 
-def _list_formulas(rolling: Rolling | None) -> Iterable[Formula]:
-    return () if rolling is None else (rolling.arm,)
-
-
 ROLLING = Table[Rolling | None](
-    key="rolling",
-    kind=RollingPart | None,
-    field=Field(None, description="a body that rolls on a plane"),
-    read=read_rolling,
-    formulas=_list_formulas,
+    "rolling", RollingPart, "a body that rolls on a plane", read_rolling
 )

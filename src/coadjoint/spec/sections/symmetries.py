@@ -7,7 +7,7 @@ Read next: `coadjoint.derive.symmetries`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
@@ -22,7 +22,7 @@ from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.parts import Accept, Part, named
 from coadjoint.spec.core.positions import KeyPath
-from coadjoint.spec.core.reading import Reading, Table, names_in
+from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.values import Names, Prose, Unit
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra, scalars_of
@@ -125,7 +125,7 @@ class Symmetry:
         return self.shape if size is None else (size, size)
 
 
-def read_symmetries(reading: Reading) -> tuple[Symmetry, ...]:
+def read_symmetries(reading: Reading, parts: Mapping[str, SymmetryPart]) -> tuple[Symmetry, ...]:
     """The declared actions, in order.
 
     Raises:
@@ -134,7 +134,7 @@ def read_symmetries(reading: Reading) -> tuple[Symmetry, ...]:
     """
     OBSERVABLES.of(reading)  # whose names elements may not have
     actions = _Actions(reading)
-    return tuple(actions.symmetry(name, part) for name, part in reading.file.symmetries.items())
+    return tuple(actions.symmetry(name, part) for name, part in parts.items())
 
 
 def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
@@ -289,24 +289,13 @@ class _Actions:
         return formula
 
 
-def _list_formulas(symmetries: Iterable[Symmetry]) -> Iterator[Formula]:
-    """How time and variables move, and declared momentum maps."""
-    for each in symmetries:
-        yield from filter(None, (each.time, each.map))
-        yield from each.generators.values()
-
-
 SYMMETRIES = Table[tuple[Symmetry, ...]](
-    key="symmetries",
-    kind=dict[str, SymmetryPart],
-    field=Field(
-        {},
-        description="symmetries by the names of their momentum maps",
-        json_schema_extra=named(),
-    ),
-    read=read_symmetries,
-    names=names_in("symmetries"),
-    formulas=_list_formulas,
+    "symmetries",
+    SymmetryPart,
+    "symmetries by the names of their momentum maps",
+    read_symmetries,
+    many=True,
+    names=name_each,
 )
 
 

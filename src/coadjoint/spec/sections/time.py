@@ -50,20 +50,21 @@ class Time:
         return (self.name,)
 
 
-def read_time(reading: Reading) -> Time | None:
-    """The time, if it is declared."""
-    part = reading.file.time
-    return None if part is None else Time(part.name, part.unit, part.doc)
+def read_time(reading: Reading, part: TimePart) -> Time:
+    """The time."""
+    return Time(part.name, part.unit, part.doc)
 
 
-#: Solutions call the time ``t``, so it may have this reserved name.
+def _name_time(table: str, time: Time | None) -> list[Naming]:
+    """Its name; it may be ``t``, which is reserved since solutions call the time so."""
+    return [] if time is None else [Naming((table, "name"), time.name, allowed="t")]
+
+
 TIME = Table[Time | None](
-    key="time",
-    kind=TimePart | None,
-    field=Field(None, description="the time, where formulas name it"),
-    read=read_time,
-    quantities=lambda time: () if time is None else (time,),
-    names=lambda time: (
-        [] if time is None else [Naming(("time", "name"), time.name, time.components, allowed="t")]
-    ),
+    "time",
+    TimePart,
+    "the time, where formulas name it",
+    read_time,
+    quantities=True,
+    names=_name_time,
 )

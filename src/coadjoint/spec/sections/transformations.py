@@ -7,7 +7,7 @@ Read next: `coadjoint.prove.symmetries`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -54,7 +54,9 @@ class Transformation:
     exchanges: Mapping[str, Formula]
 
 
-def read_transformations(reading: Reading) -> tuple[Transformation, ...]:
+def read_transformations(
+    reading: Reading, parts: Mapping[str, TransformationPart]
+) -> tuple[Transformation, ...]:
     """The declared maps, in order.
 
     Raises:
@@ -75,7 +77,7 @@ def read_transformations(reading: Reading) -> tuple[Transformation, ...]:
                 for observable, each in part.exchanges.items()
             },
         )
-        for name, part in reading.file.transformations.items()
+        for name, part in parts.items()
     )
 
 
@@ -96,15 +98,10 @@ def _read_exchange(reading: Reading, name: str, observable: str, text: str) -> F
     return read_fitting(reading.source, at, text, scope, shape, observable)
 
 
-def _list_formulas(transformations: Iterable[Transformation]) -> Iterator[Formula]:
-    for each in transformations:
-        yield from (*each.map.values(), *each.exchanges.values())
-
-
 TRANSFORMATIONS = Table[tuple[Transformation, ...]](
-    key="transformations",
-    kind=dict[str, TransformationPart],
-    field=Field({}, description="maps that keep the motion, by name", json_schema_extra=named()),
-    read=read_transformations,
-    formulas=_list_formulas,
+    "transformations",
+    TransformationPart,
+    "maps that keep the motion, by name",
+    read_transformations,
+    many=True,
 )

@@ -149,7 +149,7 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     )
 
 
-def read_variables(reading: Reading) -> tuple[Variable, ...]:
+def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple[Variable, ...]:
     """The variables, each with its place in the algebra, or its shape where there is none.
 
     Raises:
@@ -158,7 +158,6 @@ def read_variables(reading: Reading) -> tuple[Variable, ...]:
         LimitError: The state has too many components.
     """
     solved = find_solved_velocities(reading.file)
-    parts = reading.file.variables
     found = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
     limit = "STATE_COMPONENTS", STATE_COMPONENTS
     reading.check_count("state", "variables", state_of(found), *limit)
@@ -345,12 +344,12 @@ def _own_form(representation: Representation | None) -> str:
     return "matrix" if count > 1 and matrix_size(count, "matrix") else ""
 
 
-def _name_all(variables: Sequence[Variable]) -> Iterator[Naming]:
+def _name_all(table: str, variables: Sequence[Variable]) -> Iterator[Naming]:
     """The names of variables, of their components, and of the rates of the state."""
     state = state_of(variables)
     for each in variables:
         rates = tuple(derived_names(each.components)) if each in state else ()
-        yield Naming(("variables", each.name), each.name, each.components, rates)
+        yield Naming((table, each.name), each.name, each.components, rates)
 
 
 def state_roles(reading: Reading) -> tuple[str, ...]:
@@ -371,11 +370,16 @@ def position_roles(reading: Reading) -> tuple[str, ...]:
 
 
 VARIABLES = Table[tuple[Variable, ...]](
-    key="variables",
-    kind=dict[str, VariablePart],
-    field=Field(min_length=1, description="the variables by name", json_schema_extra=named()),
-    read=read_variables,
-    quantities=lambda variables: variables,
+    "variables",
+    VariablePart,
+    "the variables by name",
+    read_variables,
+    many=True,
+    field=(
+        dict[str, VariablePart],
+        Field(min_length=1, description="the variables by name", json_schema_extra=named()),
+    ),
+    quantities=True,
     names=_name_all,
     example='Pi = { role = "momentum" }',
 )
