@@ -37,7 +37,7 @@ from coadjoint.render.write import (
 from coadjoint.sandbox import Children, report_progress, run_bounded
 from coadjoint.spec.core.faults import listed
 from coadjoint.spec.core.names import system_refusal
-from coadjoint.spec.files import read_file
+from coadjoint.spec.reader import read_file
 
 #: Called with system, stage, number of stages done, number of stages.
 Progress = Callable[[str, str, int, int], None]

@@ -9,7 +9,7 @@ Python file.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -299,3 +299,26 @@ class Spec:
         if self.algebra is not None:
             return "algebra"
         return "poisson" if self.poisson is not None else "configuration"
+
+    def restricted_to(self, submanifold: Submanifold) -> Spec:
+        """The Spec of the motion on a submanifold, where some variables follow from the others."""
+        section, where = submanifold.section, submanifold.where
+        # what follows from the state is named and emitted as velocities are
+        variables = tuple(
+            replace(
+                variable,
+                role="velocity" if variable.name in section else "coordinate",
+                block=(),
+                representation=None,
+            )
+            for variable in self.variables
+        )
+        whole = replace(self, observables=(), conserved=(), reduction=None)
+        return replace(
+            self,
+            algebra=None,
+            poisson=None,
+            invariance="left",
+            variables=variables,
+            reduction=Reduction(section, where, whole=whole),
+        )

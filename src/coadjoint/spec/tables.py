@@ -18,13 +18,11 @@ from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.reading import Table
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.claims import CLAIMS
-from coadjoint.spec.sections.clebsch import CLEBSCH
 from coadjoint.spec.sections.constraints import CONSTRAINTS
 from coadjoint.spec.sections.definitions import DEFINITIONS
-from coadjoint.spec.sections.dissipation import DISSIPATION
 from coadjoint.spec.sections.domain import DOMAIN
 from coadjoint.spec.sections.energies import HAMILTONIAN, LAGRANGIAN
-from coadjoint.spec.sections.forces import FORCES
+from coadjoint.spec.sections.forces import DISSIPATION, FORCES
 from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.lax import LAX
 from coadjoint.spec.sections.momenta import MOMENTA
@@ -35,7 +33,7 @@ from coadjoint.spec.sections.poisson import POISSON
 from coadjoint.spec.sections.reconstruction import RECONSTRUCTION
 from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.sections.relaxation import DOUBLE_BRACKET, METRIPLECTIC
-from coadjoint.spec.sections.representations import REPRESENTATIONS
+from coadjoint.spec.sections.representations import CLEBSCH, REPRESENTATIONS
 from coadjoint.spec.sections.rolling import ROLLING
 from coadjoint.spec.sections.symmetries import SYMMETRIES
 from coadjoint.spec.sections.time import TIME

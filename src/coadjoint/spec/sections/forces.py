@@ -1,18 +1,22 @@
 """Forces: the table [forces], what acts beside the energy.
 
 Comes in: formulas by the names of what they act along. Goes out: a `Formula` for each.
-Read next: `coadjoint.spec.sections.dissipation`.
+Read next: `coadjoint.spec.sections.relaxation`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+from pydantic import Field
+
 from coadjoint.spec.core.faults import did_you_mean, listed
 from coadjoint.spec.core.formulas import Formula, Scope, misfit
+from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
+from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
 
 
@@ -86,4 +90,37 @@ FORCES = Table[dict[str, Formula]](
     read_forces,
     many=True,
     acts=True,
+)
+
+
+class DissipationPart(Part):
+    """Dissipation by a function of the velocities."""
+
+    R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
+
+
+def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
+    """Rayleigh's function.
+
+    Raises:
+        SpecError: It is no formula of velocities, or the motion is restricted.
+    """
+    check_whole(reading, "dissipation")
+    key: KeyPath = ("dissipation", "R")
+    formula = reading.formula(key, part.R, reading.scope("a dissipation", motion_roles(reading)))
+    velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
+    known = {name for each in velocities for name in (each.name, *each.components)}
+    if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
+        raise reading.source.fault(
+            key,
+            "Rayleigh's function names no velocity",
+            found=part.R,
+            expected="a function of velocities, whose force is -dR/dxi",
+            hint="Declare velocities, or write what acts along a momentum in [forces].",
+        )
+    return formula
+
+
+DISSIPATION = Table[Formula | None](
+    "dissipation", DissipationPart, "dissipation by a function R", read_dissipation, acts=True
 )

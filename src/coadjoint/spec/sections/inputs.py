@@ -14,13 +14,12 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from coadjoint.limits import PARAMETER_COMPONENTS
-from coadjoint.spec.core.components import Shape, component_names
-from coadjoint.spec.core.defaults import read_default
+from coadjoint.spec.core.components import Components, Shape
 from coadjoint.spec.core.faults import did_you_mean, listed
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.values import Length, Numbers, Prose, Unit
+from coadjoint.spec.core.values import Length, Numbers, Prose, Unit, read_default
 
 
 class InputPart(Part):
@@ -40,7 +39,7 @@ class InputPart(Part):
 
 
 @dataclass(frozen=True)
-class Input:
+class Input(Components):
     """What drives the system from outside: an argument of every kernel, any function of time.
 
     Attributes:
@@ -60,16 +59,6 @@ class Input:
     unit: str = "1"
     doc: str = ""
     rate: str = ""
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, in order."""
-        return component_names(self.name, self.shape)
-
-    @property
-    def value_shape(self) -> Shape:
-        """Shape in formulas."""
-        return self.shape
 
 
 def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input, ...]:

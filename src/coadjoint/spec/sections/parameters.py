@@ -15,13 +15,12 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from coadjoint.limits import PARAMETER_COMPONENTS
-from coadjoint.spec.core.components import Shape, component_names, matrix_size
-from coadjoint.spec.core.defaults import misfit_form, read_default
+from coadjoint.spec.core.components import Components, Shape, matrix_size
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.values import Length, Numbers, Prose, Unit
+from coadjoint.spec.core.values import Length, Numbers, Prose, Unit, misfit_form, read_default
 
 
 class ParameterPart(Part):
@@ -44,7 +43,7 @@ class ParameterPart(Part):
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Components):
     """A constant of the system.
 
     Attributes:
@@ -66,17 +65,6 @@ class Parameter:
     unit: str = "1"
     doc: str = ""
     form: str = ""
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, in order."""
-        return component_names(self.name, self.shape, self.form)
-
-    @property
-    def value_shape(self) -> Shape:
-        """Shape in formulas: that of the whole matrix where there is a form."""
-        size = matrix_size(self.shape[0], self.form) if self.form else None
-        return self.shape if size is None else (size, size)
 
 
 def read_parameters(reading: Reading, parts: Mapping[str, ParameterPart]) -> tuple[Parameter, ...]:

@@ -16,7 +16,6 @@ from pydantic import Field, model_validator
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.spec.core.components import Shape, component_names
-from coadjoint.spec.core.defaults import read_default
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula, Scope
 from coadjoint.spec.core.names import derived_names
@@ -24,7 +23,7 @@ from coadjoint.spec.core.parts import TextPart
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.units import parse_unit, unit_of, unit_text
-from coadjoint.spec.core.values import Numbers, Prose, Unit
+from coadjoint.spec.core.values import Numbers, Prose, Unit, read_default
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT, ROLLING, Rolling
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles

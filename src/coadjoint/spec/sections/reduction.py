@@ -1,7 +1,7 @@
 """Reduction: the table [reduction], a submanifold that the motion keeps.
 
 Comes in: its section, which says what some variables are there. Goes out: a `Submanifold`, or None.
-That the motion keeps it is proved later. Read next: `coadjoint.spec.restriction`.
+That the motion keeps it is proved later. Read next: `coadjoint.derive.reductions`.
 """
 
 from __future__ import annotations

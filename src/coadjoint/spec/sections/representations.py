@@ -23,7 +23,7 @@ from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import Block, Matrix
 from coadjoint.spec.sections.algebras import ALGEBRA, scalars_of
-from coadjoint.spec.sections.matrices import block_places, by_matrices, located
+from coadjoint.spec.sections.matrices import block_places, by_matrices, located, representation_of
 
 
 class RepresentationPart(Part):
@@ -131,4 +131,28 @@ REPRESENTATIONS = Table[dict[str, Representation]](
     "declared representations",
     read_representations,
     many=True,
+)
+
+
+class ClebschPart(Part):
+    """A canonical pair of the route clebsch, beside those of the advected quantities."""
+
+    representation: str = Field(description="how the algebra acts on it, such as 'adjoint'")
+
+
+def read_clebsch(reading: Reading, part: ClebschPart) -> Representation | None:
+    """How the algebra acts on the pair; None where there is no algebra."""
+    algebra = ALGEBRA.of(reading).algebra
+    if algebra is None:
+        return None
+    at, declared = ("clebsch", "representation"), REPRESENTATIONS.of(reading)
+    return representation_of(reading.source, at, algebra, part.representation, declared)
+
+
+CLEBSCH = Table[Representation | None](
+    "clebsch",
+    ClebschPart,
+    "a canonical pair of its own for the route clebsch",
+    read_clebsch,
+    routed=True,
 )

@@ -16,21 +16,29 @@ from pydantic import Field
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
+from coadjoint.algebra.families import so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
 from coadjoint.limits import STATE_COMPONENTS
-from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size
-from coadjoint.spec.core.defaults import misfit_form, read_default
+from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
 from coadjoint.spec.core.faults import did_you_mean, listed
 from coadjoint.spec.core.names import derived_names
 from coadjoint.spec.core.parts import Part, named
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.values import Block, Length, Numbers, Prose, Unit
+from coadjoint.spec.core.values import (
+    Block,
+    Length,
+    Numbers,
+    Prose,
+    Unit,
+    misfit_form,
+    read_default,
+)
 from coadjoint.spec.sections.algebras import ALGEBRA
-from coadjoint.spec.sections.forms import check_elements, check_planes
 from coadjoint.spec.sections.matrices import block_places, representation_of
 from coadjoint.spec.sections.representations import REPRESENTATIONS
 from coadjoint.spec.sections.solved import find_solved_velocities
@@ -89,7 +97,7 @@ class VariablePart(Part):
 
 
 @dataclass(frozen=True)
-class Variable:
+class Variable(Components):
     """A velocity, momentum or advected quantity, or a coordinate of a space with a bracket.
 
     Attributes:
@@ -120,21 +128,6 @@ class Variable:
     elements: tuple[SparseMatrix, ...] = ()
     default: tuple[Fraction, ...] | None = None
     independent: bool | None = None
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, in order."""
-        return component_names(self.name, self.shape, self.form)
-
-    @property
-    def matrix_size(self) -> int | None:
-        """Rows of the matrix that it is in formulas; None for scalars and vectors."""
-        return matrix_size(self.shape[0], self.form) if self.form else None
-
-    @property
-    def value_shape(self) -> Shape:
-        """Shape in formulas: that of the whole matrix where there is a form."""
-        return self.shape if self.matrix_size is None else (self.matrix_size,) * 2
 
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
@@ -310,6 +303,55 @@ def _check_role(
         found=part.role,
         expected=f"{roles} {place}",
     )
+
+
+def check_elements(
+    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
+) -> None:
+    """The matrices of an algebra with a bracket of its own are of the form that is declared."""
+    rows = matrix_size(len(block), form)
+    sign = -1 if form == "antisymmetric" else 1
+    for i in block:
+        matrix = algebra.elements[i]
+        turned = {(c, r): sign * value for (r, c), value in matrix.items()}
+        if form == "matrix" or len(block) < algebra.dimension:
+            turned = {}
+        if size(algebra.elements) != rows or turned != dict(matrix):
+            raise source.fault(
+                key,
+                f"the matrix of {algebra.basis[i]} is not of the form {form!r}",
+                found=algebra.basis[i],
+                expected=f"a basis of all {form} matrices with {rows} rows",
+                hint="Remove form, or declare the algebra by such matrices.",
+            )
+
+
+def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
+    """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
+
+    Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
+    and no invariant would show it.
+    """
+    size = matrix_size(len(block), "antisymmetric")
+    assert size is not None, block
+    place = {b: n for n, b in enumerate(block)}
+    found: dict[tuple[int, int], dict[int | None, object]] = {}
+    for (i, j), row in algebra.constants.items():
+        if i in place and j in place:
+            a, b = place[i], place[j]
+            sign = 1 if a < b else -1
+            found[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
+    if size > 2 and found != dict(so_indefinite(size, 0).constants):
+        names = listed(algebra.basis[b] for b in block)
+        raise source.fault(
+            key,
+            f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
+            found=names,
+            expected="a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
+            hint="Leave form out, and write hat(...) where a matrix is meant."
+            if size == 3
+            else "Leave form out, or declare the algebra by these matrices.",
+        )
 
 
 def _representation(
