@@ -34,7 +34,10 @@ JUDGES = {
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",
     ),
-    "src/coadjoint/poisson/ranks": ("tests/poisson/test_ranks.py",),
+    "src/coadjoint/exact/ranks": ("tests/exact/test_ranks.py",),
+    "src/coadjoint/exact/dense": ("tests/exact/test_dense.py",),
+    "src/coadjoint/exact/linear": ("tests/exact/test_linear.py",),
+    "src/coadjoint/exact/ansatz": ("tests/exact/test_ansatz.py",),
     "src/coadjoint/poisson/casimirs": (
         "tests/poisson/test_casimirs.py",
         "tests/prove/test_completeness.py",

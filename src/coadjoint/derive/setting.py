@@ -19,7 +19,7 @@ from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Condition, Element, Field, Region
+from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
@@ -368,12 +368,7 @@ def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
 
 def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
     """``sum x_i e_i`` for matrices e_i."""
-    rows = range(size(matrices))
-    entries: dict[tuple[int, int], Element] = {}
-    for x, matrix in zip(parts, matrices, strict=True):
-        for place, value in matrix.items():
-            entries[place] = entries.get(place, 0) + x * value
-    return tuple(tuple(entries.get((i, j), 0 * parts[0]) for j in rows) for i in rows)
+    return dense.weighted(parts, matrices, size(matrices), 0 * parts[0])
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

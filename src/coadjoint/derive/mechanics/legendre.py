@@ -13,11 +13,11 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from coadjoint.derive.interpret import determinant, inverse
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel, solver_names
 from coadjoint.derive.setting import Setting, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.regular import certain_minors, witness_regular
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec

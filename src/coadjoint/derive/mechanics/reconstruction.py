@@ -20,14 +20,13 @@ from collections.abc import Sequence
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra.attitudes import has_fixed_row
 from coadjoint.algebra.catalogue import inverse_by
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
 from coadjoint.derive.equations import Relation
-from coadjoint.derive.interpret import Matrix, inverse
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
+from coadjoint.exact.dense import Matrix, apply, inverse, product, scale, transpose
+from coadjoint.exact.linear import Span
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import apply, matmul, scale, transpose
 
 
 def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
@@ -49,7 +48,7 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
             tuple(setting.field.zero + X.get((i, j), 0) for j in range(len(matrix)))
             for i in range(len(matrix))
         )
-        seen = matmul(matmul(outer, dense), inner)
+        seen = product(product(outer, dense), inner)
         parts = [
             m * w * seen[i][j] for m, row in zip(mu, coordinates, strict=True) for i, j, w in row
         ]

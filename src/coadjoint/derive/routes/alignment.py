@@ -22,8 +22,8 @@ from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
+from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import Vector, add, cross, dot, scale
 from coadjoint.spec import Spec
 
 

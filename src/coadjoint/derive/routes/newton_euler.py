@@ -30,17 +30,7 @@ from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_tran
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, setting_of
 from coadjoint.exact import Element, element_text
-from coadjoint.groups.vectors import (
-    Matrix,
-    Vector,
-    add,
-    combine,
-    cross,
-    dot,
-    scale,
-    subtract,
-    trace,
-)
+from coadjoint.exact.dense import Matrix, Vector, add, cross, dot, scale, subtract, trace
 from coadjoint.spec import Spec
 
 ROUTE = "newton-euler"
@@ -128,7 +118,7 @@ def mass_points(setting: Setting, lagrangian: Element) -> MassPoints:
     mass = mass_matrix(setting, lagrangian)
     inertia = tuple(tuple(row[:3]) for row in mass[:3])
     half = trace(inertia) / 2
-    second = combine(tuple(scale(half, axis) for axis in AXES), inertia, -1)
+    second = subtract(scale(half, AXES), inertia)
     total, first = setting.field.zero, (setting.field.zero,) * 3
     if len(mass) == 6:  # Omega . D V is V . Omega x c for D_ij = -epsilon_ijk c_k
         total, first = mass[3][3], (mass[2][4], mass[0][5], mass[1][3])
