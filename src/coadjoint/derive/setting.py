@@ -26,9 +26,9 @@ from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.core.shapes import ELEMENTARY
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
-from coadjoint.spec.sections.constrained import Condition as Inequality
+from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
-from coadjoint.spec.sections.uses import formulas
+from coadjoint.spec.tables import list_formulas
 
 Value = TypeVar("Value")
 #: What has a name in formulas.
@@ -363,14 +363,14 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
 
 def _function_calls(spec: Spec) -> int:
     """How many elementary functions the formulas of a spec call at the most."""
-    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
 
 
 def _calls_parameters(spec: Spec) -> bool:
     """Whether an elementary function is taken of parameters, which have numbers in some proofs."""
     names = {n for each in spec.parameters for n in (each.name, *each.components)}
-    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     calls = (node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED)
     inside = (part for call in calls for part in tree.walk(call))
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
