@@ -68,7 +68,8 @@ from coadjoint.prove.zero import (
     proved_by_normal_form,
 )
 from coadjoint.spec import Formula, Spec
-from coadjoint.spec.model import Integral, SpatialMomentum
+from coadjoint.spec.model import Integral
+from coadjoint.spec.sections.spatial import SpatialMomentum
 
 
 def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:

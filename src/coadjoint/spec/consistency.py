@@ -25,7 +25,6 @@ from coadjoint.spec.model import (
     Reconstructed,
     ReducedMomentum,
     Section,
-    SpatialMomentum,
     Symmetry,
     Time,
     Variable,
@@ -33,6 +32,7 @@ from coadjoint.spec.model import (
 )
 from coadjoint.spec.routes import STARTS, energies_of, is_in_frame, kinds_of
 from coadjoint.spec.schema import SpecFile
+from coadjoint.spec.sections.spatial import SpatialMomentum
 
 #: How a missing table is written.
 _HOW = {
