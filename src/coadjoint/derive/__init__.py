@@ -121,7 +121,7 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
         )
     given = setting or make_setting(spec)
     if spec.reduction is not None:
-        return reductions.restricted(given, ROUTES[chosen])
+        return reductions.restricted(given, chosen, derive)
     return external.forced(ROUTES[chosen](given))
 
 

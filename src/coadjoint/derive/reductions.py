@@ -2,6 +2,7 @@ r"""Restricted motions: any route on a whole system, restricted to a section tha
 
 If the motion :math:`\dot x = X(x, y), \dot y = Y(x, y)` keeps the submanifold :math:`y = s(x)`,
 that is :math:`Ds(x)\, X(x, s(x)) = Y(x, s(x))`, then on it :math:`\dot x = X(x, s(x))`.
+Forces and dissipation act on the whole system, and must keep it on the section as well.
 Comes in: a Setting of what is left, and a route. Goes out: Equations of what is left, derived by
 that route for the whole system in a field of its own. What must hold for it is proved in
 `coadjoint.prove.reductions`.
@@ -20,7 +21,8 @@ from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
-Route = Callable[[Spec | Setting], Equations]
+#: Derives the equations of a spec by a route of that name, with all that acts on it.
+Derivation = Callable[[Spec, str], Equations]
 
 
 class Restriction:
@@ -53,13 +55,18 @@ class Restriction:
         return {name: self(value) for name, value in pairs}
 
 
-def restricted(setting: Setting, route: Route) -> Equations:
+def restricted(setting: Setting, route: str, derivation: Derivation) -> Equations:
     """The equations of what is left, by a route for the whole system.
+
+    Args:
+        setting: Of what is left.
+        route: Its name.
+        derivation: `coadjoint.derive.derive`.
 
     Raises:
         DerivationError: The route cannot be followed, or moves in variables of its own.
     """
-    restriction = Restriction(setting, whole_equations(setting, route))
+    restriction = Restriction(setting, whole_equations(setting, route, derivation))
     whole, rates = restriction.whole, restriction.rates
     assert whole.exact.energy is not None, "the reader asks for a Hamiltonian"
     energy = restriction(whole.exact.energy)
@@ -88,11 +95,11 @@ def _check_regular(restriction: Restriction, energy: Element) -> None:
             ) from error
 
 
-def whole_equations(setting: Setting, route: Route) -> Equations:
+def whole_equations(setting: Setting, route: str, derivation: Derivation) -> Equations:
     """The equations of the system before the restriction, in a field of its own."""
     reduction = setting.spec.reduction
     assert reduction is not None, f"{setting.spec.name} is not restricted"
-    whole = route(reduction.whole)
+    whole = derivation(reduction.whole, route)
     if whole.chart is not None:
         raise refusal(
             setting,

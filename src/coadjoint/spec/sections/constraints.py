@@ -152,9 +152,8 @@ class ConstraintReader:
 
         Raises:
             SpecError: There is no such variable, a momentum is named whose velocity has a
-                Lagrangian, the force has another shape, or the motion is restricted.
+                Lagrangian, or the force has another shape.
         """
-        self._check_whole("forces")
         scope = make_scope("a force", self.motion, self.quantities, driven=DRIVING)
         return {
             name: self._along(("forces", name), text, scope, self._forced)
@@ -178,11 +177,10 @@ class ConstraintReader:
         """Rayleigh's function.
 
         Raises:
-            SpecError: It is no formula of velocities, or the motion is restricted.
+            SpecError: It is no formula of velocities.
         """
         if self.file.dissipation is None:
             return None
-        self._check_whole("dissipation")
         key: KeyPath = ("dissipation", "R")
         scope = make_scope("a dissipation", self.motion, self.quantities, driven=DRIVING)
         formula = read_formula(self.source, key, self.file.dissipation.R, scope)
@@ -194,7 +192,9 @@ class ConstraintReader:
                 "Rayleigh's function names no velocity",
                 found=self.file.dissipation.R,
                 expected="a function of velocities, whose force is -dR/dxi",
-                hint="Declare velocities, or write what acts along a momentum in [forces].",
+                hint="Declare velocities, or write what acts along a momentum in [forces]."
+                if self.file.reduction is None
+                else "Write what acts along a momentum in [forces].",
             )
         return formula
 
@@ -202,8 +202,7 @@ class ConstraintReader:
         """Dissipation by a symmetric bracket.
 
         Raises:
-            SpecError: There are two, the motion is restricted, or G has another size than the
-                state.
+            SpecError: There are two, or G has another size than the state.
         """
         if self.file.double_bracket is not None and self.file.metriplectic is not None:
             raise self.source.fault(
@@ -217,7 +216,6 @@ class ConstraintReader:
         part = getattr(self.file, table)
         if part is None:
             return None
-        self._check_whole(table)
         key: KeyPath = (table, "G")
         scope = make_scope("a metric", self.motion, self.quantities, driven=DRIVING)
         G = read_formula(self.source, key, part.G, scope, any_shape=True)
@@ -239,18 +237,6 @@ class ConstraintReader:
     def _fixed_state(self) -> tuple[str, ...]:
         """Roles of the state."""
         return tuple(dict.fromkeys(each.role for each in state_of(self.variables)))
-
-    def _check_whole(self, table: str) -> None:
-        """Nothing acts on a motion that is restricted to a submanifold."""
-        if getattr(self.file, table) and self.file.reduction is not None:
-            raise self.source.fault(
-                (table,),
-                f"there is [{table}] beside [reduction]",
-                found=table,
-                expected="one of them",
-                hint=f"Write the equations on the submanifold without [reduction], or remove "
-                f"[{table}].",
-            )
 
     def domain(self, constraints: Sequence[Constraint]) -> tuple[Condition, ...]:
         """The declared inequalities, which may name reactions: a body leaves the plane.
