@@ -112,14 +112,13 @@ def test_spoiled_forces_break_the_balance_on_the_section(factor, monkeypatch):
 
 def test_a_double_bracket_acts_on_the_whole():
     """Its conditions are claims about the whole system; one that pulls a single body leaves."""
-    change = (UNFORCED, ('["canonical", "poisson"]', '["poisson"]'))
-    found = verdicts(
-        IN_STEP, *change, ("[reduction]", '[double_bracket]\nG = "c*u^2"\n[reduction]')
-    )
+    change = (UNFORCED, ('["canonical", "poisson"]', '["poisson"]'), ('[time]\nname = "t"\n', ""))
+    along = '[double_bracket]\nG = "c*u^2"\n[reduction]'
+    found = verdicts(IN_STEP, *change, ("[reduction]", along))
     assert set(found.values()) == {Verdict.PROVED}
     assert "G is positive semidefinite (of the whole system)" in found
     assert "the energy changes by -<P dh, G P dh>" in found
-    single = '[double_bracket]\nG = "diag(vector(c, c, 0, 0))"\n[reduction]'
+    single = '[double_bracket]\nG = "u^2*diag(vector(c, c, 0, 0))"\n[reduction]'
     found = verdicts(IN_STEP, *change, ("[reduction]", single))
     assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.REFUTED
 
