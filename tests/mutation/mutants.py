@@ -533,7 +533,7 @@ MUTANTS = (
     Mutant(PROVE + "reductions.py", "- rates[name]", "+ rates[name]"),
     Mutant(
         PROVE + "reductions.py",
-        "[field.substitute(restriction(f), restriction.section) for f in functions]",
-        "[field.substitute(f - f, restriction.section) for f in map(restriction, functions)]",
+        "restriction.setting.field.substitute(restriction(function), restriction.section)",
+        "restriction.setting.field.zero",
     ),
 )
