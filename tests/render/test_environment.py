@@ -6,6 +6,7 @@ import pytest
 from jinja2 import UndefinedError
 from jinja2.exceptions import SecurityError
 
+from coadjoint.declared import Quantity
 from coadjoint.errors import SpecError
 from coadjoint.render.environment import (
     environment,
@@ -14,7 +15,7 @@ from coadjoint.render.environment import (
     render_templates,
     template_source,
 )
-from coadjoint.render.kernels import TEMPLATES, Quantity
+from coadjoint.render.kernels import TEMPLATES
 from coadjoint.resources import derivations_folder, templates_folder
 
 

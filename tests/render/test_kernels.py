@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coadjoint.declared import Quantity
 from coadjoint.lower.program import Program
-from coadjoint.render.kernels import NO_LICENSE, KernelContext, Quantity, fingerprint, render_system
+from coadjoint.render.kernels import NO_LICENSE, KernelContext, fingerprint, render_system
 from tests.kernels import COMPILER, EXACT, STRICT, TextSystem, compile_text
 from tests.programs import HEAVY_TOP, PENDULUM, program
 from tests.render.test_printers import check_formatted

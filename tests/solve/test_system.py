@@ -12,8 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, OutputError
-from coadjoint.solve.quantities import Quantities, Quantity
+from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top, kirchhoff, rigid_body
 from tests.processes import processor_seconds, wait_for_work

@@ -11,9 +11,11 @@ import hashlib
 import json
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, fields
+from typing import Any, Final
 
+from coadjoint.declared import Bound, Quantity
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement, operation, walk
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
@@ -26,87 +28,10 @@ TEMPLATES: Final = {
     "kernel.h": "c/kernel.h.j2",
 }
 
-#: What each function of a kernel is, for its readers.
-SUMMARIES: Final = {
-    "rhs": "Time derivative of the state",
-    "jacobian": "Derivative of rhs by the state, one row for each rate",
-    "input_jacobian": "Derivative of rhs by the inputs, one row for each rate",
-    "parameter_jacobian": "Derivative of rhs by the parameters, one row for each rate",
-    "energy": "Energy",
-    "observables": "Observables, one row for each component",
-    "poisson_tensor": "Poisson tensor, brackets of the components of the state",
-    "almost_poisson_tensor": "Almost-Poisson tensor, velocities standing for their momenta",
-    "constraint_residual": "Left minus right sides of the constraints",
-    "projection": "State moved onto the constraints by the least change of velocities",
-    "reconstruction": "Rates of what is reconstructed; state holds the state, then its rows",
-    "domain": "What is positive where the system is defined, one row for each entry of DOMAIN",
-}
-
 NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."
 
 #: Members that the NumPy kernel evaluates at a time (measured: docs/decisions/numpy-kernels.md).
 CHUNK: Final = 11_000
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A named block of state, parameters or observables, as the generated package declares it.
-
-    Attributes:
-        name: As in the spec.
-        shape: ``()``, ``(n,)`` or ``(n, m)``.
-        unit: Unit text, ``"1"`` if dimensionless.
-        components: One name per component, row by row.
-        default: One value per component, or None.
-        positive: Whether every component must be positive.
-        conserved: Whether the motion conserves it.
-        while_constant: Whether it does so only while the inputs are constant.
-        upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
-    """
-
-    name: str
-    shape: tuple[int, ...]
-    unit: str
-    components: tuple[str, ...]
-    default: tuple[float, ...] | None = None
-    positive: bool = False
-    conserved: bool = False
-    while_constant: bool = False
-    upright: str = ""
-
-    def arguments(self) -> list[str]:
-        """The arguments of its declaration, as text; what has its usual value is left out."""
-        given = [quoted(self.name), f"shape={tuple_text(map(str, self.shape))}"]
-        given += [f"unit={quoted(self.unit)}"]
-        given += [f"components={tuple_text(map(quoted, self.components))}"]
-        if self.default is not None:
-            given += [f"default={tuple_text(map(repr, self.default))}"]
-        given += ["positive=True"] * self.positive + ["conserved=True"] * self.conserved
-        given += ["while_constant=True"] * self.while_constant
-        given += [f"upright={quoted(self.upright)}"] * bool(self.upright)
-        return given
-
-
-@dataclass(frozen=True)
-class Bound:
-    """A row of the function ``domain``, as the generated package declares it.
-
-    Attributes:
-        name: Of a condition, of an acceleration or of a reaction.
-        kind: ``condition``, ``acceleration`` or ``reaction``.
-        strict: Whether it may not be zero.
-        inputs: Components of state and parameters that it depends on.
-    """
-
-    name: str
-    kind: str
-    strict: bool
-    inputs: tuple[str, ...]
-
-    def arguments(self) -> list[str]:
-        """The arguments of its declaration, as text."""
-        inputs = f"inputs={tuple_text(map(quoted, self.inputs))}"
-        return [quoted(self.name), quoted(self.kind), f"strict={self.strict}", inputs]
 
 
 @dataclass(frozen=True)
@@ -257,10 +182,10 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "shapes": _shapes(context.programs),
             "system": _system(context, identity),
             "declared": {
-                table: [quantity.arguments() for quantity in quantities]
+                table: list(map(declaration, quantities))
                 for table, quantities in _tables(context).items()
             },
-            "domain": [bound.arguments() for bound in context.domain],
+            "domain": list(map(declaration, context.domain)),
         },
     )
     return {file: rendered[template] for file, template in TEMPLATES.items()}
@@ -364,9 +289,10 @@ def _read(names: Sequence[str], used: frozenset[str]) -> tuple[Row, ...]:
 def _summary(context: KernelContext, program: Program) -> str:
     """One sentence on a function."""
     shape = ", ".join([*map(str, program.shape), "..."])
+    function = KERNEL_FUNCTIONS[program.name]
     constrained = any(other.name == "constraint_residual" for other in context.programs)
-    almost = "almost_" if constrained and program.name == "poisson_tensor" else ""
-    return f"{SUMMARIES[almost + program.name]}, shape ({shape})."
+    text = (constrained and function.constrained) or function.summary
+    return f"{text}, shape ({shape})."
 
 
 def _costs(program: Program) -> list[str]:
@@ -414,6 +340,29 @@ def _shapes(programs: Sequence[Program]) -> list[str]:
     return [
         f"{quoted(program.name)}: {tuple_text(map(str, program.shape))}" for program in programs
     ]
+
+
+def declaration(record: Quantity | Bound) -> list[str]:
+    """The arguments of a record as a generated package writes it; usual values are left out.
+
+    >>> declaration(Bound("height", "condition", True, ("h",)))
+    ['"height"', '"condition"', 'strict=True', 'inputs=("h",)']
+    """
+    given = []
+    for each in fields(record):
+        value = getattr(record, each.name)
+        if each.name in ("name", "kind"):
+            given.append(_literal(value))
+        elif value != each.default:
+            given.append(f"{each.name}={_literal(value)}")
+    return given
+
+
+def _literal(value: Any) -> str:
+    """A value as Python text: texts in double quotes, tuples of such values, and numbers."""
+    if isinstance(value, tuple):
+        return tuple_text(map(_literal, value))
+    return quoted(value) if isinstance(value, str) else repr(value)
 
 
 def tuple_text(entries: Iterable[str]) -> str:

@@ -207,7 +207,8 @@ class Kernels:
         source = np.random.default_rng(0)
         rows, sizes = self.system.rows, [self.system.PARAMETERS.size]
         sizes += [each.size for each in (self.system.INPUTS, self.system.TIME) if each]
-        wide = source.uniform(0.5, 2.0, (rows("reconstruction").size, PROBES))
+        most = self.system.STATE.size + self.system.RECONSTRUCTED.size
+        wide = source.uniform(0.5, 2.0, (most, PROBES))
         own = [source.uniform(0.5, 2.0, (size, PROBES)) for size in sizes]
         shared = [array[:, 0].copy() for array in own]
         exact = target == "c" and not self.system.elementary

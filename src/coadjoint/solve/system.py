@@ -18,10 +18,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from coadjoint.declared import Bound, Quantity
 from coadjoint.errors import OutputError
 from coadjoint.files import read_certificate
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.functions import Functions, Target, by_name
-from coadjoint.solve.quantities import Bound, Quantities, Quantity
+from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -88,9 +90,9 @@ class System(Functions):
 
     def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
-        if function != "reconstruction":
-            return self.STATE
-        return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+        if KERNEL_FUNCTIONS[function].below:
+            return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+        return self.STATE
 
     @by_name
     def evaluate(

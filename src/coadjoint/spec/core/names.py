@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from types import MappingProxyType
 
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.limits import NAME_CHARACTERS
 from coadjoint.spec.core.shapes import FUNCTIONS
 
@@ -53,11 +54,9 @@ _C_HEADERS = _words(
 _OURS = _words(
     """
     state parameters inputs out count state_stride parameters_stride inputs_stride time_stride
-    out_stride np math numpy input_jacobian parameter_jacobian
-    rhs jacobian energy observables poisson_tensor constraint_residual projection
-    reconstruction domain target time t drift
+    out_stride np math numpy target time t drift
     """
-)
+) | set(KERNEL_FUNCTIONS)
 _OURS_PATTERN = re.compile(r"(casimir|integral)\d+(_\d+)?|COADJOINT(_.*)?")
 
 _BETTER = MappingProxyType({"lambda": "lam", "t": "tau", "norm": "length", "np": "n_p"})
