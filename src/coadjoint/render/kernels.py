@@ -2,7 +2,7 @@
 
 Comes in: a `KernelContext`, which holds all that a generated file says. Goes out: text by file
 name. The choice of what to print is made here, in plain records; the templates loop and print.
-Read next: `templates/numpy/kernel.py.j2`, then `coadjoint.render.write`.
+Read next: `coadjoint.render.targets`, then `coadjoint.render.write`.
 """
 
 from __future__ import annotations
@@ -19,13 +19,11 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement, operation, walk
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
+from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
-TEMPLATES: Final = {
-    "kernel.py": "numpy/kernel.py.j2",
-    "__init__.py": "numpy/__init__.py.j2",
-    "kernel.c": "c/kernel.c.j2",
-    "kernel.h": "c/kernel.h.j2",
+TEMPLATES: Final = {"__init__.py": "package/__init__.py.j2"} | {
+    file: template for target in TARGETS.values() for file, template in target.files.items()
 }
 
 NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."
@@ -92,11 +90,13 @@ class Function:
         summary: What it is, with its shape.
         costs: Its operation counts, as lines.
         shape: Shape for one member, as Python text.
+        size: Number of its results.
+        result: What a function of plain Python makes of the list of them.
         rows: How many rows its first argument has, the state and what may follow.
         state: Components of the state that it reads.
         parameters: Components of the parameters that it reads.
         driving: Components of inputs and time that it reads, by array, as far as it takes them.
-        python_inputs: The lines that take these from the arrays in Python.
+        python_inputs: The lines that take these from each array in Python.
         of_parameters: Statements that depend on parameters alone.
         of_member: The other statements.
         outputs: Row and value of the results, those left out that are zero everywhere.
@@ -108,11 +108,13 @@ class Function:
     summary: str
     costs: list[str]
     shape: str
+    size: int
+    result: str
     rows: int
     state: tuple[Row, ...]
     parameters: tuple[Row, ...]
     driving: dict[str, tuple[Row, ...]]
-    python_inputs: tuple[str, ...]
+    python_inputs: dict[str, list[str]]
     of_parameters: tuple[Statement, ...]
     of_member: tuple[Statement, ...]
     outputs: tuple[tuple[int, Output], ...]
@@ -146,13 +148,15 @@ def fingerprint(spec_sha256: str, texts: Mapping[str, str]) -> str:
 
 def elementary_functions(programs: Iterable[Program]) -> tuple[str, ...]:
     """Functions beyond sqrt that Programs call; where there are none, all targets agree in bits."""
-    called = {
-        operation(node)
-        for program in programs
-        for value in program.values()
-        for node in walk(value)
-    }
+    called = _called(programs)
     return tuple(name for name in FUNCTIONS if name in called and name != "sqrt")
+
+
+def _called(programs: Iterable[Program]) -> list[str]:
+    """All functions that Programs call, in alphabetical order, as imports have them."""
+    values = (value for program in programs for value in program.values())
+    called = {operation(node) for value in values for node in walk(value)}
+    return sorted(name for name in FUNCTIONS if name in called)
 
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
@@ -178,6 +182,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
             ],
+            "called": _called(context.programs),
             "elementary": tuple_text(map(quoted, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
             "system": _system(context, identity),
@@ -256,6 +261,8 @@ def _function(program: Program, summary: str) -> Function:
         summary=summary,
         costs=_costs(program),
         shape=tuple_text(map(str, program.shape)),
+        size=len(program.outputs),
+        result=_result(program.shape),
         rows=len(program.state),
         state=_read(program.state, used),
         parameters=_read(program.parameters, used),
@@ -264,16 +271,19 @@ def _function(program: Program, summary: str) -> Function:
             for array, names in program.arrays.items()
             if array in ("inputs", "time")
         },
-        python_inputs=tuple(
-            line
-            for array, names in program.arrays.items()
-            for line in _unpacked(names, used, array)
-        ),
+        python_inputs={
+            array: _unpacked(names, used, array) for array, names in program.arrays.items()
+        },
         of_parameters=program.at_level("parameters"),
         of_member=program.at_level("member"),
         outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
         zeros=_zeros(row for row, output in rows if output.value == ZERO),
     )
+
+
+def _result(shape: tuple[int, ...]) -> str:
+    """A list of results as a number, a list, or a list of rows."""
+    return {0: "out[0]", 1: "out"}.get(len(shape)) or f"_rows(out, {shape[-1]})"
 
 
 def _zeros(rows: Iterable[int]) -> tuple[str, ...]:

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Final, Literal, ParamSpec, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, Protocol, TypeVar
 
 from coadjoint.declared import KernelFunction
 from coadjoint.errors import KernelArgumentError
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.render.targets import TARGETS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -21,16 +22,17 @@ if TYPE_CHECKING:
     #: One array, or arrays by name.
     Values = ArrayLike | Mapping[str, ArrayLike]
 
-Target = Literal["c", "numpy", "c-fast"]
+#: The name of a target; `coadjoint.render.targets` has them.
+Target = str
 #: What is said of the arguments of every function.
-ARGUMENTS: Final = """Args:
+_ARGUMENTS: Final = """Args:
     state: ``(n,)`` or ``(n, *batch)``, or a mapping by name: ``{"Pi": [...], ...}``.
     parameters: Packed, ``(k,)`` for all members or ``(k, *batch)``; or a mapping by name,
         ``{"I": [1, 2, 3], "m": masses}``, that overrides defaults; None for the defaults.
     inputs: Of a system that has ``INPUTS``, in the same forms: ``(m,)``, ``(m, *batch)``,
         a mapping, or None for the defaults.
     time: Of a system that depends on it: a number, or one for each member, ``batch``.
-    target: ``"c"``, ``"numpy"``, or ``"c-fast"`` (fused operations: not the same bits).
+    target: {targets}.
     out: Where to write the result: float64, C-contiguous, apart from the inputs.
 
 Returns:
@@ -120,8 +122,17 @@ def make_method(function: KernelFunction) -> Callable[..., Array]:
 
 def _text(function: KernelFunction) -> str:
     """The docstring of a method."""
+    targets = ", ".join(
+        f'``"{build}"``' + (f" ({known})" if known else "")
+        for target in TARGETS.values()
+        for build, known in target.builds.items()
+    )
     head = f"{function.summary}; shape ``{function.shape}``.\n\n"
-    return head + (f"{function.doc}\n\n" if function.doc else "") + ARGUMENTS
+    return (
+        head
+        + (f"{function.doc}\n\n" if function.doc else "")
+        + _ARGUMENTS.replace("{targets}", targets)
+    )
 
 
 for each in KERNEL_FUNCTIONS.values():

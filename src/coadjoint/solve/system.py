@@ -1,7 +1,7 @@
 """The System: one generated folder as an object, light to import and complete to use.
 
 Comes in: the declarations in a generated ``__init__.py``. Goes out: functions of state and
-parameters by the C kernel or the NumPy kernel, and simulations. Only names are held here; arrays,
+parameters by the kernel of a target, and simulations. Only names are held here; arrays,
 kernels and integrators load on first use, so that importing a system costs next to nothing.
 Read next: `coadjoint.solve.arrays` for what may be passed, `coadjoint.solve.kernels` for who
 computes.
@@ -230,7 +230,7 @@ class System(Functions):
         """Compile and load what targets need now instead of at their first call.
 
         Args:
-            targets: ``"c"``, ``"c-fast"``, ``"numpy"``; several are compiled side by side.
+            targets: What may be given as ``target=``; several are compiled side by side.
 
         Raises:
             KernelArgumentError: No such target.
