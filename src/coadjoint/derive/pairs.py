@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from coadjoint.algebra.linear import Span
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element, Field
 from coadjoint.spec.core.faults import listed
 
@@ -56,6 +56,7 @@ class LaxEquation:
     right: Element
 
 
+@once
 def declared_pair(setting: Setting) -> LaxPair:
     """The pair of the table [lax].
 

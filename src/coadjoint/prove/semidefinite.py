@@ -15,7 +15,7 @@ from itertools import combinations
 import mpmath
 
 from coadjoint.derive.interpret import determinant
-from coadjoint.derive.mechanics.legendre import coupled_blocks
+from coadjoint.derive.mechanics.configuration import coupled_blocks
 from coadjoint.exact import Element, Field
 from coadjoint.exact.signs import sign
 from coadjoint.prove.certificate import Verdict

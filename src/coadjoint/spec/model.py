@@ -16,7 +16,7 @@ from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
-from coadjoint.spec.core.tree import Node, walk
+from coadjoint.spec.core.tree import Name, Node, walk
 from coadjoint.spec.sections.constrained import (
     Condition,
     Constraint,
@@ -144,6 +144,12 @@ class Integral:
 
     formula: Formula
     where: tuple[Formula, ...] = ()
+
+    @property
+    def everywhere(self) -> str:
+        """The name of what is conserved everywhere; "" on a level set, and of a longer formula."""
+        tree = self.formula.tree
+        return tree.name if isinstance(tree, Name) and not self.where else ""
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,7 @@ from coadjoint.spec.core.formulas import DRIVING, Quantity, Scope, make_scope, r
 from coadjoint.spec.core.names import system_refusal
 from coadjoint.spec.core.positions import KeyPath, scan
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.kinds import is_in_frame
 from coadjoint.spec.model import (
     Constraint,
     Definition,
@@ -54,7 +55,6 @@ from coadjoint.spec.model import (
     Variable,
     state_of,
 )
-from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import (
     SpecFile,
 )

@@ -7,7 +7,7 @@ Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
@@ -25,6 +25,7 @@ from coadjoint.spec.core.values import (
     Unit,
     is_unique,
 )
+from coadjoint.spec.routes import ROUTES
 from coadjoint.spec.sections.algebra_schema import (
     AlgebraPart,
     OperandPart,
@@ -349,28 +350,10 @@ class ClaimsPart(Part):
     )
 
 
-RouteName = Literal[
-    "euler-poincare",
-    "lie-poisson",
-    "hamilton-pontryagin",
-    "clebsch",
-    "poincare",
-    "matrix-euler-poincare",
-    "newton-euler",
-    "cayley-klein",
-    "kaluza-klein",
-    "complexification",
-    "manakov",
-    "lax",
-    "nambu",
-    "poisson",
-    "canonical",
-    "euler-lagrange",
-    "newton",
-    "alignment",
-    "nonholonomic",
-    "hamel",
-]
+if TYPE_CHECKING:
+    RouteName = str
+else:
+    RouteName = Literal[tuple(ROUTES)]
 
 
 def _no_claims() -> ClaimsPart:

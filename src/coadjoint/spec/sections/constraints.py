@@ -21,8 +21,8 @@ from coadjoint.spec.core.relations import EQUATION, INEQUALITIES, read_relation
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, Node, walk
+from coadjoint.spec.kinds import is_in_frame
 from coadjoint.spec.model import Formula, Variable
-from coadjoint.spec.routes import is_in_frame
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.sections.constrained import (
     Condition,
