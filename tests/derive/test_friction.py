@@ -64,7 +64,7 @@ def test_the_rod_of_painleve_moves_by_newtons_law(route, mu):
     for tried in (mu, -mu):
         N, rates, yields = rod_by_hand(tried)
         right = known["_u1"] == -N and all(known[f"d{v}_dt"] == a for v, a in rates.items())
-        (pivot,) = (bound.element for bound in bounds(equations) if bound.kind == "reaction")
+        (pivot,) = (element for bound, element in bounds(equations) if bound.kind == "reaction")
         value = equations.setting.field.evaluate(pivot, known, Fraction, function)
         assert (right and value == yields) == (tried == mu)
 
@@ -179,9 +179,9 @@ def test_friction_that_is_not_regularised_excludes_rest():
     """Coulomb's law with |slip| below has no value at rest, which [domain] keeps out."""
     slipping = '[domain]\nslipping = "slip^2 > eps^2"\n'
     equations = derive(spec(ROD + slipping, ("sqrt(slip^2 + eps^2)", "sqrt(slip^2)")))
-    (condition,) = (bound for bound in bounds(equations) if bound.name == "slipping")
+    (condition,) = (element for bound, element in bounds(equations) if bound.name == "slipping")
     field, rest = equations.setting.field, AT | {"u": -2 * SIN / 2}
-    assert field.evaluate(condition.element, rest, Fraction, function) == -16
+    assert field.evaluate(condition, rest, Fraction, function) == -16
     assert computed(equations, AT)["_a1"] == 3
     with pytest.raises(ZeroDivisionError):
         computed(equations, rest)

@@ -16,10 +16,9 @@ from coadjoint.derive.setting import Setting, shaped
 from coadjoint.exact import Element
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core.components import component_names
+from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.tree import Index, Name, Node, walk
-from coadjoint.spec.model import Definition
-from coadjoint.spec.sections.definitions import expand, functions
 
 
 def part_names(spec: Spec) -> dict[str, tuple[str, ...]]:
