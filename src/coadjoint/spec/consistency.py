@@ -281,7 +281,9 @@ def check_routes(source: Source, file: SpecFile) -> None:
                 hint=f'Remove "{route}", or make the inputs parameters.',
             )
         energies = energies_of(route, kinds)
-        if energies and not any(getattr(file, each) for each in energies):
+        if start.is_bare:
+            _check_bare(source, file, place)
+        if energies and not start.is_bare and not any(getattr(file, each) for each in energies):
             names = [each.title() for each in energies]
             lacks = f"no {names[0]}"
             if len(names) > 1:
@@ -292,6 +294,34 @@ def check_routes(source: Source, file: SpecFile) -> None:
                 raise _unknown_to(source, place, route, table, kinds)
     _check_first(source, file)
     _check_use(source, file)
+
+
+def _is_bare(file: SpecFile) -> bool:
+    """Whether a Lax pair alone moves the state."""
+    return file.lax is not None and not (file.hamiltonian or file.lagrangian or file.newton)
+
+
+def _check_bare(source: Source, file: SpecFile, place: int) -> None:
+    """A Lax pair moves a state with a bracket and an energy, or coordinates by itself."""
+    velocities = [name for name, part in file.variables.items() if part.role == "velocity"]
+    if _is_bare(file) and velocities:
+        raise source.fault(
+            ("variables", velocities[0]),
+            f"the velocity {velocities[0]!r} has no energy to follow from",
+            found=velocities[0],
+            expected="a Lax pair of the state alone, or a table [hamiltonian] beside it",
+            hint="Write M in variables of the state, or declare [hamiltonian].",
+            at=source.positions.key(("variables", velocities[0])),
+        )
+    if not _is_bare(file) and kinds_of(file) == ("configuration",):
+        raise source.fault(
+            ("routes", place),
+            f"the route {file.routes[place]} knows no bracket of coordinates with velocities or "
+            "momenta",
+            found=file.routes[place],
+            expected="[algebra] or [poisson] beside an energy",
+            hint='Declare the momenta as coordinates, with [poisson] and canonical = [["q", "p"]].',
+        )
 
 
 def _unknown_to(
@@ -385,7 +415,7 @@ def check_covered(
             _check_partners(source, file, variables)
         if file.lagrangian is not None:
             _check_covered(source, "velocity", "Omega", variables, algebra)
-    elif file.poisson is None or file.lagrangian is not None:
+    elif (file.poisson is None and not _is_bare(file)) or file.lagrangian is not None:
         _check_partners(source, file, variables)
 
 

@@ -21,6 +21,7 @@ class Start:
     Attributes:
         kinds: The kinds of spec that it goes with, of those that `kinds_of` returns.
         energies: The tables of which it takes one; empty if it takes none.
+        is_bare: Whether it may do without any of them.
         table: A table of its own, without which it cannot start; "" if none.
         options: Tables of its own that may be left out.
         in_frame: Whether the state has velocities along a frame, which constraints may bind; on the
@@ -35,6 +36,7 @@ class Start:
     options: tuple[str, ...] = ()
     in_frame: bool = False
     emitted: bool = True
+    is_bare: bool = False
 
 
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
@@ -62,7 +64,7 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "kaluza-klein": _CHART,
         "complexification": Start(("algebra",), _HAMILTONIAN),
         "manakov": Start(("algebra",), _EITHER),
-        "lax": Start(("algebra", "poisson"), _EITHER, "lax"),
+        "lax": Start(("algebra", "poisson", "configuration"), _EITHER, "lax", is_bare=True),
         "nambu": Start(("algebra", "nambu"), _EITHER, options=(*_DRIVES, *_RELAXES)),
         "poisson": Start(("poisson",), _HAMILTONIAN, options=(*_DRIVES, *_RELAXES)),
         "canonical": Start(("canonical", "configuration"), _EITHER, options=_DRIVES),
