@@ -148,7 +148,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     poisson = None
     if file.poisson is not None:
         constants: list[Parameter | Input | Time | Definition] = [*given, *definitions]
-        poisson = read_poisson(source, file.poisson, state_of(variables), constants)
+        moved = file.variables if file.metriplectic is not None else file.forces
+        poisson = read_poisson(source, file.poisson, state_of(variables), constants, moved)
     check_routes(source, file)
     check_covered(source, file, variables, algebra)
     check_claims(source, file, variables)

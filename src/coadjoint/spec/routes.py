@@ -67,8 +67,10 @@ STARTS: Mapping[str, Start] = MappingProxyType(
         "lax": Start(("algebra", "poisson", "configuration"), _EITHER, "lax", is_bare=True),
         "nambu": Start(("algebra", "nambu"), _EITHER, options=(*_DRIVES, *_RELAXES)),
         "poisson": Start(("poisson",), _HAMILTONIAN, options=(*_DRIVES, *_RELAXES)),
-        "canonical": Start(("canonical", "configuration"), _EITHER, options=_DRIVES),
-        "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN, options=_DRIVES),
+        "canonical": Start(("canonical", "configuration"), _EITHER, options=(*_DRIVES, *_RELAXES)),
+        "euler-lagrange": Start(
+            ("configuration", "canonical"), _LAGRANGIAN, options=(*_DRIVES, *_RELAXES)
+        ),
         "newton": Start(("configuration", "poisson"), (), "newton"),
         "alignment": Start(("configuration", "poisson"), (), "newton", emitted=False),
         "nonholonomic": _IN_FRAME,

@@ -202,7 +202,7 @@ class ConstraintReader:
         """Dissipation by a symmetric bracket.
 
         Raises:
-            SpecError: There are two, or G has another size than the state.
+            SpecError: There are two, the state has velocities, or G has another size than it.
         """
         if self.file.double_bracket is not None and self.file.metriplectic is not None:
             raise self.source.fault(
@@ -216,6 +216,16 @@ class ConstraintReader:
         part = getattr(self.file, table)
         if part is None:
             return None
+        moving = [each for each in state_of(self.variables) if each.role == "velocity"]
+        if moving:
+            name, of = moving[0].name, moving[0].of or "q"
+            raise self.source.fault(
+                (table,),
+                f"the state has the velocity {name!r}, and G acts by the bracket of momenta",
+                found=name,
+                expected="momenta in the state",
+                hint=f'Declare them, as in p = {{ role = "momentum", of = "{of}" }}.',
+            )
         key: KeyPath = (table, "G")
         scope = make_scope("a metric", self.motion, self.quantities, driven=DRIVING)
         G = read_formula(self.source, key, part.G, scope, any_shape=True)

@@ -8,7 +8,7 @@ the Jacobi identity is proved later. Read next: `coadjoint.spec.consistency`.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 
 from coadjoint.spec.core.faults import did_you_mean, listed
@@ -36,6 +36,7 @@ def read_poisson(
     part: PoissonPart,
     variables: Sequence[Variable],
     constants: Sequence[Parameter | Input | Time | Definition],
+    moved: Collection[str] = (),
 ) -> Poisson:
     """The bracket of a spec.
 
@@ -44,11 +45,12 @@ def read_poisson(
         part: The table [poisson].
         variables: The state.
         constants: What its functions may use beside the state.
+        moved: Variables that may be in no canonical pair, since more than the bracket moves them.
 
     Raises:
         SpecError: A coordinate is unknown, a pair stands twice, or functions are too few or many.
     """
-    return _Reading(source, variables, constants).poisson(part)
+    return _Reading(source, variables, constants, moved).poisson(part)
 
 
 class _Reading:
@@ -59,8 +61,10 @@ class _Reading:
         source: Source,
         variables: Sequence[Variable],
         constants: Sequence[Parameter | Input | Time | Definition],
+        moved: Collection[str],
     ) -> None:
         self.source = source
+        self.alone = {c for each in variables if each.name in moved for c in each.components}
         self.quantities: tuple[Quantity, ...] = (*variables, *constants)
         self.roles = tuple(dict.fromkeys(variable.role for variable in variables))
         self.state = [name for variable in variables for name in variable.components]
@@ -141,7 +145,7 @@ class _Reading:
         return self.state.index(found[1]), self.state.index(found[2])
 
     def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
-        """The places of positions and momenta with their brackets; all coordinates are in pairs."""
+        """The places of positions and momenta with their brackets; others commute with all."""
         weights: dict[tuple[int, int], Fraction] = {}
         paired: list[int] = []
         for number, pair in enumerate(names):
@@ -175,11 +179,12 @@ class _Reading:
         return self.places[name]
 
     def _check_single(self, places: Sequence[int]) -> None:
-        """Each coordinate stands in one pair, since {q, p} = 1 leaves none without a partner."""
+        """Each coordinate stands in one pair; one that commutes with all is moved by more."""
         for place, name in enumerate(self.state):
-            if places.count(place) != 1:
+            if places.count(place) != 1 and (place in places or name not in self.alone):
                 often = "no pair" if place not in places else "more than one pair"
-                hint = "Declare a constant as a parameter." if place not in places else ""
+                ways = "Declare a constant as a parameter, or let a force or [metriplectic] move it"
+                hint = "" if place in places else f"{ways}."
                 raise self.source.fault(
                     ("poisson", "canonical"),
                     f"the coordinate {name!r} is in {often}",
