@@ -10,19 +10,17 @@ that route for the whole system in a field of its own. What must hold for it is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
 
-from coadjoint.derive.equations import Equations, Exact, Step, rate, symbol
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.observables import observables
+from coadjoint.derive.mechanics import external
+from coadjoint.derive.records import Exact, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
+from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
-
-#: Derives the equations of a spec by a route of that name, with all that acts on it.
-Derivation = Callable[[Spec, str], Equations]
 
 
 class Restriction:
@@ -55,25 +53,20 @@ class Restriction:
         return {name: self(value) for name, value in pairs}
 
 
-def restricted(setting: Setting, route: str, derivation: Derivation) -> Equations:
+def restricted(setting: Setting, route: str) -> Equations:
     """The equations of what is left, by a route for the whole system.
-
-    Args:
-        setting: Of what is left.
-        route: Its name.
-        derivation: `coadjoint.derive.derive`.
 
     Raises:
         DerivationError: The route cannot be followed, or moves in variables of its own.
     """
-    restriction = Restriction(setting, whole_equations(setting, route, derivation))
+    restriction = Restriction(setting, whole_equations(setting, route))
     whole, rates = restriction.whole, restriction.rates
     assert whole.exact.energy is not None, "the reader asks for a Hamiltonian"
     energy = restriction(whole.exact.energy)
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
     section = tuple(restriction.section.items())
-    exact = Exact(section, kept, energy, observables(setting, energy), None)
+    exact = Exact(section, kept, energy, emitted(setting, energy), None)
     return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
 
 
@@ -95,11 +88,11 @@ def _check_regular(restriction: Restriction, energy: Element) -> None:
             ) from error
 
 
-def whole_equations(setting: Setting, route: str, derivation: Derivation) -> Equations:
+def whole_equations(setting: Setting, route: str) -> Equations:
     """The equations of the system before the restriction, in a field of its own."""
     reduction = setting.spec.reduction
     assert reduction is not None, f"{setting.spec.name} is not restricted"
-    whole = derivation(reduction.whole, route)
+    whole = external.forced(load_route(route)(make_setting(reduction.whole)))
     if whole.chart is not None:
         raise refusal(
             setting,

@@ -1,10 +1,9 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
-Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``input_jacobian``, ``parameter_jacobian``, ``energy``, ``observables``, ``poisson_tensor``,
-``constraint_residual``, ``projection``, ``reconstruction`` and ``domain``. An element is a sum of
-products in the order of the field; what depends on parameters alone is gathered into the
-coefficients, equal coefficients are factored out, and pairs of factors that recur are shared.
+Comes in: Equations. Goes out: a Program for each of the `coadjoint.kernel_functions` that the
+equations have. An element is a sum of products in the order of the field; what depends on
+parameters alone is gathered into the coefficients, equal coefficients are factored out, and pairs
+of factors that recur are shared.
 Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
@@ -18,10 +17,11 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.derive import Equations
-from coadjoint.derive.domain import bounds
+from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.mechanics.solver import forward_name, scaled_name
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.naming import Naming
@@ -272,47 +272,34 @@ def lower(equations: Equations) -> dict[str, Program]:
     Jacobians are derivatives of the ``rhs`` Program by forward accumulation, so they share the
     definitions and are as cheap as these make them.
     """
-    setting, exact = equations.setting, equations.exact
-    n = len(setting.state)
-    rates = [(f"d{x}/dt", rate) for x, rate in zip(setting.state, exact.rates, strict=True)]
-    rhs = _program(equations, "rhs", rates)
-    programs = {"rhs": rhs}
-    programs |= {name: _jacobian(name, equations, rates, rhs) for name in equations.derivatives}
-    if exact.energy is not None:
-        programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
-    if exact.observables:
-        programs["observables"] = _program(equations, "observables", exact.observables)
-    if exact.poisson_tensor is not None:
-        brackets = [
-            (f"{{{a}, {b}}}", entry)
-            for a, row in zip(setting.state, exact.poisson_tensor, strict=True)
-            for b, entry in zip(setting.state, row, strict=True)
-        ]
-        programs["poisson_tensor"] = _program(equations, "poisson_tensor", brackets, (n, n))
-    if exact.residuals:
-        programs["constraint_residual"] = _program(
-            equations, "constraint_residual", exact.residuals
-        )
-    if equations.projection is not None:
-        nearest = list(zip(setting.state, equations.projection.exact.rates, strict=True))
-        program = _program(equations.projection, "projection", nearest)
-        for place in hidden_zeros(program, equations):
-            nearest[place] = nearest[place][0], setting.field.zero
-        programs["projection"] = _program(equations.projection, "projection", nearest)
-    if equations.followed:
-        followed = [(f"d{name}/dt", rate) for name, rate in equations.followed]
-        names = (*setting.state, *(name for name, _ in equations.followed))
-        programs["reconstruction"] = _program(equations, "reconstruction", followed, inputs=names)
-    rows = [(bound.label, bound.element) for bound in bounds(equations)]
-    if rows:
-        programs["domain"] = _program(equations, "domain", rows)
+    programs: dict[str, Program] = {}
+    for name in KERNEL_FUNCTIONS:
+        rows = rows_of(equations, name)
+        if rows is not None:
+            programs[name] = (
+                _jacobian(name, rows, programs["rhs"])
+                if rows.by
+                else _without_hidden_zeros(equations, name, rows)
+            )
     return programs
 
 
-def _jacobian(name: str, equations: Equations, rates: _Lines, rhs: Program) -> Program:
+def _without_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
+    """A Program in which what vanishes everywhere is written as zero, where a row may hide it."""
+    program = _program(rows.of, name, rows.lines, rows.shape, rows.state)
+    zeros = hidden_zeros(program, equations) if rows.may_hide_zeros else []
+    if not zeros:
+        return program
+    lines = list(rows.lines)
+    for place in zeros:
+        lines[place] = lines[place][0], equations.setting.field.zero
+    return _program(rows.of, name, lines, rows.shape, rows.state)
+
+
+def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
     """A derivative of the rates: by the state, the inputs or the parameters."""
-    variables, field = equations.derivatives[name], equations.setting.field
-    slopes = residual_slopes(equations, variables)
+    equations, field = rows.of, rows.of.setting.field
+    slopes = residual_slopes(equations, rows.by)
     labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
     labelled += [
         (f"factor {i} {k}", value)
@@ -320,20 +307,21 @@ def _jacobian(name: str, equations: Equations, rates: _Lines, rhs: Program) -> P
         for (i, k), value in found.items()
     ]
     # what the residuals name has a derivative, whether or not the rates need it
-    inner = dict.fromkeys(each.by for each in slopes if each.by not in variables)
+    inner = dict.fromkeys(each.by for each in slopes if each.by not in rows.by)
     labelled += [(by, field[by]) for by in inner]
-    wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
-    return jacobian(name, wide, equations, slopes)
+    lines = [*rows.lines, *labelled]
+    wide = _program(equations, "rhs", lines, (len(lines),), rows.state) if labelled else rhs
+    return jacobian(name, wide, equations, rows.by, slopes)
 
 
 def _program(
     equations: Equations,
     name: str,
     outputs: Sequence[tuple[str, Element]],
-    shape: tuple[int, ...] | None = None,
-    inputs: tuple[str, ...] | None = None,
+    shape: tuple[int, ...],
+    state: tuple[str, ...],
 ) -> Program:
-    """One Program from labelled elements, of the state or of other inputs."""
+    """One Program from labelled elements of names, the state being the first of them."""
     setting = equations.setting
     shorter = [(label, _shorter(equations, element)) for label, element in outputs]
     definitions, outputs = _without_single_uses(equations, shorter)
@@ -341,9 +329,7 @@ def _program(
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
     naming = Naming(lowering.graph, named, results, setting.parameters)
-    size = (len(outputs),) if shape is None else shape
-    read = setting.state if inputs is None else inputs
-    program = naming.program(name, read, setting.parameters, size)
+    program = naming.program(name, state, setting.parameters, shape)
     return replace(program, inputs=setting.inputs, time=setting.time)
 
 

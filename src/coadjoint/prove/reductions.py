@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from coadjoint.derive import Equations, derive
+from coadjoint.derive import Equations
 from coadjoint.derive.domain import region
 from coadjoint.derive.reductions import Restriction, whole_equations
 from coadjoint.exact import Element
@@ -44,7 +44,7 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
 
 def restriction_of(first: Equations) -> Restriction:
     """The whole system of a restricted motion, on its section."""
-    whole = whole_equations(first.setting, first.route, derive)
+    whole = whole_equations(first.setting, first.route)
     whole.setting.field.region = region(whole)
     return Restriction(first.setting, whole)
 
