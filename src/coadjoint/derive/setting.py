@@ -99,6 +99,11 @@ class Setting:
         """Name of the velocity along each basis vector, or of each position; empty without any."""
         return self._along_basis("velocity")
 
+    @property
+    def has_energy(self) -> bool:
+        """Whether a Hamiltonian or a Lagrangian is declared."""
+        return self.spec.hamiltonian is not None or self.spec.lagrangian is not None
+
     @cached_property
     def momenta(self) -> tuple[str, ...]:
         """Name of the momentum along each basis vector, or of each position; empty without any."""
