@@ -42,9 +42,11 @@ GROUPS = "src/coadjoint/groups/"
 POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
-DEFINITIONS = "src/coadjoint/spec/sections/definitions.py"
+DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
+DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
+TARGETS = RENDER + "targets/"
 
 #: Structure constants, ad* and the choice of minus or plus: tried in every run.
 SIGNS = (
@@ -141,7 +143,7 @@ DRIVEN = (
         )
     ),
     *(
-        Mutant("templates/" + file, old, new, tests=("tests/crosscheck/test_driven.py",))
+        Mutant(TARGETS + file, old, new, tests=("tests/crosscheck/test_driven.py",))
         for file, old, new in (
             ("numpy/kernel.py.j2", "else {{ array }}[:, chunk]", "else {{ array }}[:, :1]"),
             ("c/kernel.c.j2", "_n * _{{ array }}_member]", "_n * 0]"),
@@ -218,7 +220,7 @@ MUTANTS = (
     ),
     Mutant(EXACT + "element.py", "Quotient(-q.numer, q.powers)", "Quotient(q.numer, q.powers)"),
     # groups
-    Mutant(GROUPS + "vectors.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
+    Mutant(EXACT + "dense.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
     Mutant(
         GROUPS + "group.py",
         "product(g, self.matrix(eta), self.inverse(g))",
@@ -237,7 +239,7 @@ MUTANTS = (
         "right_translation(group.matrix(xi))",
     ),
     Mutant(
-        GROUPS + "maps.py", "-HALF * trace(matmul(mu, xi)).re", "HALF * trace(matmul(mu, xi)).re"
+        GROUPS + "maps.py", "-HALF * trace(product(mu, xi)).re", "HALF * trace(product(mu, xi)).re"
     ),
     Mutant(GROUPS + "maps.py", "HALF * (mu[k][j] - mu[j][k])", "HALF * (mu[j][k] - mu[k][j])"),
     Mutant(GROUPS + "maps.py", "((zero, -a3, a2), (a3", "((zero, a3, a2), (a3"),
@@ -261,10 +263,14 @@ MUTANTS = (
     # Poisson brackets
     Mutant(
         POISSON + "brackets.py",
-        "density * minor * (-1) ** (i + j)",
-        "density * minor * (-1) ** (i + j + 1)",
+        "density * value * (-1) ** (i + j)",
+        "density * value * (-1) ** (i + j + 1)",
     ),
-    Mutant(POISSON + "brackets.py", "(-1) ** place * rows[0][k]", "rows[0][k]"),
+    Mutant(EXACT + "dense.py", "(-1) ** j * x * determinant", "x * determinant"),
+    Mutant(EXACT + "dense.py", "(-1) ** (i + j) * determinant", "determinant"),
+    Mutant(EXACT + "dense.py", "_join(operator.sub, a, b)", "_join(operator.add, a, b)"),
+    Mutant(EXACT + "linear.py", "prime, equations, lambda", "prime, equations[1:], lambda"),
+    Mutant(EXACT + "ansatz.py", "if last in solved:", "if last not in solved:"),
     Mutant(POISSON + "brackets.py", "(a, n + a): scale[a] for", "(a, n + a): -scale[a] for"),
     Mutant(
         POISSON + "brackets.py", "entries[n + a, n + b] = value", "entries[n + a, n + b] = -value"
@@ -291,7 +297,7 @@ MUTANTS = (
     ),
     # proofs
     Mutant(PROVE + "identities.py", "tensor[i][j] + tensor[j][i]", "tensor[i][j] - tensor[j][i]"),
-    Mutant(PROVE + "identities.py", "rate - _dot(field, in_vel", "rate + _dot(field, in_vel"),
+    Mutant(PROVE + "identities.py", "rate - dot(in_vel", "rate + dot(in_vel"),
     Mutant(
         PROVE + "claims.py",
         "first.closed(a) - other.closed(b)",
@@ -304,7 +310,11 @@ MUTANTS = (
         "equations.exact.energy) - energy]",
         "equations.exact.energy) + energy]",
     ),
-    Mutant(POISSON + "casimirs.py", "== len(slopes) + 1", ">= len(slopes)"),
+    Mutant(
+        POISSON + "casimirs.py",
+        "independent_rows(structure.field, slopes)",
+        "range(len(slopes))",
+    ),
     Mutant(POISSON + "casimirs.py", "if len(given) >= expected:", "if given:"),
     Mutant(POISSON + "summands.py", "(i, j, *reached[id(entry)])", "(i, j)"),
     Mutant(POISSON + "summands.py", "c if a < b else -c", "c"),
@@ -340,14 +350,14 @@ MUTANTS = (
     Mutant(PROVE + "charts.py", "met = len(relations) == missing", "met = bool(relations)"),
     # ranks, points of constrained motions, integrals that are counted
     Mutant(
-        "src/coadjoint/poisson/ranks.py",
+        "src/coadjoint/exact/ranks.py",
         "for column, value in row.items() if value.sign}",
         "for column, value in row.items()}",
     ),
     Mutant(
-        "src/coadjoint/poisson/ranks.py",
+        "src/coadjoint/exact/ranks.py",
         "islice(primes(), TRIES)",
-        "[PRIME] * TRIES",
+        "[2**61 - 1] * TRIES",
     ),
     Mutant(PROVE + "functions.py", "None if moves else self._turn(group)", "None"),
     Mutant(PROVE + "functions.py", "turn if multiple > 0 else _inverse(turn)", "turn"),
@@ -418,11 +428,11 @@ MUTANTS = (
     Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
     # definitions
     Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
-    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINED, "in taken or argument in arguments[:place]", "in taken or argument in []"),
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
-        DEFINITIONS,
+        DEFINED,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
     ),
@@ -482,22 +492,22 @@ MUTANTS = (
     ),
     Mutant(RENDER + "printers.py", 'return "/", node.right', 'return "*", node.right'),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         "state[{{ row.index }} * state_stride + _n]",
         "state[{{ row.index }} * state_stride - _n]",
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '"out[%d * out_stride + _n]" | format(row)',
         '"out[%d * out_stride + _n]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '" * parameters_stride + _n") }}',
         '" * parameters_stride - _n") }}',
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '{{ statement.value | c_assignment(to="const double " ~ '
         "statement.name, column=indent | length) }}\n{% endfor %}\n{% endif %}\n"
         "{{ indent }}/* results */",
@@ -505,17 +515,23 @@ MUTANTS = (
         "column=indent | length) }}\n{% endfor %}\n{% endif %}\n{{ indent }}/* results */",
     ),
     Mutant(
-        "templates/numpy/kernel.py.j2",
+        TARGETS + "numpy/kernel.py.j2",
         '"out[%d]" | format(row)',
         '"out[%d]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
-        "templates/numpy/kernel.py.j2",
-        "python_assignment(to=statement.name, column=4) }}\n"
+        TARGETS + "numpy/kernel.py.j2",
+        "numpy_assignment(to=statement.name, column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
-        "python_assignment(to=statement.name ~ ' = -', column=4) }}\n"
+        "numpy_assignment(to=statement.name ~ ' = -', column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
     ),
+    Mutant(
+        TARGETS + "python/kernel_python.py.j2",
+        '"out[%d]" | format(row)',
+        '"out[%d]" | format(function.outputs[-loop.index][0])',
+    ),
+    Mutant(TARGETS + "python/kernel_python.py.j2", "range(0, len(out), size)", "range(len(out))"),
     Mutant(
         PROVE + "reductions.py",
         "decide_zero(drifts, field, Ideal(field, functions, where, state))",
@@ -524,7 +540,7 @@ MUTANTS = (
     Mutant(PROVE + "reductions.py", "- rates[name]", "+ rates[name]"),
     Mutant(
         PROVE + "reductions.py",
-        "[field.substitute(restriction(f), restriction.section) for f in functions]",
-        "[field.substitute(f - f, restriction.section) for f in map(restriction, functions)]",
+        "restriction.setting.field.substitute(restriction(function), restriction.section)",
+        "restriction.setting.field.zero",
     ),
 )

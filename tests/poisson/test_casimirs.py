@@ -5,15 +5,15 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.algebra import algebra_by_name, direct_sum, from_brackets, semidirect_product
-from coadjoint.algebra.linear import PRIME
 from coadjoint.algebra.representation import defining
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field, element_text
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.limits import MONOMIALS
 from coadjoint.poisson import PoissonStructure, declared, lie_poisson, nambu
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.poisson.polynomials import Polynomial, read_polynomial
-from coadjoint.poisson.ranks import generic_rank
 from coadjoint.poisson.search import independent_polynomials
 from coadjoint.poisson.summands import restricted_algebra, summands
 

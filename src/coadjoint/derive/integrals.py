@@ -19,10 +19,11 @@ from math import gcd, lcm
 
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.planes import find_pair
-from coadjoint.derive.pairs import LaxPair, Matrix, declared_pair, diagonal, multiplied
+from coadjoint.derive.pairs import LaxPair, declared_pair
 from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element, Field
-from coadjoint.poisson.ranks import independent_rows
+from coadjoint.exact.dense import Matrix, diagonal, product
+from coadjoint.exact.ranks import independent_rows
 
 
 @dataclass(frozen=True)
@@ -97,8 +98,8 @@ def traces(field: Field, L: Matrix) -> Iterator[Element]:
     @cache
     def raised(k: int) -> Matrix:
         if k == 0:
-            return diagonal(field, [field.one] * len(L))
-        return L if k == 1 else multiplied(field, raised(k // 2), raised(k - k // 2))
+            return diagonal([field.one] * len(L))
+        return L if k == 1 else product(raised(k // 2), raised(k - k // 2))
 
     for k in range(1, len(L) + 1):
         a, b = raised(k // 2), zip(*raised(k - k // 2), strict=True)

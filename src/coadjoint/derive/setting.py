@@ -20,15 +20,15 @@ from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Condition, Element, Field, Region
+from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.core.shapes import ELEMENTARY
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
-from coadjoint.spec.sections.constrained import Condition as Inequality
+from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
-from coadjoint.spec.sections.uses import formulas
+from coadjoint.spec.tables import list_formulas
 
 Value = TypeVar("Value")
 #: What has a name in formulas.
@@ -363,14 +363,14 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
 
 def _function_calls(spec: Spec) -> int:
     """How many elementary functions the formulas of a spec call at the most."""
-    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
 
 
 def _calls_parameters(spec: Spec) -> bool:
     """Whether an elementary function is taken of parameters, which have numbers in some proofs."""
     names = {n for each in spec.parameters for n in (each.name, *each.components)}
-    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     calls = (node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED)
     inside = (part for call in calls for part in tree.walk(call))
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
@@ -387,12 +387,7 @@ def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
 
 def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
     """``sum x_i e_i`` for matrices e_i."""
-    rows = range(size(matrices))
-    entries: dict[tuple[int, int], Element] = {}
-    for x, matrix in zip(parts, matrices, strict=True):
-        for place, value in matrix.items():
-            entries[place] = entries.get(place, 0) + x * value
-    return tuple(tuple(entries.get((i, j), 0 * parts[0]) for j in rows) for i in rows)
+    return dense.weighted(parts, matrices, size(matrices), 0 * parts[0])
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

@@ -13,7 +13,7 @@ from coadjoint.algebra import LieAlgebra, semidirect_product
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import AlgebraError
-from coadjoint.groups.vectors import matmul
+from coadjoint.exact.dense import product
 from coadjoint.poisson import PoissonStructure, declared, lie_poisson, magnetic, nambu
 from coadjoint.spec.model import Poisson
 
@@ -71,7 +71,7 @@ def _of_configuration(setting: Setting) -> PoissonStructure:
     known = mechanics(setting)
     W, A = known.inverse_mass, known.mixed
     turning = tuple(tuple(A[j][i] - A[i][j] for j in range(len(q))) for i in range(len(q)))
-    velocities = matmul(matmul(W, turning), W)
+    velocities = product(product(W, turning), W)
     zero = (field.zero,) * len(q)
     rows = [(*zero, *row) for row in W]
     rows += [(*(-w for w in column), *row) for column, row in zip(W, velocities, strict=True)]

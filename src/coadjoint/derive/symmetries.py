@@ -20,8 +20,8 @@ from coadjoint.derive.setting import Setting, once, shaped
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import scale
 from coadjoint.groups.vector_fields import VectorField
-from coadjoint.groups.vectors import scale
 from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_function, lifted
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula

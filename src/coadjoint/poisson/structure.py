@@ -3,7 +3,7 @@ r"""The Poisson structure: a bracket of functions given by an exact tensor.
 .. math:: \{f, h\} = \partial_i f \, J_{ij} \, \partial_j h, \qquad J_{ij} = \{x_i, x_j\}
 
 Comes in: a field and a tensor, mostly from `coadjoint.poisson.brackets`. Goes out: an immutable
-`PoissonStructure` that brackets, moves and proves its Jacobi identity.
+`PoissonStructure` that brackets functions and proves its Jacobi identity.
 Read next: `coadjoint.poisson.casimirs`.
 """
 
@@ -17,10 +17,10 @@ from functools import cached_property
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.witness import is_nonzero
 from coadjoint.poisson.generating import generating
 from coadjoint.poisson.jacobi import Triple, schouten_bracket, slopes_by
-from coadjoint.poisson.ranks import generic_rank
 
 
 @dataclass(frozen=True)

@@ -26,13 +26,13 @@ from typing import Any
 import mpmath
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import inverse
 from coadjoint.derive.mechanics.almost_poisson import Tensor, brackets, momenta_along
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.exact import Element
+from coadjoint.exact.dense import dot, inverse
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.jacobi import Triple, schouten_bracket
 from coadjoint.prove.certificate import Verdict
@@ -154,7 +154,7 @@ class ReducedBracket:
 
         def slopes(element: Element) -> list[tuple[int, Element]]:
             parts = self.field.gradient(element, self.names)
-            turned = [_dot(parts, column) for column in zip(*back, strict=True)]
+            turned = [dot(parts, column) for column in zip(*back, strict=True)]
             return [(m, slope) for m, slope in enumerate(turned) if slope]
 
         return list(schouten_bracket(self.tensor, slopes).values())
@@ -189,7 +189,7 @@ class ReducedBracket:
         tensor, back = at(self.tensor), _inverse_of_numbers(at(self.turn))
         slopes = dict(zip(self.entry_slopes, at(self.entry_slopes.values()), strict=True))
         turned = {
-            pair: [_dot(row, column) for column in zip(*back, strict=True)]
+            pair: [dot(row, column) for column in zip(*back, strict=True)]
             for pair, row in slopes.items()
         }
         found = {}
@@ -284,12 +284,6 @@ def _inverse_of_numbers(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:
             if i != n and row[n] != 0:
                 rows[i] = [x - row[n] * y for x, y in zip(row, rows[n], strict=True)]
     return [row[size:] for row in rows]
-
-
-def _dot(a: Iterable[Any], b: Iterable[Any]) -> Any:
-    """The sum of products."""
-    first, *others = (x * y for x, y in zip(a, b, strict=True))
-    return sum(others, first)
 
 
 def _bounds(value: Fraction) -> Any:

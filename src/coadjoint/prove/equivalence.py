@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import determinant
 from coadjoint.derive.mechanics.configuration import (
     LARGEST_BLOCK,
     Matrix,
@@ -23,6 +22,7 @@ from coadjoint.derive.mechanics.configuration import (
 from coadjoint.derive.mechanics.legendre import known_side
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import determinant
 from coadjoint.exact.regular import witness_regular
 from coadjoint.exact.signs import sign
 from coadjoint.exact.witness import is_entire, point_text

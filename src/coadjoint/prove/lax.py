@@ -24,7 +24,7 @@ from coadjoint.derive.integrals import (
 )
 from coadjoint.derive.pairs import LaxPair, lax_equations, text_of_entry
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
+from coadjoint.exact.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST
 from coadjoint.prove.equivalence import LegendreMap

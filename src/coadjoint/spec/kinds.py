@@ -6,22 +6,25 @@ Read next: `coadjoint.spec.consistency`.
 
 from __future__ import annotations
 
+from typing import Any
+
 from coadjoint.spec.routes import ROUTES
-from coadjoint.spec.schema import SpecFile
 
 
-def is_in_frame(file: SpecFile) -> bool:
+def is_in_frame(file: Any) -> bool:
     """Whether the state has velocities along a frame: what constraints bind, or their routes move.
 
+    >>> from coadjoint.spec.schema import SpecFile
     >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
     True
     """
     return file.constraints is not None or any(ROUTES[route].in_frame for route in file.routes)
 
 
-def kinds_of(file: SpecFile) -> tuple[str, ...]:
+def kinds_of(file: Any) -> tuple[str, ...]:
     """The kinds that a spec is of: ``algebra``, ``configuration``, or ``poisson`` and its way.
 
+    >>> from coadjoint.spec.schema import SpecFile
     >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None))
     ('configuration',)
     """

@@ -15,11 +15,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.interpret import determinant, inverse
 from coadjoint.derive.mechanics.frames import Frame, frame_of
 from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import apply, determinant, dot, inverse
 from coadjoint.exact.regular import witness_regular
 from coadjoint.spec import Formula
 
@@ -74,8 +74,7 @@ class Mechanics:
     def energy(self) -> Element:
         """``E = v . dl/dv - l``."""
         velocities = self.setting.elements(self.frame.velocities)
-        field = self.setting.field
-        return _along(field, self.momenta, velocities) - self.lagrangian
+        return dot(self.momenta, velocities) - self.lagrangian
 
     @cached_property
     def inverse_mass(self) -> Matrix:
@@ -185,11 +184,6 @@ def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
     return tuple(map(tuple, found))
 
 
-def applied(field: Field, matrix: Matrix, vector: Sequence[Element]) -> tuple[Element, ...]:
-    """The matrix times a column."""
-    return tuple(_along(field, row, vector) for row in matrix)
-
-
 def conjugates(
     field: Field, function: Element, names: Sequence[str], values: Sequence[Element], refuse: Refuse
 ) -> tuple[Element, ...]:
@@ -221,11 +215,7 @@ def conjugates(
             )
     rest = dict.fromkeys(names, field.zero)
     known = [y - field.substitute(slope, rest) for y, slope in zip(values, slopes, strict=True)]
-    return applied(field, inverse_in_blocks(field, hessian, refuse), known)
-
-
-def _along(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
-    return field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)
+    return apply(inverse_in_blocks(field, hessian, refuse), known)
 
 
 def fault(setting: Setting, formula: Formula, message: str, found: str) -> DerivationError:

@@ -27,9 +27,9 @@ from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.records import Exact
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.roots import lifted
 from coadjoint.limits import COUPLED_VELOCITIES
-from coadjoint.poisson.ranks import generic_rank
 from coadjoint.spec.model import Section
 
 

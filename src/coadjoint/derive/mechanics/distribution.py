@@ -24,7 +24,7 @@ from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.frames import Frame, frame_of
 from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.spec.model import Constraint
 
 Row = tuple[Element, ...]

@@ -13,7 +13,6 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from coadjoint.derive.interpret import determinant, inverse
 from coadjoint.derive.mechanics.configuration import (
     LARGEST_BLOCK,
     Matrix,
@@ -25,6 +24,7 @@ from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.setting import Setting, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.regular import certain_minors, witness_regular
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec

@@ -20,14 +20,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.pairs import LaxPair, Matrix, combined, diagonal
+from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, element_text
+from coadjoint.exact.dense import Matrix, combine, diagonal
+from coadjoint.exact.linear import Span
 from coadjoint.spec.core.faults import listed
 
 ROUTE = "manakov"
@@ -69,7 +70,7 @@ def find_pair(setting: Setting) -> LaxPair:
     field, body = setting.field, body_of(setting)
     a, b = _by_sums(body) or _by_differences(setting, body)
     spectral, turn = field[SPECTRAL], field.number(setting.sign)
-    terms, texts = [(field.one, body.momentum), (spectral, diagonal(field, b))], _texts(setting)
+    terms, texts = [(field.one, body.momentum), (spectral, diagonal(b))], _texts(setting)
     A = _diagonal_text(setting, a)
     B = f"{A}^2" if b == tuple(x**2 for x in a) else _diagonal_text(setting, b)
     L = f"{texts[0]} + {SPECTRAL}*{B}"
@@ -80,9 +81,9 @@ def find_pair(setting: Setting) -> LaxPair:
         lead = f"-({element_text(field, share)})*" if lead is None else lead
         L = f"{lead}S + {SPECTRAL}*{texts[0]} + {SPECTRAL}^2*{B}"
     M = f"{texts[1]} + {SPECTRAL}*{A}"
-    turning = combined(field, (turn, body.velocity), (turn * spectral, diagonal(field, a)))
+    turning = combine((turn, body.velocity), (turn * spectral, diagonal(a)))
     pair = L, M if setting.sign == 1 else f"-({M})"
-    return LaxPair(SPECTRAL, combined(field, *terms), turning, pair)
+    return LaxPair(SPECTRAL, combine(*terms), turning, pair)
 
 
 # -- the system, as matrices ----------------------------------------------------------------------

@@ -23,8 +23,8 @@ from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
+from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import Vector, add, cross, dot, scale
 from coadjoint.spec import Spec
 
 

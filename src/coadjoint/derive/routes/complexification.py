@@ -30,8 +30,8 @@ from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
+from coadjoint.exact.dense import identity
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.vectors import identity
 
 ROUTE = "complexification"
 

@@ -40,7 +40,7 @@ from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element, element_text
-from coadjoint.groups.vectors import Vector, add, dot, scale, subtract
+from coadjoint.exact.dense import Vector, add, dot, scale, subtract
 from coadjoint.spec import Spec
 from coadjoint.spec.model import component_names
 

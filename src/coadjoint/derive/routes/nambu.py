@@ -25,7 +25,6 @@ from itertools import combinations
 
 from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import determinant
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
@@ -33,7 +32,7 @@ from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.errors import CoadjointError
 from coadjoint.exact import Element
-from coadjoint.groups.vectors import dot
+from coadjoint.exact.dense import dot, minor
 from coadjoint.poisson.casimirs import casimirs
 
 
@@ -137,8 +136,8 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
 def generalised_cross_product(gradients: list[tuple[Element, ...]]) -> list[Element]:
     """Cofactors of the unit vectors above n - 1 vectors of R^n: ``a x b`` for n = 3."""
     n = len(gradients) + 1
-    rest = [tuple(row[:i] + row[i + 1 :] for row in gradients) for i in range(n)]
-    return [(-1) ** i * determinant(minor) for i, minor in enumerate(rest)]
+    rest = [[j for j in range(n) if j != i] for i in range(n)]
+    return [(-1) ** i * minor(gradients, range(n - 1), columns) for i, columns in enumerate(rest)]
 
 
 def _steps(

@@ -32,17 +32,7 @@ from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text
-from coadjoint.groups.vectors import (
-    Matrix,
-    Vector,
-    add,
-    combine,
-    cross,
-    dot,
-    scale,
-    subtract,
-    trace,
-)
+from coadjoint.exact.dense import Matrix, Vector, add, cross, dot, scale, subtract, trace
 
 ROUTE = "newton-euler"
 AXES: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -128,7 +118,7 @@ def mass_points(setting: Setting, lagrangian: Element) -> MassPoints:
     mass = mechanics(setting).mass
     inertia = tuple(tuple(row[:3]) for row in mass[:3])
     half = trace(inertia) / 2
-    second = combine(tuple(scale(half, axis) for axis in AXES), inertia, -1)
+    second = subtract(scale(half, AXES), inertia)
     total, first = setting.field.zero, (setting.field.zero,) * 3
     if len(mass) == 6:  # Omega . D V is V . Omega x c for D_ij = -epsilon_ijk c_k
         total, first = mass[3][3], (mass[2][4], mass[0][5], mass[1][3])
