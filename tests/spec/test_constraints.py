@@ -81,7 +81,7 @@ def test_forces_sections_and_dissipation_are_read():
     assert (section.name, list(section.section), section.unit) == ("J", ["u", "v"], "kg")
 
 
-ROUTES = 'routes = ["nonholonomic", "hamel"]'
+ROUTES = 'routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]'
 CLAIMS = "[claims]"
 FAULTS = [
     ((BLADE, ""), "constraints", "an empty table", "expected at least 1 item."),
@@ -93,8 +93,8 @@ FAULTS = [
         "knows no constraints",
     ),
     (
-        ('"hamel"]', '"euler-lagrange"]'),
-        "routes[2]",
+        ('"nonholonomic-hamilton-pontryagin"]', '"euler-lagrange"]'),
+        "routes[3]",
         "euler-lagrange",
         'Write "nonholonomic" in its place, or remove [constraints].',
     ),
