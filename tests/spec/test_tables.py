@@ -17,7 +17,7 @@ from coadjoint.spec.core.components import Components
 from coadjoint.spec.core.formulas import Formula, make_scope, read_formula
 from coadjoint.spec.core.parts import TextPart
 from coadjoint.spec.core.reading import Table, name_each
-from coadjoint.spec.routes import STARTS
+from coadjoint.spec.routes import ROUTES
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.tables import BY_KEY, TABLES, list_formulas
 from tests.specs import RIGID_BODY, spec
@@ -78,9 +78,9 @@ def gains(monkeypatch):
     for module in (consistency, reader):
         monkeypatch.setattr(module, "TABLES", more)
     monkeypatch.setattr(validate, "SpecFile", schema.compose(more))
-    start = STARTS["euler-poincare"]
+    start = ROUTES["euler-poincare"]
     knowing = type(start)(**{**vars(start), "options": (*start.options, "gains")})
-    monkeypatch.setattr(consistency, "STARTS", {**STARTS, "euler-poincare": knowing})
+    monkeypatch.setattr(consistency, "ROUTES", {**ROUTES, "euler-poincare": knowing})
 
 
 ALONE = ('routes = ["euler-poincare", "lie-poisson"]', 'routes = ["euler-poincare"]')
@@ -134,10 +134,10 @@ def test_every_table_is_in_the_schema_and_in_the_docs():
 
 def test_routes_name_tables_of_the_list():
     """What a route starts from, or may take, is a table."""
-    named = {n for s in STARTS.values() for n in (*s.energies, *s.options, s.table) if n}
+    named = {n for s in ROUTES.values() for n in (*s.energies, *s.options, s.table) if n}
     assert named <= set(BY_KEY)
     acting = {table.key for table in TABLES if table.acts}
-    assert acting <= {name for start in STARTS.values() for name in start.options}
+    assert acting <= {name for start in ROUTES.values() for name in start.options}
 
 
 def test_examples_of_tables_are_read():

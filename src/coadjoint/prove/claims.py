@@ -19,9 +19,7 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.domain import region
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.mechanics.reconstruction import fixed_row
-from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
-from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
@@ -500,9 +498,4 @@ def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator
 def _emitted(first: Equations) -> dict[str, Quantity]:
     """The energy and the observables, by the names that claims use."""
     known: dict[str, Quantity] = dict(first.exact.observables)
-    for entry in first.spec.observables:
-        known[entry.name] = shaped([known[name] for name in entry.components], entry.shape)
-    for symmetry in first.spec.symmetries:
-        parts = [known[name] for name in symmetry.components]
-        known[symmetry.name] = in_formulas(symmetry, parts)
-    return known
+    return known | {each.name: each.whole for each in first.exact.emitted}

@@ -16,15 +16,14 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
+from coadjoint.spec.kinds import is_in_frame, kinds_of
 from coadjoint.spec.model import Spec
-from coadjoint.spec.routes import STARTS, energies_of, is_in_frame, kinds_of
+from coadjoint.spec.routes import ROUTES, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.variables import VARIABLES, Variable
 from coadjoint.spec.tables import TABLES, how_to_write, list_formulas
 
 _ENERGIES = ("hamiltonian", "lagrangian")
-#: Routes whose matrices neither time nor inputs may change.
-UNDRIVEN = ("lax", "manakov")
 #: What a kind of spec has, in words.
 _KINDS = {
     "algebra": "[algebra]",
@@ -77,9 +76,9 @@ def check_routes(source: Source, file: Any) -> None:
     """
     kinds = kinds_of(file)
     for place, route in enumerate(file.routes):
-        start = STARTS[route]
+        start = ROUTES[route]
         if not set(start.kinds) & set(kinds):
-            others = [name for name, other in STARTS.items() if set(other.kinds) & set(kinds)]
+            others = [name for name, other in ROUTES.items() if set(other.kinds) & set(kinds)]
             starts = " or ".join(_KINDS[kind] for kind in start.kinds)
             raise source.fault(
                 ("routes", place),
@@ -89,7 +88,7 @@ def check_routes(source: Source, file: Any) -> None:
             )
         if start.table and not getattr(file, start.table):
             raise _missing(source, f"the route {route} has no table [{start.table}]", start.table)
-        if route in UNDRIVEN and (file.inputs or file.time):
+        if not start.takes_driving and (file.inputs or file.time):
             raise source.fault(
                 ("routes", place),
                 f"the route {route} knows neither inputs nor time",
@@ -117,7 +116,7 @@ def _unknown_to(
     """A route that would leave out what acts on the motion, and so derive another one."""
     others = [
         name
-        for name, other in STARTS.items()
+        for name, other in ROUTES.items()
         if table in other.options and set(other.kinds) & set(kinds)
     ]
     return source.fault(
@@ -132,11 +131,11 @@ def _unknown_to(
 def _check_first(source: Source, file: Any) -> None:
     """The first route gives the rates of the declared state, and all that is emitted."""
     first = file.routes[0]
-    if not STARTS[first].emitted:
-        kinds, own = set(kinds_of(file)), STARTS[first]
+    if not ROUTES[first].emitted:
+        kinds, own = set(kinds_of(file)), ROUTES[first]
         others = [
             name
-            for name, start in STARTS.items()
+            for name, start in ROUTES.items()
             if start.emitted
             and set(start.kinds) & kinds
             and (start.table, start.in_frame) == (own.table, own.in_frame)
@@ -164,13 +163,13 @@ def _check_use(source: Source, file: Any) -> None:
     """A Hamiltonian, a Lagrangian or another table that no route reads is a mistake."""
     kinds = kinds_of(file)
     used = {table for route in file.routes for table in energies_of(route, kinds)}
-    starts = [STARTS[route] for route in file.routes]
+    starts = [ROUTES[route] for route in file.routes]
     used |= {name for start in starts for name in (start.table, *start.options)}
     for table in (each.key for each in TABLES if each.routed):
         if getattr(file, table) and table not in used:
             readers = [
                 name
-                for name, start in STARTS.items()
+                for name, start in ROUTES.items()
                 if table in (*energies_of(name, kinds), start.table, *start.options)
                 and set(start.kinds) & set(kinds)
             ]

@@ -15,13 +15,13 @@ from pydantic import AfterValidator, Field, create_model
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.reading import Table
 from coadjoint.spec.core.values import License, Prose, Title, is_unique
-from coadjoint.spec.routes import STARTS
+from coadjoint.spec.routes import ROUTES
 from coadjoint.spec.tables import TABLES
 
 if TYPE_CHECKING:
     RouteName = str
 else:
-    RouteName = Literal[tuple(STARTS)]
+    RouteName = Literal[tuple(ROUTES)]
 
 
 class Head(Part):

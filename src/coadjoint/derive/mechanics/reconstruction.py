@@ -10,7 +10,7 @@ so that :math:`\mathrm{Ad}^*_{g^{-1}} \mu` is conserved where no torque acts; al
 right-invariant one :math:`\mathrm{Ad}^*_g \mu` is. Its components are
 :math:`\langle \mu, g^{-1} e_i g \rangle`: products of matrices or of quaternions.
 Comes in: a Setting with an attitude among its advected quantities. Goes out: these components.
-Read next: `coadjoint.derive.observables`.
+Read next: `coadjoint.derive.emitted`.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra.attitudes import has_fixed_row
 from coadjoint.algebra.catalogue import inverse_by
 from coadjoint.algebra.matrices import size
-from coadjoint.derive.equations import Relation
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.records import Relation
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 from coadjoint.exact.dense import Matrix, apply, inverse, product, scale, transpose
 from coadjoint.exact.linear import Span
 from coadjoint.groups.quaternions import Quaternion
 
 
+@once
 def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     """``Ad*_{g^-1} mu`` along the basis; ``Ad*_g mu`` if the motion is right-invariant."""
     attitude = setting.spec.attitude

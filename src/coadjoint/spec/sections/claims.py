@@ -18,6 +18,7 @@ from coadjoint.spec.core.parts import Accept, ClaimPart, Part, TextPart, or_alon
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
+from coadjoint.spec.core.tree import Name
 from coadjoint.spec.sections.momenta import MOMENTA
 from coadjoint.spec.sections.symmetries import emitted_shapes, shapes_in_claims
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_roles
@@ -84,6 +85,12 @@ class Integral:
 
     formula: Formula
     where: tuple[Formula, ...] = ()
+
+    @property
+    def everywhere(self) -> str:
+        """The name of what is conserved everywhere; "" on a level set, and of a longer formula."""
+        tree = self.formula.tree
+        return tree.name if isinstance(tree, Name) and not self.where else ""
 
 
 @dataclass(frozen=True)

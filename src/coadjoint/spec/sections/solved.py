@@ -13,7 +13,7 @@ from typing import Any
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.tree import Index, Name, Node, walk
-from coadjoint.spec.routes import is_in_frame
+from coadjoint.spec.kinds import is_in_frame
 
 _COMPONENT = re.compile(r"(?P<name>.*?)_?\d+(_\d+)?")
 _SIDES = 2
