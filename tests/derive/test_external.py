@@ -220,7 +220,7 @@ def test_what_cannot_act_is_refused(text, change, table, message):
 def test_the_advice_about_routes_works():
     """The route that the message names derives the forced motion."""
     forced = ("[claims]", '[forces]\nOmega = "-Omega"\n[claims]')
-    with pytest.raises(SpecError, match='Write "euler-poincare" in its place'):
+    with pytest.raises(SpecError, match='Remove "clebsch"'):
         spec(RIGID_BODY, forced, ('"lie-poisson"]', '"clebsch"]'))
     assert derive(spec(RIGID_BODY, forced)).exact.forces
 

@@ -155,9 +155,9 @@ def test_slip_in_a_bracket_is_refused_at_its_place(text, change, key, found, sai
         (
             NAMBU,
             ('[hamiltonian]\nh = "x[3]^2/2 + k*x1"', ""),
-            "routes",
-            "hamiltonian",
-            "no Hamiltonian",
+            "routes[1]",
+            "nambu",
+            "Hamiltonian",
         ),
         (
             NAMBU,
