@@ -201,7 +201,12 @@ REFUSED = [
         '[forces]\nOmega = "-Omega"',
         "the route clebsch knows no forces",
     ),
-    (RIGID_BODY, (), '[forces]\nPi = "-Pi"', "no such velocity as 'Pi'"),
+    (
+        RIGID_BODY,
+        (),
+        '[forces]\nPi = "-Pi"',
+        "'Pi' is a momentum; expected one of Omega. Write Omega in its place.",
+    ),
     (RIGID_BODY, (), '[forces]\nOmega = "1"', "a 3-vector, as 'Omega' is"),
     (RIGID_BODY, (), '[dissipation]\nR = "dot(Pi, Pi)"', "names no velocity"),
     (RIGID_BODY, (), '[forces]\nspin = "Pi1"', "expected one of Omega"),

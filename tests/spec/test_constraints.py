@@ -107,7 +107,12 @@ FAULTS = [
         "'p' is a momentum, and the state has velocities on these routes",
     ),
     ((CLAIMS, '[forces]\nq = "3"\n[claims]'), "forces.q", "q", "expected one of u, v, w"),
-    ((CLAIMS, '[forces]\nx = "3"\n[claims]'), "forces.x", "x", "no such velocity as 'x'"),
+    (
+        (CLAIMS, '[forces]\nx = "3"\n[claims]'),
+        "forces.x",
+        "x",
+        "'x' is a coordinate; expected one of u, v, w. Write u in its place.",
+    ),
     (
         (CLAIMS, '[forces]\nu = "vector(u, v)"\n[claims]'),
         "forces.u",
