@@ -29,8 +29,8 @@ from sympy.polys.orderings import grevlex, lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.signs import Signs, is_factor
 from coadjoint.prove.points import Branch, Points, Values, real_function
-from coadjoint.prove.signs import Signs
 
 #: Branches of a zero set that are told apart; beyond them relations stay as they are.
 BRANCHES = 32
@@ -76,7 +76,7 @@ class Ideal:
         self.field = field
         self.text = text
         self.nonzero = tuple(nonzero)
-        self._signs = Signs(field)
+        self._signs = Signs(field, strict=True, more=field.region.bounds)
         parameters = field.region.parameters
         self._variables = frozenset(variables or field.names) - parameters
         self._declared: Sequence[Element] | None = None  # relations of parameters, once these split
@@ -372,12 +372,19 @@ class Ideal:
         for element in self._all_factors(relation):
             if self._signs.is_nonzero(element, nonzero):
                 continue
-            if self._signs.is_factor(element, self.nonzero):
+            if is_factor(self.field, element, self.nonzero):
                 self._exclude(element)
                 continue
-            root = self._signs.argument(element)  # sqrt(u) = 0 where u = 0
+            root = self._radicand(element)  # sqrt(u) = 0 where u = 0
             found += self._factors(root, nonzero) if root is not None else [element]
         return [each for n, each in enumerate(found) if each not in found[:n]]
+
+    def _radicand(self, element: Element) -> Element | None:
+        """The argument of an element that is a square root."""
+        for known in self.field.adjoined.values():
+            if known.function == "sqrt" and element == self.field[known.generator]:
+                return known.argument
+        return None
 
     def _may_vanish(self, factor: Element) -> bool:
         """Whether a factor is no relation between parameters that only the others bring about."""
