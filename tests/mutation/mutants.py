@@ -42,9 +42,11 @@ GROUPS = "src/coadjoint/groups/"
 POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
-DEFINITIONS = "src/coadjoint/spec/sections/definitions.py"
+DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
+DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
+TARGETS = RENDER + "targets/"
 
 #: Structure constants, ad* and the choice of minus or plus: tried in every run.
 SIGNS = (
@@ -141,7 +143,7 @@ DRIVEN = (
         )
     ),
     *(
-        Mutant("templates/" + file, old, new, tests=("tests/crosscheck/test_driven.py",))
+        Mutant(TARGETS + file, old, new, tests=("tests/crosscheck/test_driven.py",))
         for file, old, new in (
             ("numpy/kernel.py.j2", "else {{ array }}[:, chunk]", "else {{ array }}[:, :1]"),
             ("c/kernel.c.j2", "_n * _{{ array }}_member]", "_n * 0]"),
@@ -426,11 +428,11 @@ MUTANTS = (
     Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
     # definitions
     Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
-    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINED, "in taken or argument in arguments[:place]", "in taken or argument in []"),
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
-        DEFINITIONS,
+        DEFINED,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
     ),
@@ -490,22 +492,22 @@ MUTANTS = (
     ),
     Mutant(RENDER + "printers.py", 'return "/", node.right', 'return "*", node.right'),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         "state[{{ row.index }} * state_stride + _n]",
         "state[{{ row.index }} * state_stride - _n]",
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '"out[%d * out_stride + _n]" | format(row)',
         '"out[%d * out_stride + _n]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '" * parameters_stride + _n") }}',
         '" * parameters_stride - _n") }}',
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '{{ statement.value | c_assignment(to="const double " ~ '
         "statement.name, column=indent | length) }}\n{% endfor %}\n{% endif %}\n"
         "{{ indent }}/* results */",
@@ -513,17 +515,23 @@ MUTANTS = (
         "column=indent | length) }}\n{% endfor %}\n{% endif %}\n{{ indent }}/* results */",
     ),
     Mutant(
-        "templates/numpy/kernel.py.j2",
+        TARGETS + "numpy/kernel.py.j2",
         '"out[%d]" | format(row)',
         '"out[%d]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
-        "templates/numpy/kernel.py.j2",
-        "python_assignment(to=statement.name, column=4) }}\n"
+        TARGETS + "numpy/kernel.py.j2",
+        "numpy_assignment(to=statement.name, column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
-        "python_assignment(to=statement.name ~ ' = -', column=4) }}\n"
+        "numpy_assignment(to=statement.name ~ ' = -', column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
     ),
+    Mutant(
+        TARGETS + "python/kernel_python.py.j2",
+        '"out[%d]" | format(row)',
+        '"out[%d]" | format(function.outputs[-loop.index][0])',
+    ),
+    Mutant(TARGETS + "python/kernel_python.py.j2", "range(0, len(out), size)", "range(len(out))"),
     Mutant(
         PROVE + "reductions.py",
         "decide_zero(drifts, field, Ideal(field, functions, where, state))",
@@ -532,7 +540,7 @@ MUTANTS = (
     Mutant(PROVE + "reductions.py", "- rates[name]", "+ rates[name]"),
     Mutant(
         PROVE + "reductions.py",
-        "[field.substitute(restriction(f), restriction.section) for f in functions]",
-        "[field.substitute(f - f, restriction.section) for f in map(restriction, functions)]",
+        "restriction.setting.field.substitute(restriction(function), restriction.section)",
+        "restriction.setting.field.zero",
     ),
 )

@@ -36,7 +36,7 @@ SHARED = (
         "legendre",
         "legendre",
         TOP,
-        ("for mu, xi, w in pairs), -lagrangian)", "for mu, xi, w in pairs), lagrangian)"),
+        ("for mu, xi, w in pairs), -of.lagrangian)", "for mu, xi, w in pairs), of.lagrangian)"),
         ("for row in inverse(matrix))", "for row in matrix)"),
     ),
     *of(

@@ -17,10 +17,10 @@ from fractions import Fraction
 from functools import cache
 from math import gcd, lcm
 
+from coadjoint.derive.mechanics.legendre import hamiltonian
+from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair, declared_pair
-from coadjoint.derive.routes.lie_poisson import hamiltonian
-from coadjoint.derive.routes.manakov import find_pair
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, diagonal, product
 from coadjoint.exact.ranks import independent_rows
@@ -63,6 +63,7 @@ class Integrals:
         return tuple((f"integral{n}", each.value) for n, each in enumerate(self.emitted, 1))
 
 
+@once
 def pair_of(setting: Setting) -> LaxPair | None:
     """The declared pair of a system, or else the one that the route manakov finds."""
     if setting.spec.lax is not None:
@@ -70,6 +71,7 @@ def pair_of(setting: Setting) -> LaxPair | None:
     return find_pair(setting) if "manakov" in setting.spec.routes else None
 
 
+@once
 def lax_integrals(setting: Setting) -> Integrals | None:
     """The integrals that a system has by its Lax pair; None without one."""
     pair = pair_of(setting)

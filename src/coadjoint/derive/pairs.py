@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 from coadjoint.exact.dense import Matrix, commutator
 from coadjoint.exact.linear import Span
@@ -55,6 +55,7 @@ class LaxEquation:
     right: Element
 
 
+@once
 def declared_pair(setting: Setting) -> LaxPair:
     """The pair of the table [lax].
 

@@ -27,9 +27,9 @@ import mpmath
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.almost_poisson import Tensor, brackets, momenta_along
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
-from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.exact import Element
 from coadjoint.exact.dense import dot, inverse
@@ -73,15 +73,10 @@ class ReducedBracket:
         self.names = tuple(n for n in equations.setting.state if n not in self.basis.eliminated)
 
     @cached_property
-    def lagrangian(self) -> Element:
-        """The Lagrangian in all velocities."""
-        return lagrangian_of(self.equations.setting)
-
-    @cached_property
     def momenta(self) -> dict[str, Element]:
         """``M_k`` in velocities of the basis and positions, by the velocities that they are of."""
         fields = self.basis.fields
-        along = momenta_along(self.found, self.lagrangian, list(fields.values()))
+        along = momenta_along(self.found.setting, list(fields.values()))
         return dict(zip(fields, map(self.basis.closed, along), strict=True))
 
     @cached_property
@@ -89,13 +84,13 @@ class ReducedBracket:
         """The brackets: as emitted, or along the basis if constraints are kept."""
         emitted = self.equations.exact.poisson_tensor
         if emitted is None:
-            emitted = brackets(self.found, self.lagrangian, self.basis.fields, self.names)
+            emitted = brackets(self.found, self.basis.fields, self.names)
         return tuple(tuple(map(self.basis.closed, row)) for row in emitted)
 
     @cached_property
     def slopes(self) -> Row:
         """``(dH/dM, dH/dz)`` as the theorem has them: ``(eta, -dl_c/dz)``, in state order."""
-        constrained = self.basis.closed(self.lagrangian)
+        constrained = self.basis.closed(self.equations.setting.lagrangian)
         return tuple(
             self.field[n] if n in self.momenta else -self.field.derivative(constrained, n)
             for n in self.names
@@ -122,8 +117,7 @@ class ReducedBracket:
         """
         setting, velocities = self.found.setting, self.found.frame.velocities
         forces = [self.basis.closed(f) for f in external_forces(setting, velocities)]
-        slopes = self.field.gradient(self.lagrangian, velocities)
-        p = [self.basis.closed(slope) for slope in slopes]
+        p = [self.basis.closed(slope) for slope in mechanics(setting).momenta]
         driven = {
             name: self.field.sum(
                 [

@@ -17,11 +17,11 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
 from coadjoint.derive.mechanics.constrained import section_components
 from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
-from coadjoint.derive.mechanics.legendre import LARGEST_BLOCK
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import determinant, dot

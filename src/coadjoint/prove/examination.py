@@ -16,7 +16,7 @@ from typing import Any
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive.document import Document, Line, Section, formula, formula_line
-from coadjoint.derive.equations import algebra_bracket, symbol
+from coadjoint.derive.records import algebra_bracket, symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.poisson import PoissonStructure, lie_poisson

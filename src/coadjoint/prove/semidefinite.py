@@ -14,7 +14,7 @@ from itertools import combinations
 
 import mpmath
 
-from coadjoint.derive.mechanics.legendre import coupled_blocks
+from coadjoint.derive.mechanics.configuration import coupled_blocks
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import minor
 from coadjoint.exact.signs import sign

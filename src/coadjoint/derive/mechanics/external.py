@@ -22,10 +22,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from coadjoint.derive.equations import Equations, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.legendre import Matrix
+from coadjoint.derive.mechanics.configuration import Matrix, mechanics
+from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import moved_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -18,6 +18,7 @@ from coadjoint.exact.dense import apply
 from coadjoint.spec.model import Force
 
 
+@once
 def accelerations(setting: Setting) -> tuple[Element, ...]:
     """``M^-1 F`` of every coordinate, in the order of the velocities.
 

@@ -21,16 +21,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics, in_state_order, mechanics
 from coadjoint.derive.mechanics.driving import explicit_rate
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
-from coadjoint.spec import Spec
 
 #: ``table[c][a][b]``.
 Table = tuple[tuple[tuple[Element, ...], ...], ...]
@@ -39,13 +39,12 @@ _LATEX = r"\frac{d}{dt} \frac{\partial l}{\partial v} = \frac{\partial l}{\parti
 _LATEX += r"\dot q = v"
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Hamilton's principle.
 
     Raises:
         DerivationError: The mass matrix is singular, or velocities cannot be solved for.
     """
-    setting = setting_of(given)
     known = mechanics(setting)
     return _in_momenta(known) if setting.momenta else _in_velocities(known)
 
@@ -61,23 +60,21 @@ def _in_velocities(known: Mechanics) -> Equations:
     named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
     rates = in_state_order(setting, named)
     tensor = poisson_structure(setting).tensor
-    exact = Exact((), rates, known.energy, observables(setting, known.energy), tensor)
+    exact = Exact((), rates, known.energy, emitted(setting, known.energy), tensor)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates))
 
 
 def _in_momenta(known: Mechanics) -> Equations:
     """``dq/dt = v, dp/dt = dl/dq`` with v from ``p = dl/dv``."""
-    setting, field = known.setting, known.setting.field
-    transform = legendre_transform(setting, known.lagrangian)
+    setting = known.setting
+    transform = legendre(setting)
     pairs = zip(setting.momenta, known.slopes, setting.weights, strict=True)
     named = dict(zip(setting.positions, setting.elements(setting.velocities), strict=True))
     named |= {p: slope * weight for p, slope, weight in pairs}
     rates = in_state_order(setting, named)
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = field.substitute(transform.energy, velocities)
     tensor = poisson_structure(setting).tensor
-    values = observables(setting, energy)
-    exact = Exact(transform.definitions, rates, energy, values, tensor, transform.solves)
+    h, values = transform.energy, emitted(setting, transform.energy)
+    exact = Exact(transform.definitions, rates, h, values, tensor, transform.solves)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates, transform))
 
 

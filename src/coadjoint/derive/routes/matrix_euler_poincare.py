@@ -20,15 +20,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from coadjoint.algebra.matrices import SparseMatrix
-from coadjoint.derive.equations import Equations, Step, partial, rate, signed
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emission, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, signed
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of, weighted
+from coadjoint.derive.setting import Setting, weighted
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, add, commutator, product, scale, transpose
 from coadjoint.exact.linear import Span
-from coadjoint.spec import Spec
 from coadjoint.spec.core.faults import listed
 from coadjoint.spec.model import Variable, unpacked
 
@@ -37,19 +37,18 @@ ROUTE = "matrix-euler-poincare"
 Advection = Callable[[Matrix, Matrix, Matrix], tuple[Matrix, Matrix]]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by products of matrices.
 
     Raises:
         DerivationError: The algebra is not given by matrices, a quantity is advected in another
             way, or the Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
     _check_matrices(setting)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     rates = _rates(setting, lagrangian)
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, rates))
 
 

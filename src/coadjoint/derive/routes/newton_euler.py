@@ -24,14 +24,15 @@ from dataclasses import dataclass
 from functools import reduce
 
 from coadjoint.algebra import algebra_by_name, same_constants
-from coadjoint.derive.equations import Equations, Step, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform, mass_matrix
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.emission import emission
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import Matrix, Vector, add, cross, dot, scale, subtract, trace
-from coadjoint.spec import Spec
 
 ROUTE = "newton-euler"
 AXES: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -62,21 +63,20 @@ class MassPoints:
         )
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Newton's law for the points of the body.
 
     Raises:
         DerivationError: The algebra is neither so(3) nor se(3), the system is not left-invariant,
             or no body of mass points has this kinetic energy.
     """
-    setting = setting_of(given)
     _check_motions(setting)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     points = mass_points(setting, lagrangian)
     forces = _forces(setting, lagrangian)
     rates = _rates(setting, points, forces)
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, points, forces, rates))
 
 
@@ -115,7 +115,7 @@ def mass_points(setting: Setting, lagrangian: Element) -> MassPoints:
         DerivationError: No points have it: a mass that depends on the direction, a coupling of V to
             Omega other than V . Omega x c, or something that moves inside the body.
     """
-    mass = mass_matrix(setting, lagrangian)
+    mass = mechanics(setting).mass
     inertia = tuple(tuple(row[:3]) for row in mass[:3])
     half = trace(inertia) / 2
     second = subtract(scale(half, AXES), inertia)
