@@ -3,14 +3,14 @@
 import pytest
 
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Field, JetField
-from coadjoint.groups.vector_fields import (
-    VectorField,
+from coadjoint.exact import Field
+from coadjoint.groups.vector_fields import VectorField, lie_derivative
+from coadjoint.theory.jets import JetField
+from coadjoint.theory.vector_fields import (
     curl,
     divergence,
     flow,
     hamiltonian_vector_field,
-    lie_derivative,
     push_forward,
 )
 

@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.exact.dense import dot, scale
-from coadjoint.groups.central_forces import (
+from coadjoint.theory.central_forces import (
     alignment,
     alignment_defect,
     hamilton_vector,

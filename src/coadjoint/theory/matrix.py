@@ -2,7 +2,7 @@
 
 Comes in: tuples of rows whose entries are exact field elements, with plain 0 and 1 where the
 structure of a group puts them. Goes out: the same. No general inverse is taken where a group knows
-its own. Read next: `coadjoint.groups.linear_part`.
+its own. Read next: `coadjoint.theory.linear_part`.
 """
 
 from __future__ import annotations

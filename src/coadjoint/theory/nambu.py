@@ -17,9 +17,10 @@ from itertools import combinations, pairwise
 
 from coadjoint.algebra import LieAlgebra, from_brackets
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Element, Field, JetField
+from coadjoint.exact import Element, Field
 from coadjoint.poisson.brackets import nambu, nambu_tensor
 from coadjoint.poisson.structure import PoissonStructure
+from coadjoint.theory.jets import JetField
 
 Number = int | Fraction
 

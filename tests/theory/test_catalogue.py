@@ -3,8 +3,8 @@
 import pytest
 
 from coadjoint.errors import AlgebraError, CoadjointError
-from coadjoint.groups import matrix_group
-from coadjoint.groups.catalogue import CATALOGUE
+from coadjoint.theory import matrix_group
+from coadjoint.theory.catalogue import CATALOGUE
 
 
 @pytest.mark.parametrize("example", [example for _, example, _ in CATALOGUE])

@@ -5,18 +5,9 @@ import pytest
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.exact.dense import add, apply, cross, dot
+from coadjoint.exact.dense import add, apply, cross, dot, hat
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.maps import (
-    breve,
-    dual_tilde,
-    hat,
-    pairing_so3,
-    pairing_su2,
-    tilde,
-    unhat,
-    untilde,
-)
+from coadjoint.theory.maps import breve, dual_tilde, pairing_so3, pairing_su2, tilde, unhat, untilde
 
 
 @pytest.fixture

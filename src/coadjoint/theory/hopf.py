@@ -7,7 +7,7 @@ out: the quadratic phase invariants (n0, n), with
 
 their canonical brackets ``{n_i, n_j} = 4 epsilon_ijk n_k``, ``{n_0, n} = 0`` and the motion on the
 sphere. The fibres over a point of the sphere are the orbits of a common phase.
-Read next: `coadjoint.groups.charts`.
+Read next: `coadjoint.theory.charts`.
 
 Source:
     Holm (2011), Geometric Mechanics II, sections 3.2.5 and 3.2.6.
@@ -21,8 +21,8 @@ from typing import Any
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, Vector, add, cross, identity, scale
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.maps import HALF, PAULI
-from coadjoint.groups.vector_fields import hamiltonian_vector_field
+from coadjoint.theory.maps import HALF, PAULI
+from coadjoint.theory.vector_fields import hamiltonian_vector_field
 
 POSITIONS = ("q1", "q2")
 MOMENTA = ("p1", "p2")

@@ -4,8 +4,8 @@ import pytest
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.groups import MatrixGroup, matrix_group
-from coadjoint.groups.actions import (
+from coadjoint.theory import MatrixGroup, matrix_group
+from coadjoint.theory.actions import (
     body_velocity,
     coadjoint_motion_defect,
     conjugation,
@@ -18,7 +18,7 @@ from coadjoint.groups.actions import (
     right_translation,
     space_velocity,
 )
-from tests.groups.exactly import same
+from tests.theory.exactly import same
 
 #: Groups on which motion is proved for a generic curve.
 MOVING = ("SO(3)", "SE(2)", "SE(3)", "H(1)", "SL(2,R)", "SU(2)", "Aff(1)", "G(3)", "SL(2,R)(s)R^2")

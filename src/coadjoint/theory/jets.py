@@ -3,7 +3,7 @@
 Comes in: names of variables and of functions of them. Goes out: a `JetField`, in which a function
 and each of its partial derivatives is a symbol of its own, and `derivative` by a variable is the
 total derivative: the chain rule leads from each symbol to the next.
-Read next: `coadjoint.groups.vector_fields`, `coadjoint.poisson.nambu_theory`.
+Read next: `coadjoint.groups.vector_fields`, `coadjoint.theory.nambu`.
 """
 
 from __future__ import annotations

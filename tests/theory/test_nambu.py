@@ -6,13 +6,13 @@ from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
 from coadjoint.poisson import lie_poisson, nambu
-from coadjoint.poisson.nambu_theory import (
+from coadjoint.poisson.structure import PoissonStructure, antisymmetric
+from coadjoint.theory.nambu import (
     mixing,
     quadratic_nambu,
     rigid_body_pendulum,
     undetermined_nambu,
 )
-from coadjoint.poisson.structure import PoissonStructure, antisymmetric
 
 #: A quadratic form of each signature, with the Killing signature of its algebra.
 FORMS = [

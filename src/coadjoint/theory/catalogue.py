@@ -2,7 +2,7 @@
 
 Comes in: a name as books write it, and what generic elements and vectors are called. Goes out: a
 `MatrixGroup` whose field has a symbol for each of their coordinates.
-Read next: `coadjoint.groups.actions`.
+Read next: `coadjoint.theory.actions`.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from coadjoint.algebra.matrices import size
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
 from coadjoint.exact.dense import Matrix, identity, weighted
-from coadjoint.groups.group import MatrixGroup
-from coadjoint.groups.linear_part import InvertibleMatrices, Isometries, LinearPart
+from coadjoint.theory.group import MatrixGroup
+from coadjoint.theory.linear_part import InvertibleMatrices, Isometries, LinearPart
 
 #: What a name stands for: the algebra, the linear part, and how many generators that has.
 Parts = tuple[LieAlgebra, LinearPart, int]

@@ -11,7 +11,7 @@ from typing import Any
 
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, product
-from coadjoint.groups.group import MatrixGroup, Vector
+from coadjoint.theory.group import MatrixGroup, Vector
 
 #: The rate of each symbol that moves.
 Rates = Mapping[str, Element]

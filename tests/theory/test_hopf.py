@@ -5,7 +5,7 @@ import numpy as np
 from coadjoint.exact import Field
 from coadjoint.exact.dense import apply, product, scale
 from coadjoint.groups.complex_numbers import adjoint
-from coadjoint.groups.hopf import amplitudes, coherence_matrix, hopf_map, reduced_motion
+from coadjoint.theory.hopf import amplitudes, coherence_matrix, hopf_map, reduced_motion
 
 
 def test_the_amplitudes_come_back_up_to_a_phase():

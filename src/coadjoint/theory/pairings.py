@@ -2,7 +2,7 @@
 
 Comes in: an algebra of matrices, a trace form, and the space in which the matrices of covectors
 live. Goes out: the way from components ``mu_i = <mu, e_i>`` to such a matrix and back. A form that
-is degenerate on that space is refused. Read next: `coadjoint.groups.actions`.
+is degenerate on that space is refused. Read next: `coadjoint.theory.actions`.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Comes in: a `LieAlgebra` with its matrices and the linear part of the group. Goes out: actions that
 are computed from those matrices alone. An element of the group is a square matrix of exact values;
 a vector of the algebra and a covector of its dual are their coordinates in the basis, with
-``mu_i = <mu, e_i>``. Read next: `coadjoint.groups.catalogue`, which lists the groups.
+``mu_i = <mu, e_i>``. Read next: `coadjoint.theory.catalogue`, which lists the groups.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field, element_text
 from coadjoint.exact.dense import Matrix, identity, product, subtract, transpose, weighted
-from coadjoint.groups.linear_part import LinearPart
-from coadjoint.groups.matrix import (
+from coadjoint.theory.linear_part import LinearPart
+from coadjoint.theory.matrix import (
     coordinate_readers,
     exponential,
     unipotent_inverse,
@@ -43,7 +43,7 @@ class MatrixGroup:
         nilpotent: Indices of the nilpotent basis vectors.
         field: Where the entries live.
 
-    >>> from coadjoint.groups import matrix_group
+    >>> from coadjoint.theory import matrix_group
     >>> H = matrix_group("H(1)", elements="h", vectors=["xi"])
     >>> H.element("h")
     ((1, h_A1, h_C), (0, 1, h_B1), (0, 0, 1))

@@ -2,7 +2,8 @@
 
 import pytest
 
-from coadjoint.exact import Field, JetField
+from coadjoint.exact import Field
+from coadjoint.theory.jets import JetField
 
 NAMES = ("x", "y")
 

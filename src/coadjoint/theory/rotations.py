@@ -3,7 +3,7 @@
 Comes in: a quaternion or a curve of them. Goes out: its action on three-vectors (Euler-Rodrigues),
 the adjoint and coadjoint actions, and the body angular velocity. The rotation of a quaternion is
 that of the unit quaternion on its ray, so identities proved here need no side condition.
-Read next: `coadjoint.groups.hopf`.
+Read next: `coadjoint.theory.hopf`.
 """
 
 from __future__ import annotations
@@ -12,10 +12,9 @@ from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from coadjoint.exact import Element, Field
-from coadjoint.exact.dense import Matrix, Vector, add, identity, product, scale
-from coadjoint.groups.complex_numbers import exact
-from coadjoint.groups.maps import HALF, hat
+from coadjoint.exact.dense import Vector, scale
 from coadjoint.groups.quaternions import Hypercomplex, Quaternion
+from coadjoint.theory.maps import HALF
 
 Either = TypeVar("Either", bound=Hypercomplex)
 
@@ -30,19 +29,6 @@ def unit_quaternion(p: Either) -> Either:
 
 
 # -- the action on three-vectors ------------------------------------------------------------------
-
-
-def euler_rodrigues(q: Quaternion) -> Matrix:
-    """The matrix of ``v -> q v q^-1``.
-
-    ``R(q) = 1 + (2 q0 hat(q) + 2 hat(q)^2) / (q q*)``, so that R(q) R(p) = R(q p).
-
-    Source:
-        Holm (2011), Geometric Mechanics II, section 3.2, there for norm 1.
-    """
-    cross_q = hat(q.vector)
-    turn = add(product(cross_q, cross_q), scale(q.w, cross_q))
-    return add(identity(3), scale(2 / exact(q.norm), turn))
 
 
 def parallel_and_perpendicular(v: Sequence[Any], axis: Sequence[Any]) -> tuple[Vector, Vector]:

@@ -4,13 +4,8 @@ import pytest
 
 from coadjoint.errors import ClaimError
 from coadjoint.exact.dense import add, apply, dot, product, scale
-from coadjoint.groups.galilean import (
-    Galilean,
-    check_galilean,
-    pair_forces,
-    particles,
-    subgroups,
-)
+from coadjoint.groups.galilean import Galilean, particles, subgroups
+from coadjoint.theory.relativity import check_galilean, pair_forces
 
 
 def composed(g, h):

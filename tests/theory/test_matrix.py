@@ -17,7 +17,7 @@ from coadjoint.exact.dense import (
     transpose,
     weighted,
 )
-from coadjoint.groups import matrix as m
+from coadjoint.theory import matrix as m
 
 A = ((2, 1, 0), (3, -1, 4), (1, 1, 5))
 J = ((0, 0, -1, 0), (0, 0, 0, -1), (1, 0, 0, 0), (0, 1, 0, 0))

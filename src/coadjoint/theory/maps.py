@@ -33,20 +33,6 @@ PAULI: tuple[Matrix, ...] = (
 # -- so(3) ----------------------------------------------------------------------------------------
 
 
-def hat(a: Sequence[Any]) -> Matrix:
-    """The matrix with ``hat(a) b = a x b``, that is ``hat(a)_ij = -epsilon_ijk a_k``.
-
-    Source:
-        Holm (2011), Geometric Mechanics II, section 2.1.1.
-
-    >>> hat((1, 2, 3))
-    ((0, -3, 2), (3, 0, -1), (-2, 1, 0))
-    """
-    a1, a2, a3 = a
-    zero = 0 * a1
-    return ((zero, -a3, a2), (a3, zero, -a1), (-a2, a1, zero))
-
-
 def unhat(matrix: Matrix) -> Vector:
     """The three-vector of an antisymmetric matrix; the inverse of `hat`.
 

@@ -3,7 +3,7 @@
 Comes in: values of free symbols. Goes out: a matrix of the group whose entries are rational in
 them, its inverse, and what keeps a given matrix out of the group. Each chart covers a neighbourhood
 of 1, so an identity between rational functions that holds in it holds on the connected group.
-Read next: `coadjoint.groups.group`.
+Read next: `coadjoint.theory.group`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from coadjoint.exact.dense import (
     transpose,
     weighted,
 )
-from coadjoint.groups.matrix import determinant, inverse, resolvent
+from coadjoint.theory.matrix import determinant, inverse, resolvent
 
 #: What a matrix of the group must be, as ``(statement, matrix that must be zero)``.
 Condition = tuple[str, Matrix]

@@ -8,10 +8,10 @@ import pytest
 from coadjoint.exact import Field
 from coadjoint.exact.dense import identity
 from coadjoint.exact.linear import Span
-from coadjoint.groups import MatrixGroup, matrix_group
-from coadjoint.groups.matrix import complex_multiple, determinant
-from tests.groups.exactly import random_point, same
-from tests.groups.test_group import EVERY
+from coadjoint.theory import MatrixGroup, matrix_group
+from coadjoint.theory.matrix import complex_multiple, determinant
+from tests.theory.exactly import random_point, same
+from tests.theory.test_group import EVERY
 
 
 def speeds(name):

@@ -4,8 +4,8 @@ import pytest
 
 from coadjoint.exact import Field
 from coadjoint.exact.dense import cross, dot, identity, product, transpose
-from coadjoint.groups.quaternions import Coquaternion, Quaternion
-from coadjoint.groups.rotations import AD, Ad_star, ad, euler_rodrigues, unit_quaternion
+from coadjoint.groups.quaternions import Coquaternion, Quaternion, euler_rodrigues
+from coadjoint.theory.rotations import AD, Ad_star, ad, unit_quaternion
 
 
 @pytest.fixture

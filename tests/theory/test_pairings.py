@@ -5,7 +5,7 @@ import pytest
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact.dense import product, trace, transpose
-from coadjoint.groups import matrix_group, trace_pairing
+from coadjoint.theory import matrix_group, trace_pairing
 
 PAIRS = [
     ("so(3)", "tr(mu^T xi)/2", "algebra"),
