@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import islice
 from operator import mul
@@ -31,7 +30,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.irreducible import FACTORED, all_factors, numerator
 from coadjoint.exact.signs import Signs, is_factor
-from coadjoint.prove.points import Branch, Points, Values, real_function
+from coadjoint.prove.points import Branch, Points, Values
 
 #: Branches of a zero set that are told apart; beyond them relations stay as they are.
 BRANCHES = 32
@@ -369,18 +368,6 @@ class Ideal:
     def on_zero_set(self, element: Element) -> Element:
         """An element with the solved symbols replaced."""
         return self.field.substitute(element, self.solved)
-
-    def completed(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
-        """A point of the zero set from values of the symbols that are free, without functions.
-
-        Raises:
-            ZeroDivisionError: The solved symbols are not defined there.
-        """
-        values = {
-            name: self.field.evaluate(root, point, Fraction, real_function)
-            for name, root in self.solved.items()
-        }
-        return {**point, **values}
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:
