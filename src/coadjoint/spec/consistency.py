@@ -97,7 +97,9 @@ def check_routes(source: Source, file: Any) -> None:
                 hint=f'Remove "{route}", or make the inputs parameters.',
             )
         energies = energies_of(route, kinds)
-        if energies and not any(getattr(file, each) for each in energies):
+        if not start.needs_energy:
+            _check_bare(source, file, place)
+        elif energies and not any(getattr(file, each) for each in energies):
             names = [each.title() for each in energies]
             lacks = f"no {names[0]}"
             if len(names) > 1:
@@ -108,6 +110,35 @@ def check_routes(source: Source, file: Any) -> None:
                 raise _unknown_to(source, place, route, table.key, kinds)
     _check_first(source, file)
     _check_use(source, file)
+
+
+def _is_bare(file: Any) -> bool:
+    """Whether a Lax pair alone moves the state."""
+    return bool(file.lax) and not (file.hamiltonian or file.lagrangian or file.newton)
+
+
+def _check_bare(source: Source, file: Any, place: int) -> None:
+    """A Lax pair moves a state with a bracket and an energy, or coordinates by itself."""
+    velocities = [name for name, part in file.variables.items() if part.role == "velocity"]
+    if _is_bare(file) and velocities:
+        key: KeyPath = ("variables", velocities[0])
+        raise source.fault(
+            key,
+            f"the velocity {velocities[0]!r} has no energy to follow from",
+            found=velocities[0],
+            expected="a Lax pair of the state alone, or a table [hamiltonian] beside it",
+            hint="Write M in variables of the state, or declare [hamiltonian].",
+            at=source.positions.key(key),
+        )
+    if not _is_bare(file) and kinds_of(file) == ("configuration",):
+        raise source.fault(
+            ("routes", place),
+            f"the route {file.routes[place]} knows no bracket of coordinates with velocities or "
+            "momenta",
+            found=file.routes[place],
+            expected="[algebra] or [poisson] beside an energy",
+            hint='Declare the momenta as coordinates, with [poisson] and canonical = [["q", "p"]].',
+        )
 
 
 def _unknown_to(
@@ -277,7 +308,7 @@ def check_covered(reading: Reading) -> None:
             _check_partners(reading)
         if file.lagrangian is not None:
             _check_spanned(reading, "velocity", "Omega", algebra)
-    elif file.poisson is None or file.lagrangian is not None:
+    elif (file.poisson is None and not _is_bare(file)) or file.lagrangian is not None:
         _check_partners(reading)
 
 
