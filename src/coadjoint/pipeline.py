@@ -180,7 +180,7 @@ def _followed(spec: Spec, each: Reconstructed) -> Quantity:
 def _observables(equations: Equations) -> tuple[Quantity, ...]:
     """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
     spec, found = equations.spec, equations.setting.integrals
-    stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
+    stated = {claim.name for claim in spec.conserved}
     energy = [
         _emitted("energy", _unit(spec, formula), conserved=keeps_energy(equations))
         for formula in (spec.hamiltonian or spec.lagrangian,)

@@ -79,13 +79,17 @@ def claimed(text, integral, *where):
     """The claim that something is conserved where relations hold."""
     listed = ", ".join(f'"{each}"' for each in where)
     declared = spec(text.replace("INTEGRAL", integral).replace("WHERE", listed))
-    return prove(declared).claims[-1]
+    return last_claim(prove(declared))
+
+
+def last_claim(certificate):
+    """The last claim that something is conserved."""
+    return [c for c in certificate.claims if c.kind == "conserved"][-1]
 
 
 def last_conserved(text, *changes):
-    """The last claim that something is conserved."""
-    claims = prove(spec(text, *changes)).claims
-    return [c for c in claims if c.kind == "conserved"][-1]
+    """The same of a changed text."""
+    return last_claim(prove(spec(text, *changes)))
 
 
 @pytest.mark.parametrize(
@@ -138,7 +142,7 @@ def test_names_and_their_order_decide_nothing(names):
             "WHERE", ", ".join(f'"{each}"' for each in where[:: 1 if names[0] < "q" else -1])
         )
         renamed = "".join(new.get(part, part) for part in _words(text))
-        assert prove(spec(renamed)).claims[-1].verdict is verdict, (integral, where)
+        assert last_claim(prove(spec(renamed))).verdict is verdict, (integral, where)
 
 
 def _words(text):

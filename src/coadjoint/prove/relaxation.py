@@ -22,7 +22,6 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.external import added_rates, metric
 from coadjoint.exact import Element
-from coadjoint.prove.driven import changes_by_time, while_constant
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
@@ -30,7 +29,7 @@ from coadjoint.prove.zero import Examined, claimed_by
 
 
 def about_relaxation(first: Equations) -> Iterator[Examined]:
-    """The conditions, and the balance of the energy or the entropy."""
+    """The conditions, and the balance of the entropy; that of the energy is told of all motions."""
     spec, relaxation = first.spec, first.spec.relaxation
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if relaxation is None or energy is None or tensor is None:
@@ -53,9 +52,6 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
         if not spec.is_forced:
             law = ("dS/dt = <dS, G dS>: the entropy never falls", "conserved", known.entropy)
             claims.append(law)
-    elif not spec.is_forced and not changes_by_time(first):
-        text = "dh/dt = -<P dh, G P dh>: the energy never grows" + while_constant(first, [energy])
-        claims.append((text, "conserved", known.energy))
     claims.append((f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.added))
     yield from claimed_by(spec, (relaxation.table,), claims, first.setting.field)
 
@@ -77,7 +73,6 @@ class _Relaxed:
         self._P = [in_velocities(first, row) for row in tensor]
         self._dh = gradient(first, energy)
         self._free = self._applied(self._P, self._dh)
-        self._energy = energy
 
     def asymmetry(self) -> list[Element]:
         """``G_ij - G_ji``."""
@@ -87,11 +82,6 @@ class _Relaxed:
     def on_energy(self) -> list[Element]:
         """``G dh``."""
         return self._applied(self.G, self._dh)
-
-    def energy(self) -> list[Element]:
-        """``dh/dt + <P dh, G P dh>``."""
-        lost = self._dot(self._free, self._applied(self.G, self._free))
-        return [rate + lost for rate in drift(self.first, self._energy)]
 
     def entropy(self) -> list[Element]:
         """``dS/dt - <dS, G dS>``."""

@@ -16,7 +16,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Quantity, entries
-from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.driving import explicit, turned_by_time
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
@@ -24,6 +24,7 @@ from coadjoint.poisson.momentum_maps import MomentumMap
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import drift
+from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Examined, claimed_by, decide_zero
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
 
@@ -31,31 +32,29 @@ from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformati
 SHOWN = 6
 
 
-def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Examined]:
-    """All claims about symmetries.
-
-    Args:
-        first: The emitted motion.
-        known: Values of the energy, the observables and the momentum maps, which claims may use.
-    """
-    spec, field = first.spec, first.setting.field
+def about_symmetries(motion: Motion) -> Iterator[Examined]:
+    """Claims about actions, their momentum maps, and brackets."""
+    first, spec, field, known = motion.equations, motion.spec, motion.field, motion.emitted
     energy = first.exact.energy
-    if first.exact.poisson_tensor is not None:
-        for symmetry in spec.symmetries:
-            J = momentum_map(first, symmetry)
-            of_map = [*_about_map(first, symmetry, J)]
-            if energy is not None:
-                of_map += _noether(first, symmetry, J, first.closed(energy))
-            yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
+    for symmetry in spec.symmetries:
+        J = momentum_map(first, symmetry)
+        of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
-            yield from _about_integrals(first, known)
-        for place, claim in enumerate(spec.brackets):
-            text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
-            statement = f"{text} = {claim.value.in_one_line}"
-            claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
-            yield from claimed_by(spec, ("claims", "brackets", place), claimed, field)
-    for transformation in spec.transformations:
-        yield from _about_transformation(first, transformation, known)
+            of_map += _noether(first, symmetry, J, first.closed(energy))
+        yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
+    if energy is not None:
+        yield from _about_integrals(first, known)
+    for place, claim in enumerate(spec.brackets):
+        text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
+        statement = f"{text} = {claim.value.in_one_line}"
+        claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
+        yield from claimed_by(spec, ("claims", "brackets", place), claimed, field)
+
+
+def about_transformations(motion: Motion) -> Iterator[Examined]:
+    """Claims about maps of the state."""
+    for transformation in motion.spec.transformations:
+        yield from _about_transformation(motion.equations, transformation, motion.emitted)
 
 
 # -- momentum maps --------------------------------------------------------------------------------
@@ -124,7 +123,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
     if first.spec.algebra is not None or first.spec.is_driven:
         return
     for place, claim in enumerate(first.spec.conserved):
-        if claim.where or claim.formula.in_one_line == "energy":
+        if claim.where or claim.name == "energy":
             continue
         flows = _flows(first, claim.formula, known)
         statement = (
@@ -229,20 +228,9 @@ def _map(first: Equations, transformation: Transformation) -> dict[str, Element]
 
 
 def _time_after(first: Equations, transformation: Transformation) -> dict[str, Element]:
-    """Time and rates of inputs after a map: where it reverses time, minus what they are before.
-
-    The rate of a rate keeps its value.
-    """
-    setting = first.setting
-    inputs = {each.name: each for each in setting.spec.inputs}
-    first_ones = inputs.keys() - {each.rate for each in inputs.values()}
-    turned = list(setting.time)
-    for name in sorted(first_ones):
-        chain = [name]
-        while inputs[chain[-1]].rate:
-            chain.append(inputs[chain[-1]].rate)
-        turned += [component for rate in chain[1::2] for component in inputs[rate].components]
-    return {t: -setting.field[t] for t in turned if transformation.reverses_time}
+    """Time and rates of inputs after a map: where it reverses time, minus what they are before."""
+    names = turned_by_time(first.setting) if transformation.reverses_time else []
+    return {name: -first.setting.field[name] for name in names}
 
 
 def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:

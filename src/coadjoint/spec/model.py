@@ -16,7 +16,7 @@ from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
-from coadjoint.spec.core.tree import Node, walk
+from coadjoint.spec.core.tree import Name, Node, walk
 from coadjoint.spec.sections.constrained import (
     Condition,
     Constraint,
@@ -144,6 +144,12 @@ class Integral:
 
     formula: Formula
     where: tuple[Formula, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The name that is claimed to be conserved everywhere; "" for another formula."""
+        tree = self.formula.tree
+        return tree.name if isinstance(tree, Name) and not self.where else ""
 
 
 @dataclass(frozen=True)
@@ -451,12 +457,6 @@ class Spec:
     def is_forced(self) -> bool:
         """Whether forces act, or friction by Rayleigh's function."""
         return bool(self.forces) or self.dissipation is not None
-
-    @property
-    def keeps_energy(self) -> bool:
-        """Whether nothing that acts beside the energy changes it."""
-        metriplectic = self.relaxation is None or self.relaxation.S is not None
-        return metriplectic and not self.is_forced
 
     @property
     def in_frame(self) -> bool:
