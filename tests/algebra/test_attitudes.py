@@ -7,8 +7,8 @@ import pytest
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.attitudes import attitude, has_fixed_row, quaternion
 from coadjoint.algebra.catalogue import inverse_by, representation_by_name
+from coadjoint.exact.dense import product
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import matmul
 
 G = tuple(tuple(Fraction(3 * i + j * j + 1, 1 + j) for j in range(3)) for i in range(3))
 
@@ -31,8 +31,8 @@ def test_attitudes_multiply_matrices(name):
         unit = [int(n == k) for n in range(algebra.dimension)]
         left = attitude(algebra).act(unit, entries(G))
         right = attitude(algebra, "right").act(unit, entries(G))
-        assert left == tuple(-x for x in entries(matmul(G, dense(X, 3))))
-        assert right == entries(matmul(dense(X, 3), G))
+        assert left == tuple(-x for x in entries(product(G, dense(X, 3))))
+        assert right == entries(product(dense(X, 3), G))
         assert left != right
 
 

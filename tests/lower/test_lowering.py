@@ -6,10 +6,10 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from coadjoint.algebra.linear import PRIME
 from coadjoint.derive import derive
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
+from coadjoint.exact.linear import PRIME
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.lowering import lower

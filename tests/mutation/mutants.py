@@ -42,7 +42,8 @@ GROUPS = "src/coadjoint/groups/"
 POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
-DEFINITIONS = "src/coadjoint/spec/sections/definitions.py"
+DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
+DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 
@@ -218,7 +219,7 @@ MUTANTS = (
     ),
     Mutant(EXACT + "element.py", "Quotient(-q.numer, q.powers)", "Quotient(q.numer, q.powers)"),
     # groups
-    Mutant(GROUPS + "vectors.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
+    Mutant(EXACT + "dense.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
     Mutant(
         GROUPS + "group.py",
         "product(g, self.matrix(eta), self.inverse(g))",
@@ -237,7 +238,7 @@ MUTANTS = (
         "right_translation(group.matrix(xi))",
     ),
     Mutant(
-        GROUPS + "maps.py", "-HALF * trace(matmul(mu, xi)).re", "HALF * trace(matmul(mu, xi)).re"
+        GROUPS + "maps.py", "-HALF * trace(product(mu, xi)).re", "HALF * trace(product(mu, xi)).re"
     ),
     Mutant(GROUPS + "maps.py", "HALF * (mu[k][j] - mu[j][k])", "HALF * (mu[j][k] - mu[k][j])"),
     Mutant(GROUPS + "maps.py", "((zero, -a3, a2), (a3", "((zero, a3, a2), (a3"),
@@ -261,10 +262,14 @@ MUTANTS = (
     # Poisson brackets
     Mutant(
         POISSON + "brackets.py",
-        "density * minor * (-1) ** (i + j)",
-        "density * minor * (-1) ** (i + j + 1)",
+        "density * value * (-1) ** (i + j)",
+        "density * value * (-1) ** (i + j + 1)",
     ),
-    Mutant(POISSON + "brackets.py", "(-1) ** place * rows[0][k]", "rows[0][k]"),
+    Mutant(EXACT + "dense.py", "(-1) ** j * x * determinant", "x * determinant"),
+    Mutant(EXACT + "dense.py", "(-1) ** (i + j) * determinant", "determinant"),
+    Mutant(EXACT + "dense.py", "_join(operator.sub, a, b)", "_join(operator.add, a, b)"),
+    Mutant(EXACT + "linear.py", "prime, equations, lambda", "prime, equations[1:], lambda"),
+    Mutant(EXACT + "ansatz.py", "if last in solved:", "if last not in solved:"),
     Mutant(POISSON + "brackets.py", "(a, n + a): scale[a] for", "(a, n + a): -scale[a] for"),
     Mutant(
         POISSON + "brackets.py", "entries[n + a, n + b] = value", "entries[n + a, n + b] = -value"
@@ -291,7 +296,7 @@ MUTANTS = (
     ),
     # proofs
     Mutant(PROVE + "identities.py", "tensor[i][j] + tensor[j][i]", "tensor[i][j] - tensor[j][i]"),
-    Mutant(PROVE + "identities.py", "rate - _dot(field, in_vel", "rate + _dot(field, in_vel"),
+    Mutant(PROVE + "identities.py", "rate - dot(in_vel", "rate + dot(in_vel"),
     Mutant(
         PROVE + "claims.py",
         "first.closed(a) - other.closed(b)",
@@ -304,7 +309,11 @@ MUTANTS = (
         "equations.exact.energy) - energy]",
         "equations.exact.energy) + energy]",
     ),
-    Mutant(POISSON + "casimirs.py", "== len(slopes) + 1", ">= len(slopes)"),
+    Mutant(
+        POISSON + "casimirs.py",
+        "independent_rows(structure.field, slopes)",
+        "range(len(slopes))",
+    ),
     Mutant(POISSON + "casimirs.py", "if len(given) >= expected:", "if given:"),
     Mutant(POISSON + "summands.py", "(i, j, *reached[id(entry)])", "(i, j)"),
     Mutant(POISSON + "summands.py", "c if a < b else -c", "c"),
@@ -340,14 +349,14 @@ MUTANTS = (
     Mutant(PROVE + "charts.py", "met = len(relations) == missing", "met = bool(relations)"),
     # ranks, points of constrained motions, integrals that are counted
     Mutant(
-        "src/coadjoint/poisson/ranks.py",
+        "src/coadjoint/exact/ranks.py",
         "for column, value in row.items() if value.sign}",
         "for column, value in row.items()}",
     ),
     Mutant(
-        "src/coadjoint/poisson/ranks.py",
+        "src/coadjoint/exact/ranks.py",
         "islice(primes(), TRIES)",
-        "[PRIME] * TRIES",
+        "[2**61 - 1] * TRIES",
     ),
     Mutant(PROVE + "functions.py", "None if moves else self._turn(group)", "None"),
     Mutant(PROVE + "functions.py", "turn if multiple > 0 else _inverse(turn)", "turn"),
@@ -418,11 +427,11 @@ MUTANTS = (
     Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
     # definitions
     Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
-    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINED, "in taken or argument in arguments[:place]", "in taken or argument in []"),
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
-        DEFINITIONS,
+        DEFINED,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
     ),

@@ -49,7 +49,7 @@ BRACKETS = (
         ("nambu_body",),
         ("-multiplier * rate for", "multiplier * rate for"),
         ("[dh, *gradients[:-1]]", "[*gradients[:-1], dh]"),
-        ("(-1) ** i * determinant(minor)", "determinant(minor)"),
+        ("(-1) ** i * minor", "minor"),
     ),
     *of(
         "nambu",
@@ -84,7 +84,7 @@ LAGRANGE = (
         ("rocking_disk",),
         ("[slope - c - e for slope", "[slope + c - e for slope"),
         ("[slope - c - e for slope", "[slope - e for slope"),
-        ("moved = applied(field, known.inverse_mass,", "moved = applied(field, known.mass,"),
+        ("moved = apply(known.inverse_mass,", "moved = apply(known.mass,"),
         ("zip(setting.positions + setting.velocities, v + moved", "zip(setting.state, moved + v"),
     ),
     *of(
@@ -176,7 +176,7 @@ NEWTON = (
         "newton",
         "forces",
         (),
-        ("applied(field, inverse, force", "applied(field, mass, force"),
+        ("apply(inverse, force", "apply(mass, force"),
         (
             "for row in range(len(mass)) for k in range(columns)",
             "for k in range(columns) for row in range(len(mass))",

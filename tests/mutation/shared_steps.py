@@ -36,7 +36,7 @@ SHARED = (
         "legendre",
         "legendre",
         TOP,
-        ("for mu, xi, w in pairs), -lagrangian)", "for mu, xi, w in pairs), lagrangian)"),
+        ("for mu, xi, w in pairs), -of.lagrangian)", "for mu, xi, w in pairs), of.lagrangian)"),
         ("for row in inverse(matrix))", "for row in matrix)"),
     ),
     *of(
@@ -64,28 +64,15 @@ SHARED = (
     *of(
         "formulas",
         "interpret",
-        ("bloch_iserles_3",),
-        ("(-1) ** j * x * determinant", "x * determinant"),
-    ),
-    *of(
-        "formulas",
-        "interpret",
         TOP,
-        ("    return a - b\n", "    return a + b\n"),
-        ("_scale(1 / below[1], below[0])", "_scale(below[1], below[0])"),
+        ('    "-": subtract,\n', '    "-": add,\n'),
+        ("scale(1 / below[1], below[0])", "scale(below[1], below[0])"),
     ),
     *of(
         "formulas",
         "interpret",
         ("kepler",),
-        ("_scale(-field.one,", "_scale(field.one,"),
-    ),
-    *of(
-        "formulas",
-        "interpret",
-        (),
-        ("(-1) ** (i + j) * determinant", "determinant"),
-        tests=("tests/derive/test_routes.py",),
+        ("scale(-field.one,", "scale(field.one,"),
     ),
     *of(
         "solver",

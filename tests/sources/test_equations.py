@@ -6,8 +6,9 @@ from functools import cache
 import pytest
 import sympy
 
-from coadjoint.derive import ROUTES, derive, make_setting
+from coadjoint.derive import derive, make_setting
 from coadjoint.prove.ideals import Ideal
+from coadjoint.spec.routes import ROUTES
 from tests.conftest import SYSTEMS, rational_points
 from tests.sources import textbook
 from tests.sources.points import DIGITS

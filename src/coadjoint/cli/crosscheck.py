@@ -26,7 +26,7 @@ from coadjoint.cli.output import json_option, print_json, print_table, say
     type=click.IntRange(1, 10_000_000),
     default=200_000,
     show_default=True,
-    help="Points, at the least, at which each function of NumPy and C is compared bit by bit.",
+    help="Minimum number of points at which NumPy and C are compared bit by bit.",
 )
 @seconds_option
 @json_option

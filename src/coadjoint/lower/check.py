@@ -12,16 +12,16 @@ from functools import partial
 from itertools import islice
 from typing import Any
 
-from coadjoint.algebra.linear import primes
 from coadjoint.derive import Equations
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.linear import primes
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS
 from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
 from coadjoint.lower.vanishing import vanishing
-from coadjoint.poisson.ranks import Residue, residue
 
 #: Points modulo a prime at which Programs without a closed form are compared.
 POINTS = 3

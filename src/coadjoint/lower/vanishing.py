@@ -13,11 +13,11 @@ import random
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 
-from coadjoint.algebra.linear import PRIME
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.decided import TRIES, Decided, call_modulo
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.lower.program import ZERO, Program, run
-from coadjoint.poisson.ranks import Residue, residue
 
 
 def hidden_zeros(program: Program, equations: Equations) -> list[int]:

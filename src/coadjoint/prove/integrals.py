@@ -37,7 +37,7 @@ def about_integrals(motion: Motion) -> Iterator[Examined]:
     first, spec = motion.equations, motion.spec
     said = "energy" if first.exact.energy is not None and keeps_energy(first) else None
     for place, claim in enumerate(spec.conserved):
-        if claim.name != said:
+        if claim.everywhere != said:
             claimed = [(_statement(motion, claim), "conserved", partial(_integral, motion, claim))]
             yield from claimed_by(spec, ("claims", "conserved", place), claimed, motion.field)
 

@@ -15,10 +15,9 @@ from typing import Self
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Equation, Row
-from coadjoint.derive.mechanics.legendre import mass_matrix
-from coadjoint.derive.setting import Setting, shaped
-from coadjoint.derive.symmetries import in_formulas
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.equivalence import in_velocities, kept_velocities
@@ -149,11 +148,9 @@ class Motion:
     @cached_property
     def matrices(self) -> list[tuple[Row, ...]]:
         """The matrices that accelerations are solved with, here ``d2l/dv2``."""
-        formula = self.spec.lagrangian
-        if self.setting.momenta or formula is None:
+        if self.setting.momenta or self.spec.lagrangian is None:
             return []
-        mass = mass_matrix(self.setting, self.setting.formula(formula))
-        return [tuple(tuple(map(self.put, row)) for row in mass)]
+        return [tuple(tuple(map(self.put, row)) for row in mechanics(self.setting).mass)]
 
     @cached_property
     def divergence(self) -> Element | None:
@@ -179,12 +176,7 @@ class Motion:
     def emitted(self) -> dict[str, Quantity]:
         """The energy and the observables, by the names that claims use."""
         known: dict[str, Quantity] = dict(self.equations.exact.observables)
-        for entry in self.spec.observables:
-            known[entry.name] = shaped([known[name] for name in entry.components], entry.shape)
-        for symmetry in self.spec.symmetries:
-            parts = [known[name] for name in symmetry.components]
-            known[symmetry.name] = in_formulas(symmetry, parts)
-        return known
+        return known | {each.name: each.whole for each in self.equations.exact.emitted}
 
     @property
     def at_all_times(self) -> str:

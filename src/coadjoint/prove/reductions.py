@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from coadjoint.derive import ROUTES, Equations
+from coadjoint.derive import Equations
 from coadjoint.derive.domain import region
 from coadjoint.derive.reductions import Restriction, whole_equations
 from coadjoint.exact import Element
@@ -26,7 +26,7 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
     reduction = first.spec.reduction
     if reduction is None:
         return
-    whole = whole_equations(first.setting, ROUTES[first.route])
+    whole = whole_equations(first.setting, first.route)
     whole.setting.field.region = region(whole)
     restriction = Restriction(first.setting, whole)
     section = ", ".join(f"{name} = {f.in_one_line}" for name, f in reduction.section.items())

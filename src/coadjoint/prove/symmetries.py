@@ -123,7 +123,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
     if first.spec.algebra is not None or first.spec.is_driven:
         return
     for place, claim in enumerate(first.spec.conserved):
-        if claim.where or claim.name == "energy":
+        if claim.where or claim.everywhere == "energy":
             continue
         flows = _flows(first, claim.formula, known)
         statement = (

@@ -10,7 +10,7 @@ so that :math:`\mathrm{Ad}^*_{g^{-1}} \mu` is conserved where no torque acts; al
 right-invariant one :math:`\mathrm{Ad}^*_g \mu` is. Its components are
 :math:`\langle \mu, g^{-1} e_i g \rangle`: products of matrices or of quaternions.
 Comes in: a Setting with an attitude among its advected quantities. Goes out: these components.
-Read next: `coadjoint.derive.observables`.
+Read next: `coadjoint.derive.emitted`.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from collections.abc import Sequence
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra.attitudes import has_fixed_row
 from coadjoint.algebra.catalogue import inverse_by
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
-from coadjoint.derive.equations import Relation
-from coadjoint.derive.interpret import Matrix, inverse
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.records import Relation
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
+from coadjoint.exact.dense import Matrix, apply, inverse, product, scale, transpose
+from coadjoint.exact.linear import Span
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import apply, matmul, scale, transpose
 
 
+@once
 def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     """``Ad*_{g^-1} mu`` along the basis; ``Ad*_g mu`` if the motion is right-invariant."""
     attitude = setting.spec.attitude
@@ -49,7 +49,7 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
             tuple(setting.field.zero + X.get((i, j), 0) for j in range(len(matrix)))
             for i in range(len(matrix))
         )
-        seen = matmul(matmul(outer, dense), inner)
+        seen = product(product(outer, dense), inner)
         parts = [
             m * w * seen[i][j] for m, row in zip(mu, coordinates, strict=True) for i, j, w in row
         ]

@@ -14,7 +14,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from heapq import heappop, heappush
 from math import gcd, isqrt, lcm
-from typing import Any
+from typing import Any, TypeVar
 
 from coadjoint.errors import AlgebraError, LimitError
 
@@ -27,6 +27,7 @@ PRIME = 2**61 - 1
 _BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
 
 Row = dict[int, int]
+Place = TypeVar("Place")
 
 
 def exact(value: Any) -> Any:
@@ -209,49 +210,100 @@ def rank_modulo(rows: Iterable[Mapping[int, Fraction | int]], prime: int = PRIME
     Rows are made integral first, so that minors over the rationals are integers, up to a factor
     for each row, and those that are zero stay so modulo the prime.
     """
-    return len(_eliminate(_integral(rows), prime, min))
+    return SpanModulo(prime, _integral(rows)).rank
+
+
+def whole_numbers(vector: Mapping[Place, Fraction | int]) -> dict[Place, int]:
+    """The positive multiple of a nonzero rational vector with whole numbers of no common factor.
+
+    >>> whole_numbers({"x": Fraction(1, 2), "y": Fraction(-2, 3)})
+    {'x': 3, 'y': -4}
+    """
+    common = lcm(*(value.denominator for value in vector.values()))
+    whole = {place: int(value * common) for place, value in vector.items()}
+    shared = gcd(*whole.values())
+    return {place: value // shared for place, value in whole.items()}
 
 
 def _integral(rows: Iterable[Mapping[int, Fraction | int]]) -> list[Row]:
     """Distinct rows in integers without common factor, the short ones first."""
     distinct: dict[tuple[tuple[int, int], ...], None] = {}
     for row in rows:
-        entries = sorted((column, value) for column, value in row.items() if value)
-        if not entries:
-            continue
-        common = lcm(*(value.denominator for _, value in entries))
-        whole = [int(value * common) for _, value in entries]
-        shared = gcd(*whole) if whole[0] > 0 else -gcd(*whole)
-        scaled = ((c, value // shared) for (c, _), value in zip(entries, whole, strict=True))
-        distinct[tuple(scaled)] = None
+        entries = dict(sorted((column, value) for column, value in row.items() if value))
+        if entries:
+            sign = 1 if next(iter(entries.values())) > 0 else -1
+            whole = whole_numbers(entries)
+            distinct[tuple((column, sign * value) for column, value in whole.items())] = None
     return [dict(row) for row in sorted(distinct, key=len)]
 
 
-def _eliminate(
-    rows: Iterable[Row], prime: int, choose: Callable[[Iterable[int]], int]
-) -> dict[int, Row]:
-    """Rows by their pivots, pivot entries 1; a row has none of the pivots before it."""
-    pivots: dict[int, Row] = {}
-    order: list[int] = []
-    age: dict[int, int] = {}
-    for row in rows:
+class SpanModulo:
+    """The span of sparse rows modulo a prime, to which rows are added one by one.
+
+    Args:
+        prime: The prime.
+        rows: Rows to begin with.
+        choose: Which column of a row becomes its pivot; by default the first.
+
+    Attributes:
+        pivots: The rows by their pivots, pivot entries 1; a row has none of the pivots before it.
+
+    >>> plane = SpanModulo(7)
+    >>> plane.independent([{0: 1, 1: 2}, {0: 2, 1: 4}, {0: 1}])
+    [0, 2]
+    """
+
+    def __init__(
+        self,
+        prime: int = PRIME,
+        rows: Iterable[Mapping[int, int]] = (),
+        choose: Callable[[Iterable[int]], int] = min,
+    ) -> None:
+        self.prime, self._choose = prime, choose
+        self.pivots: dict[int, Row] = {}
+        self._order: list[int] = []
+        self._age: dict[int, int] = {}
+        self.independent(rows)
+
+    @property
+    def rank(self) -> int:
+        """Dimension of the span."""
+        return len(self.pivots)
+
+    def independent(self, rows: Iterable[Mapping[int, int]]) -> list[int]:
+        """Places of the rows that do not depend on those before them; each of these is added."""
+        return [place for place, row in enumerate(rows) if self.add(row)]
+
+    def add(self, row: Mapping[int, int]) -> bool:
+        """Add one more row; False, and nothing changes, if it lies in the span already."""
+        age, prime = self._age, self.prime
         rest = {column: value % prime for column, value in row.items()}
         # Old rows have pivots that came later, never the other way round: with the oldest first,
         # nothing that was cleared comes back (the rank of so(20) took 12 times as long).
         waiting = sorted(age[column] for column in rest if column in age)
         while waiting:
-            filled = _clear(rest, order[heappop(waiting)], pivots, prime)
+            filled = _clear(rest, self._order[heappop(waiting)], self.pivots, prime)
             for column in filled:
                 if column in age:
                     heappush(waiting, age[column])
         rest = {column: value for column, value in rest.items() if value}
-        if rest:
-            pivot = choose(rest)
-            inverse = pow(rest[pivot], -1, prime)
-            pivots[pivot] = {column: value * inverse % prime for column, value in rest.items()}
-            age[pivot] = len(order)
-            order.append(pivot)
-    return pivots
+        if not rest:
+            return False
+        pivot = self._choose(rest)
+        inverse = pow(rest[pivot], -1, prime)
+        self.pivots[pivot] = {column: value * inverse % prime for column, value in rest.items()}
+        age[pivot] = len(self._order)
+        self._order.append(pivot)
+        return True
+
+    def reduced(self) -> dict[int, Row]:
+        """The rows, each with no pivot but its own: the last one has none, so go backwards."""
+        done: dict[int, Row] = {}
+        for pivot, row in reversed(self.pivots.items()):
+            done[pivot] = dict(row)
+            for column in [c for c in row if c in done and c != pivot]:
+                _clear(done[pivot], column, done, self.prime)
+        return done
 
 
 def _clear(row: Row, column: int, pivots: Mapping[int, Row], prime: int) -> list[int]:
@@ -273,33 +325,22 @@ def _clear(row: Row, column: int, pivots: Mapping[int, Row], prime: int) -> list
     return filled
 
 
-def _reduced(pivots: dict[int, Row], prime: int) -> dict[int, Row]:
-    """The same rows, each with no pivot but its own: the last row has none, so go backwards."""
-    done: dict[int, Row] = {}
-    for pivot, row in reversed(pivots.items()):
-        for column in [c for c in row if c in done]:
-            _clear(row, column, done, prime)
-        done[pivot] = row
-    return done
-
-
 def echelon_modulo(rows: Iterable[Row], prime: int = PRIME) -> dict[int, Row]:
     """The reduced rows modulo a prime by their pivots, each the first column of its row.
 
     >>> echelon_modulo([{0: 1, 1: 2}, {0: 2, 1: 4, 2: 3}], 7)
     {2: {2: 1}, 0: {0: 1, 1: 2}}
     """
-    return _reduced(_eliminate(rows, prime, min), prime)
+    return SpanModulo(prime, rows).reduced()
 
 
 def nullspace_modulo(equations: list[Row], unknowns: int, prime: int = PRIME) -> list[Row]:
     """The reduced row echelon basis of the null space modulo a prime, sorted by pivots."""
     # A pivot in a column that few rows have keeps the others sparse.
     frequency = Counter(column for row in equations for column in row)
-    pivots = _eliminate(
-        equations, prime, lambda columns: min(columns, key=lambda c: (frequency[c], c))
-    )
-    solved = _reduced(pivots, prime)
+    solved = SpanModulo(
+        prime, equations, lambda columns: min(columns, key=lambda c: (frequency[c], c))
+    ).reduced()
     vectors: dict[int, Row] = {free: {free: 1} for free in range(unknowns) if free not in solved}
     for pivot, row in solved.items():
         for column, value in row.items():
@@ -327,10 +368,9 @@ def rational_vector(row: Row, prime: int = PRIME) -> dict[int, Fraction] | None:
 
 def _solves(equations: list[Row], vectors: list[dict[int, Fraction]]) -> bool:
     """Whether every vector satisfies every equation, in exact arithmetic."""
-    for vector in vectors:
-        common = lcm(*(value.denominator for value in vector.values()))
-        whole = {column: int(value * common) for column, value in vector.items()}
-        for row in equations:
-            if sum(value * whole.get(column, 0) for column, value in row.items()):
-                return False
-    return True
+    whole = map(whole_numbers, vectors)
+    return not any(
+        sum(value * vector.get(column, 0) for column, value in row.items())
+        for vector in whole
+        for row in equations
+    )

@@ -1,6 +1,6 @@
 """Ranks of matrices of functions: never above the true rank at almost every point.
 
-Comes in: sparse rows of elements. Goes out: the rank that was found, a certain bound from below.
+Comes in: sparse rows of elements. Goes out: a rank, which is a certain bound from below.
 
 Rational entries are taken at a random point modulo a prime. Where no denominator is zero there,
 this is a homomorphism of rings: a minor with a nonzero value is a nonzero function. Entries with
@@ -20,16 +20,16 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from fractions import Fraction
 from functools import partial
 from itertools import islice
 from typing import Any
 
 import mpmath
 
-from coadjoint.algebra.linear import PRIME, primes, rank_modulo
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.linear import SpanModulo, primes, rank_modulo
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.exact.witness import UNDEFINED, Enclosure, enclosure, points_inside
 
 #: Points at which a rank is taken; the largest counts.
@@ -47,55 +47,6 @@ NO_CHANCE = (
 )
 #: Characters of an entry that a message shows.
 SHOWN = 60
-
-
-class Residue:
-    """An integer modulo a prime, with what evaluation needs.
-
-    Args:
-        value: The integer, reduced.
-        prime: The prime.
-    """
-
-    __slots__ = ("prime", "value")
-
-    def __init__(self, value: int, prime: int = PRIME) -> None:
-        self.value, self.prime = value, prime
-
-    def __repr__(self) -> str:
-        return f"Residue({self.value}, {self.prime})"
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Residue):
-            return NotImplemented
-        return (self.value, self.prime) == (other.value, other.prime)
-
-    def __hash__(self) -> int:
-        return hash(self.value)
-
-    def __add__(self, other: Residue) -> Residue:
-        return Residue((self.value + other.value) % self.prime, self.prime)
-
-    def __mul__(self, other: Residue) -> Residue:
-        return Residue(self.value * other.value % self.prime, self.prime)
-
-    def __neg__(self) -> Residue:
-        return Residue(-self.value % self.prime, self.prime)
-
-    def __truediv__(self, other: Residue) -> Residue:
-        if not other.value:
-            raise ZeroDivisionError(f"division by zero modulo {self.prime}")
-        return Residue(self.value * pow(other.value, -1, self.prime) % self.prime, self.prime)
-
-
-def residue(number: Fraction | int, prime: int = PRIME) -> Residue:
-    """A rational number modulo a prime.
-
-    Raises:
-        ZeroDivisionError: The prime divides the denominator.
-    """
-    top, bottom = Residue(number.numerator % prime, prime), number.denominator
-    return top if bottom == 1 else top / Residue(bottom % prime, prime)
 
 
 def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
@@ -154,17 +105,9 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
         return []
     if not is_exact(field, _entries(rows)):
         return max(islice(_bounded(field, rows), POINTS), key=len)
-    sampled = islice(_sampled(field, rows), POINTS)
-    return max((_chosen(numbers, prime) for prime, numbers in sampled), key=len)
-
-
-def _chosen(rows: Sequence[dict[int, int]], prime: int) -> list[int]:
-    """Places of rows of numbers that do not depend on those before them modulo a prime."""
-    chosen: list[int] = []
-    for place, row in enumerate(rows):
-        if rank_modulo([*(rows[n] for n in chosen), row], prime) > len(chosen):
-            chosen.append(place)
-    return chosen
+    spans = ((SpanModulo(prime), numbers) for prime, numbers in _sampled(field, rows))
+    chosen = (span.independent(numbers) for span, numbers in islice(spans, POINTS))
+    return max(chosen, key=len)
 
 
 def is_exact(field: Field, elements: Iterable[Element]) -> bool:

@@ -1,57 +1,23 @@
-"""Schema of algebras: the tables that declare a Lie algebra, alone or inside one another.
+"""Keys of algebras: the tables that declare a Lie algebra, alone or inside one another.
 
 Comes in: the tables that tomllib read. Goes out: frozen parts of a `SpecFile`.
-Read next: `coadjoint.spec.schema`.
+Read next: `coadjoint.spec.sections.algebras`, which reads them.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
+from coadjoint.spec.core.parts import Part, TextPart, named
 from coadjoint.spec.core.values import (
     BRACKET_PATTERN,
-    NAME_PATTERN,
     Entry,
     Length,
     Matrix,
     Names,
 )
-
-
-def no_titles(schema: dict[str, Any]) -> None:
-    """Drop the titles that pydantic makes of key names; they say nothing."""
-    for part in (schema, *schema.get("properties", {}).values()):
-        part.pop("title", None)
-
-
-def named(pattern: str = NAME_PATTERN) -> dict[str, Any]:
-    """What a JSON Schema says about the keys of a table of names."""
-    return {"propertyNames": {"pattern": pattern}}
-
-
-class Part(BaseModel):
-    """A table of a spec: unknown keys are refused, nothing is converted."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, json_schema_extra=no_titles)
-
-
-def also_text(schema: dict[str, Any]) -> None:
-    """The table may be a text alone."""
-    no_titles(schema)
-    table = dict(schema)
-    schema.clear()
-    schema["anyOf"] = [{"type": "string"}, table]
-
-
-def also_flag(schema: dict[str, Any]) -> None:
-    """The table may be a truth value alone."""
-    no_titles(schema)
-    table = dict(schema)
-    schema.clear()
-    schema["anyOf"] = [{"type": "boolean"}, table]
-
 
 #: The ways to declare an algebra, of which each takes exactly one.
 WAYS = (
@@ -129,21 +95,16 @@ class AlgebraPart(_Algebra):
     )
 
 
-class OperandPart(_Algebra):
+class OperandPart(_Algebra, TextPart):
     """An algebra that a larger one is made of: its name, or a table."""
 
-    model_config = ConfigDict(json_schema_extra=also_text)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_text(cls, value: object) -> object:
-        return {"name": value} if isinstance(value, str) else value
+    alone = "name"
 
 
-class ActionPart(Part):
+class ActionPart(TextPart):
     """A linear action: the name of a representation, or a table of matrices."""
 
-    model_config = ConfigDict(json_schema_extra=also_text)
+    alone = "name"
 
     name: str | None = Field(None, description="a representation by name, such as 'vector'")
     matrices: dict[str, Matrix] | None = Field(
@@ -151,11 +112,6 @@ class ActionPart(Part):
         description="a matrix for each name of the basis; those left out act as zero",
         json_schema_extra=named(),
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_text(cls, value: object) -> object:
-        return {"name": value} if isinstance(value, str) else value
 
     @model_validator(mode="after")
     def _one_way(self) -> ActionPart:

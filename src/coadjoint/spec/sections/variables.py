@@ -1,30 +1,47 @@
-"""Structure: the variables and parameters of a spec, with their shapes.
+"""Variables: the table [variables], with shapes, blocks of the algebra and the state.
 
-Comes in: the validated tables, and the algebra where there is one. Goes out: records of
-`coadjoint.spec.model`. Read next: `coadjoint.spec.sections.poisson` and
-`coadjoint.spec.core.formulas`.
+Comes in: its keys, and the algebra where there is one. Goes out: `Variable` records.
+Read next: `coadjoint.spec.sections.definitions`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
-from types import MappingProxyType
+from typing import Annotated, Literal
 
-from coadjoint.algebra.catalogue import ATTITUDES, REPRESENTATIONS
+from pydantic import Field
+
+from coadjoint.algebra.catalogue import ATTITUDES
+from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
 from coadjoint.algebra.families import so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.core.components import FORMS
+from coadjoint.limits import STATE_COMPONENTS
+from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
 from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.names import derived_names
+from coadjoint.spec.core.parts import Part, named
 from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.model import Input, Parameter, Shape, Variable, matrix_size
-from coadjoint.spec.schema import InputPart, ParameterPart, VariablePart
-from coadjoint.spec.sections.representations import block_places, representation_of
+from coadjoint.spec.core.values import (
+    Block,
+    Length,
+    Numbers,
+    Prose,
+    Unit,
+    misfit_form,
+    read_default,
+)
+from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.matrices import block_places, representation_of
+from coadjoint.spec.sections.representations import REPRESENTATIONS
+from coadjoint.spec.sections.solved import find_solved_velocities
 
 #: Keys that say how large a variable is, and the variables that each is for.
 _OWN_KEYS = {
@@ -42,32 +59,110 @@ _KEYS_OF = {
 }
 
 
-def read_variable(
-    source: Source,
-    name: str,
-    part: VariablePart,
-    algebra: LieAlgebra | None,
-    representations: Mapping[str, Representation],
-    parts: Mapping[str, VariablePart] = MappingProxyType({}),
-    invariance: str = "left",
-    solved: Collection[str] | None = None,
-) -> Variable:
-    """A variable with its place in the algebra, or its shape where there is none.
+class VariablePart(Part):
+    """A velocity, a momentum, an advected quantity or a coordinate."""
 
-    Args:
-        source: The spec file, for messages.
-        name: As declared.
-        part: What is declared of it.
-        algebra: The algebra of the velocities, if any.
-        representations: Declared ones, by name.
-        parts: All that is declared, for coordinates that others are velocities of.
-        invariance: Of the motion: the side from which an attitude is seen.
-        solved: Velocities that constraints give; None without constraints.
+    role: Literal["velocity", "momentum", "advected", "coordinate"] = Field(
+        description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
+        "with a 'velocity' or 'momentum' of it"
+    )
+    block: Block | None = Field(
+        None, description="the block of the algebra that it spans; by default all of it"
+    )
+    representation: str | None = Field(
+        None,
+        description="how the algebra acts on an advected quantity: 'vector', 'adjoint', "
+        "'coadjoint' and others, or a declared one",
+    )
+    shape: Annotated[list[Length], Field(max_length=1)] | None = Field(
+        None, description="of a coordinate: [] for a scalar (the default), [n] for n components"
+    )
+    of: str | None = Field(
+        None,
+        description="the coordinate whose velocity, or conjugate momentum, it is; its shape and "
+        "form are those of the coordinate",
+    )
+    form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
+        None,
+        description="the square matrix that it is in formulas: its components are the entries "
+        "above the diagonal, those with the diagonal, or all, row by row",
+    )
+    default: Numbers | None = Field(
+        None,
+        description="where `coadjoint simulate` begins unless told otherwise: a number for all "
+        "components, or a list of them",
+    )
+    unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+
+@dataclass(frozen=True)
+class Variable(Components):
+    """A velocity, momentum or advected quantity, or a coordinate of a space with a bracket.
+
+    Attributes:
+        name: As declared, e.g. ``Omega``.
+        role: ``"velocity"``, ``"momentum"``, ``"advected"`` or ``"coordinate"``.
+        shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
+        block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
+        representation: How the algebra acts on an advected quantity; None otherwise.
+        unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
+        doc: Free text for documents.
+        form: One of `FORMS` if the components are the entries of a matrix, else "".
+        of: The coordinate whose velocity or momentum it is; "" over an algebra.
+        elements: Matrices of which a velocity is the sum, weighted by its components, in formulas;
+            empty where the form says it all.
+        default: Where a simulation begins, one exact value per component; None if nothing is said.
+        independent: Under constraints, whether a velocity is part of the state; None without any.
+    """
+
+    name: str
+    role: str
+    shape: Shape
+    block: tuple[int, ...] = ()
+    representation: Representation | None = None
+    unit: str = "1"
+    doc: str = ""
+    form: str = ""
+    of: str = ""
+    elements: tuple[SparseMatrix, ...] = ()
+    default: tuple[Fraction, ...] | None = None
+    independent: bool | None = None
+
+
+def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """The variables that make the state, in declared order; see `Spec.state`."""
+    given = {variable.of for variable in variables if variable.role == "momentum"}
+    return tuple(
+        variable
+        for variable in variables
+        if variable.independent
+        or variable.role != "velocity"
+        or (variable.independent is None and variable.of and variable.of not in given)
+    )
+
+
+def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple[Variable, ...]:
+    """The variables, each with its place in the algebra, or its shape where there is none.
 
     Raises:
         SpecError: A key does not go with the role, the role not with the spec, the block or the
             representation is unknown, or the components fill no matrix of the form.
+        LimitError: The state has too many components.
     """
+    solved = find_solved_velocities(reading.file)
+    found = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
+    limit = "STATE_COMPONENTS", STATE_COMPONENTS
+    reading.check_count("state", "variables", state_of(found), *limit)
+    return found
+
+
+def _read_variable(
+    reading: Reading, name: str, part: VariablePart, solved: Collection[str] | None
+) -> Variable:
+    """One variable; velocities that constraints give are no part of the state."""
+    source, parts = reading.source, reading.file.variables
+    algebra, invariance = ALGEBRA.of(reading).algebra, ALGEBRA.of(reading).invariance
     key: KeyPath = ("variables", name)
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
@@ -89,35 +184,39 @@ def read_variable(
     elif part.of is not None:
         raise _alien_key(source, (*key, "of"), part)
     elif part.role == "advected":
-        representation = _representation(source, key, part, algebra, representations, invariance)
+        representation = _representation(
+            source, key, part, algebra, REPRESENTATIONS.of(reading), invariance
+        )
         count = representation.dimension
         flat = count > 1
     else:
-        block = _block(source, (*key, "block"), part, algebra)
+        block = tuple(range(algebra.dimension))
+        if part.block is not None:
+            block = block_places(source, (*key, "block"), part.block, algebra)
         count, flat = len(block), len(block) > 1
     form = part.form or _own_form(representation)
     if form in FORMS and matrix_size(count, form) is None:
-        raise _misfit(source, (*key, "form"), count, form)
+        raise misfit_form(source, (*key, "form"), count, form)
     elements: tuple[SparseMatrix, ...] = ()
     if form and block and algebra is not None and algebra.elements:
-        _check_elements(source, (*key, "form"), algebra, block, form)
+        check_elements(source, (*key, "form"), algebra, block, form)
         elements = algebra.elements if part.role == "velocity" else ()
     elif form == "antisymmetric" and block and algebra is not None:
-        _check_planes(source, (*key, "form"), algebra, block)
+        check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
     return Variable(
-        name,
-        part.role,
-        shape,
-        block,
-        representation,
-        part.unit,
-        part.doc,
-        form,
-        part.of or "",
-        elements,
-        read_default(source, (*key, "default"), part.default, shape),
-        name not in solved if solved is not None and part.role == "velocity" else None,
+        name=name,
+        role=part.role,
+        shape=shape,
+        block=block,
+        representation=representation,
+        unit=part.unit,
+        doc=part.doc,
+        form=form,
+        of=part.of or "",
+        elements=elements,
+        default=read_default(source, (*key, "default"), part.default, shape),
+        independent=name not in solved if solved is not None and part.role == "velocity" else None,
     )
 
 
@@ -206,18 +305,7 @@ def _check_role(
     )
 
 
-def _misfit(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
-    counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
-    return source.fault(
-        key,
-        f"{count} components fill no matrix of the form {form!r}",
-        found=count,
-        expected=f"{counts[form]} components for an n by n matrix",
-        hint="Remove form, or choose another block, representation or shape.",
-    )
-
-
-def _check_elements(
+def check_elements(
     source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
 ) -> None:
     """The matrices of an algebra with a bracket of its own are of the form that is declared."""
@@ -238,9 +326,7 @@ def _check_elements(
             )
 
 
-def _check_planes(
-    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]
-) -> None:
+def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
     """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
 
     Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
@@ -282,7 +368,7 @@ def _representation(
             key,
             f"the advected quantity {key[-1]!r} has no representation",
             found=str(key[-1]),
-            expected=f"representation = one of {listed((*REPRESENTATIONS, *declared))}",
+            expected=f"representation = one of {listed((*KNOWN, *declared))}",
             hint='Write representation = "vector".',
         )
     inner = (*key, "representation")
@@ -300,122 +386,42 @@ def _own_form(representation: Representation | None) -> str:
     return "matrix" if count > 1 and matrix_size(count, "matrix") else ""
 
 
-def _block(
-    source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra
-) -> tuple[int, ...]:
-    """Places in the basis that a velocity or momentum spans."""
-    if part.block is None:
-        return tuple(range(algebra.dimension))
-    return block_places(source, key, part.block, algebra)
+def _name_all(table: str, variables: Sequence[Variable]) -> Iterator[Naming]:
+    """The names of variables, of their components, and of the rates of the state."""
+    state = state_of(variables)
+    for each in variables:
+        rates = tuple(derived_names(each.components)) if each in state else ()
+        yield Naming((table, each.name), each.name, each.components, rates)
 
 
-def read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
-    """A parameter with one exact default for each component, or none.
-
-    Raises:
-        SpecError: The default does not have the shape, or is not positive where it must be, or the
-            components fill no matrix of the form.
-    """
-    shape, form = tuple(part.shape), part.form or ""
-    if form:
-        shape = shape or (1,)
-        if len(shape) > 1 or matrix_size(shape[0], form) is None:
-            raise _misfit(source, ("parameters", name, "form"), prod(shape), form)
-    key: KeyPath = ("parameters", name, "default")
-    default = read_default(source, key, part.default, shape)
-    if default is not None and part.positive and min(default) <= 0:
-        raise source.fault(
-            key,
-            f"the default {min(default)} of {name!r} is not positive",
-            found=str(min(default)),
-            expected="positive numbers, since positive = true",
-        )
-    return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
+def state_roles(reading: Reading) -> tuple[str, ...]:
+    """Roles of the state: momenta or, of coordinates without them, velocities, and positions."""
+    return tuple(dict.fromkeys(each.role for each in state_of(VARIABLES.of(reading))))
 
 
-def read_inputs(source: Source, parts: Mapping[str, InputPart]) -> tuple[Input, ...]:
-    """The inputs with one exact default for each component, or none.
-
-    Raises:
-        SpecError: A default does not have the shape, or a rate is no input of the same shape.
-    """
-    found = []
-    for name, part in parts.items():
-        shape = tuple(part.shape)
-        default = read_default(source, ("inputs", name, "default"), part.default, shape)
-        _check_rate(source, name, parts)
-        found.append(Input(name, shape, default, part.unit, part.doc, part.rate or ""))
-    return tuple(found)
+def motion_roles(reading: Reading) -> tuple[str, ...]:
+    """Roles of the state and of the velocities."""
+    return tuple(dict.fromkeys(("velocity", *(each.role for each in VARIABLES.of(reading)))))
 
 
-def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> None:
-    """What is the rate of an input is another one, of its shape."""
-    rate = parts[name].rate
-    alike = [other for other in parts if other != name and parts[other].shape == parts[name].shape]
-    if rate is not None and rate not in alike:
-        raise source.fault(
-            ("inputs", name, "rate"),
-            f"{rate!a} is no other input of the shape of {name!r}",
-            found=rate,
-            expected=f"one of {listed(alike)}" if alike else "another input of its shape",
-            hint=did_you_mean(rate, alike) or "Declare it in [inputs].",
-        )
-    chain = [name]
-    while (following := parts[chain[-1]].rate or "") in parts:
-        if following in chain:
-            raise source.fault(
-                ("inputs", name, "rate"),
-                f"the rates {' -> '.join([*chain, following])} go round in a circle",
-                found=rate,
-                expected="an input whose rates end at one without",
-            )
-        chain.append(following)
+def position_roles(reading: Reading) -> tuple[str, ...]:
+    """Roles of the positions: what a Lagrangian is a function of beside the velocities."""
+    roles = motion_roles(reading)
+    default = "coordinate" if ALGEBRA.of(reading).algebra is None else "advected"
+    return tuple(each for each in roles if each not in ("velocity", "momentum")) or (default,)
 
 
-def read_default(
-    source: Source, key: KeyPath, value: object, shape: Shape
-) -> tuple[Fraction, ...] | None:
-    """The declared default, one number for each component; None if there is none."""
-    spread = None if value is None else _spread(value, shape)
-    if spread is None and value is not None:
-        raise source.fault(
-            key,
-            f"the default of {str(key[-2])!r} does not have its shape {list(shape)}",
-            found=_shape_text(value),
-            expected=f"one number for all components, or {_shape_words(shape)}",
-        )
-    return spread
-
-
-def _spread(value: object, shape: Shape) -> tuple[Fraction, ...] | None:
-    """One number for each component, row by row; None if the shape does not fit."""
-    if not isinstance(value, list):
-        assert isinstance(value, Fraction), value
-        count = 1
-        for length in shape:
-            count *= length
-        return (value,) * count
-    if not shape or len(value) != shape[0]:
-        return None
-    if len(shape) == 1:
-        return None if any(isinstance(entry, list) for entry in value) else tuple(value)
-    rows = [_spread(row, shape[1:]) for row in value if isinstance(row, list)]
-    whole = [row for row in rows if row is not None]
-    return tuple(x for row in whole for x in row) if len(whole) == shape[0] else None
-
-
-def _shape_words(shape: Shape) -> str:
-    if not shape:
-        return "a single number"
-    counts = [f"{shape[0]} numbers"] if len(shape) == 1 else [f"{shape[0]} lists of {shape[1]}"]
-    return f"a list of {counts[0]}"
-
-
-def _shape_text(value: object) -> str:
-    """The lengths of nested lists, for a message."""
-    if not isinstance(value, list):
-        return "a number"
-    inner = {len(row) if isinstance(row, list) else 1 for row in value}
-    return f"a list of {len(value)}" + (
-        f" lists of {listed(map(str, inner))}" if inner != {1} else ""
-    )
+VARIABLES = Table[tuple[Variable, ...]](
+    "variables",
+    VariablePart,
+    "the variables by name",
+    read_variables,
+    many=True,
+    field=(
+        dict[str, VariablePart],
+        Field(min_length=1, description="the variables by name", json_schema_extra=named()),
+    ),
+    quantities=True,
+    names=_name_all,
+    example='Pi = { role = "momentum" }',
+)

@@ -9,8 +9,8 @@ from sympy import isprime
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.lie_algebra import LieAlgebra
-from coadjoint.algebra.linear import PRIME, Span, nullspace, primes, rank, rank_modulo
 from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.exact.linear import PRIME, Span, nullspace, primes, rank, rank_modulo
 
 
 def test_coordinates_of_several_targets_come_from_one_elimination():

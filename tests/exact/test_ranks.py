@@ -4,22 +4,21 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.algebra.linear import PRIME
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.poisson.ranks import (
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.ranks import (
     CHANCE,
     ENCLOSED,
     MODULO,
     NO_CHANCE,
-    Residue,
     error_of_ranks,
     generic_rank,
     independent_rows,
     is_exact,
-    residue,
     source_of_ranks,
 )
+from coadjoint.exact.residues import Residue, residue
 
 
 def test_ranks_with_functions_are_those_of_values():
