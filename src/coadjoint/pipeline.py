@@ -33,7 +33,7 @@ from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.driven import while_constant
-from coadjoint.prove.energy import is_conserved
+from coadjoint.prove.integrals import is_conserved
 from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Spec

@@ -6,7 +6,7 @@ from coadjoint.derive import derive, make_setting
 from coadjoint.derive.mechanics import external
 from coadjoint.derive.routes import hamel, nonholonomic
 from coadjoint.prove import Verdict
-from coadjoint.prove.claims import motion_of
+from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.integrals import about_energy
 from coadjoint.prove.zero import decide_zero

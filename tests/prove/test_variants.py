@@ -8,12 +8,12 @@ import pytest
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.prove import Verdict, prove
-from coadjoint.prove.claims import motion_of
+from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.integrals import about_energy
 from coadjoint.prove.zero import decide_zero
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec_text
-from coadjoint.spec.routes import STARTS
+from coadjoint.spec.routes import ROUTES
 
 FOLDER = Path(derivations_folder())
 #: Tables that a changed motion need not satisfy, or that only routes without forces read.
@@ -53,7 +53,7 @@ def variant(name, *drives):
     tables = {key: table for key, table in tables.items() if key not in DROPPED}
     tables.get("claims", {}).pop("conserved", None)
     tables.get("claims", {}).pop("galilean", None)
-    tables["routes"] = [r for r in plain.routes if "forces" in STARTS[r].options]
+    tables["routes"] = [r for r in plain.routes if "forces" in ROUTES[r].options]
     velocities = [v for v in plain.variables if v.role == "velocity"]
     if "lagrangian" not in tables:
         velocities = [v for v in velocities if plain.hamiltonian is None]

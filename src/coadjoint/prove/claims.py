@@ -26,8 +26,9 @@ from coadjoint.prove.brackets import (
     about_hamiltonian,
 )
 from coadjoint.prove.candidates import about_candidates
+from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
-from coadjoint.prove.constrained import ConstrainedRates, about_constraints, about_kept
+from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.integrability import about_integrability
@@ -104,6 +105,12 @@ def has_bracket(motion: Motion) -> bool:
     return is_free(motion) and motion.equations.exact.poisson_tensor is not None
 
 
+def names_bracket(motion: Motion) -> bool:
+    """Whether a motion along a frame is claimed to have Casimirs, brackets or momentum maps."""
+    spec = motion.spec
+    return has_frame(motion) and bool(spec.casimirs or spec.brackets or spec.symmetries)
+
+
 def has_energy(motion: Motion) -> bool:
     """Whether the motion has an energy."""
     return motion.equations.exact.energy is not None
@@ -129,11 +136,13 @@ EXAMINATIONS = (
     Examination(about_rolling, has_frame),
     Examination(lambda motion: about_relaxation(motion.equations), is_free),
     Examination(about_casimirs, has_bracket),
+    Examination(lambda motion: about_casimirs(carry_over(motion)), names_bracket),
     Examination(about_integrals),
     Examination(about_galilean),
     Examination(about_momenta, has_frame),
     Examination(about_reduced_bracket, has_linear_constraints),
     Examination(about_symmetries, has_bracket),
+    Examination(lambda motion: about_symmetries(carry_over(motion)), names_bracket),
     Examination(about_transformations),
     Examination(about_spatial),
     Examination(about_pairs, of_routes=True),
@@ -153,11 +162,6 @@ EXAMINATIONS = (
     Examination(about_candidates, kind="integrals", subject="integrals"),
     Examination(about_measure, kind="measure", subject="invariant measures"),
 )
-
-
-def motion_of(equations: Equations) -> Motion:
-    """The motion of Equations, whatever binds it."""
-    return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)
 
 
 def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:

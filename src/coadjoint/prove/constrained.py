@@ -94,6 +94,15 @@ class ConstrainedRates(Motion):
         slopes = zip(self.field.gradient(function, names), names, strict=True)
         return own + self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
+    @cached_property
+    def written_rates(self) -> dict[str, Element]:
+        """The rates in the state, without accelerations."""
+        return {name: self.rate(self.field[name]) for name in self.setting.state}
+
+    def written(self, function: Element) -> Element:
+        """A function of the state alone."""
+        return self.in_state(function)
+
     def in_state(self, function: Element) -> Element:
         """A function of the state alone, also where it names reactions."""
         closed = self.closed(function)
@@ -209,6 +218,11 @@ class ConstrainedRates(Motion):
         """``dE/dt`` minus the power of declared forces and of constraints that move."""
         balance = Balance(self.equations)
         return self.value(self._carried(self.closed(balance.energy)) - balance.power)
+
+
+def motion_of(equations: Equations) -> Motion:
+    """The motion of Equations, whatever binds it."""
+    return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)
 
 
 def about_constraints(motion: ConstrainedRates) -> Iterator[Examined]:

@@ -17,7 +17,6 @@ from functools import cached_property
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.distribution import Distribution
-from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element, Field
 from coadjoint.prove.driven import (
     OWN_CHANGE,
@@ -34,15 +33,6 @@ def keeps_energy(equations: Equations) -> bool:
     acted_on = spec.is_forced or (spec.relaxation is not None and spec.relaxation.S is None)
     moved = found is not None and not found.is_linear
     return not acted_on and not moved and not changes_by_time(equations)
-
-
-def is_conserved(equations: Equations, each: Emitted) -> bool:
-    """Whether the motion conserves what is emitted, by claims that are proved."""
-    if each.kept is Kept.AS_ENERGY:
-        return keeps_energy(equations)
-    if each.kept is Kept.UNLESS_WORKED_ON:
-        return all(equations.setting.field.is_zero(equations.work(x)) for x in each.values)
-    return each.kept is Kept.ALWAYS
 
 
 class Balance:

@@ -12,9 +12,12 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
+from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.reconstruction import fixed_row
+from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
@@ -80,6 +83,16 @@ def _conserved_on(
             if left.verdict is Verdict.REFUTED:
                 return replace(left, leaves=True)
     return found
+
+
+def is_conserved(equations: Equations, each: Emitted) -> bool:
+    """Whether the motion conserves what is emitted, by claims that are proved."""
+    if each.kept is Kept.AS_ENERGY:
+        return keeps_energy(equations)
+    if each.kept is Kept.UNLESS_WORKED_ON:
+        motion = motion_of(equations)
+        return all(motion.field.is_zero(motion.rate(value)) for value in each.values)
+    return each.kept is Kept.ALWAYS
 
 
 def about_spatial(motion: Motion) -> Iterator[Examined]:

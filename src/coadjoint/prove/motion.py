@@ -116,6 +116,15 @@ class Motion:
         """The time derivative of a function of state and time, inputs held constant."""
         return self.put(drift(self.equations, function)[0])
 
+    @property
+    def written_rates(self) -> dict[str, Element]:
+        """The same written in the state, where that can be done."""
+        return self.rates
+
+    def written(self, function: Element) -> Element:
+        """A function written in the state, where that can be done."""
+        return self.closed(function)
+
     def in_state(self, function: Element) -> Element:
         """A function with a decidable zero: of the state alone, or of velocities in its place."""
         return self.put(in_velocities(self.equations, [function])[0])
