@@ -22,6 +22,7 @@ from typing import Any
 
 from coadjoint.build.cache import working_folder
 from coadjoint.crosscheck.ladder import Report, crosscheck
+from coadjoint.declared import Quantity
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
@@ -34,7 +35,7 @@ from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.integrals import is_conserved
-from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
+from coadjoint.render.kernels import KernelContext, render_system
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Reconstructed
@@ -135,9 +136,7 @@ def kernel_context(
         reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
-        domain=tuple(
-            Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
-        ),
+        domain=tuple(bound for bound, _ in bounds(equations)),
     )
 
 

@@ -46,6 +46,7 @@ DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
 DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
+TARGETS = RENDER + "targets/"
 
 #: Structure constants, ad* and the choice of minus or plus: tried in every run.
 SIGNS = (
@@ -142,7 +143,7 @@ DRIVEN = (
         )
     ),
     *(
-        Mutant("templates/" + file, old, new, tests=("tests/crosscheck/test_driven.py",))
+        Mutant(TARGETS + file, old, new, tests=("tests/crosscheck/test_driven.py",))
         for file, old, new in (
             ("numpy/kernel.py.j2", "else {{ array }}[:, chunk]", "else {{ array }}[:, :1]"),
             ("c/kernel.c.j2", "_n * _{{ array }}_member]", "_n * 0]"),
@@ -491,22 +492,22 @@ MUTANTS = (
     ),
     Mutant(RENDER + "printers.py", 'return "/", node.right', 'return "*", node.right'),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         "state[{{ row.index }} * state_stride + _n]",
         "state[{{ row.index }} * state_stride - _n]",
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '"out[%d * out_stride + _n]" | format(row)',
         '"out[%d * out_stride + _n]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '" * parameters_stride + _n") }}',
         '" * parameters_stride - _n") }}',
     ),
     Mutant(
-        "templates/c/kernel.c.j2",
+        TARGETS + "c/kernel.c.j2",
         '{{ statement.value | c_assignment(to="const double " ~ '
         "statement.name, column=indent | length) }}\n{% endfor %}\n{% endif %}\n"
         "{{ indent }}/* results */",
@@ -514,17 +515,23 @@ MUTANTS = (
         "column=indent | length) }}\n{% endfor %}\n{% endif %}\n{{ indent }}/* results */",
     ),
     Mutant(
-        "templates/numpy/kernel.py.j2",
+        TARGETS + "numpy/kernel.py.j2",
         '"out[%d]" | format(row)',
         '"out[%d]" | format(function.outputs[-loop.index][0])',
     ),
     Mutant(
-        "templates/numpy/kernel.py.j2",
-        "python_assignment(to=statement.name, column=4) }}\n"
+        TARGETS + "numpy/kernel.py.j2",
+        "numpy_assignment(to=statement.name, column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
-        "python_assignment(to=statement.name ~ ' = -', column=4) }}\n"
+        "numpy_assignment(to=statement.name ~ ' = -', column=4) }}\n"
         "{% endfor %}\n{% endif %}\n    # results",
     ),
+    Mutant(
+        TARGETS + "python/kernel_python.py.j2",
+        '"out[%d]" | format(row)',
+        '"out[%d]" | format(function.outputs[-loop.index][0])',
+    ),
+    Mutant(TARGETS + "python/kernel_python.py.j2", "range(0, len(out), size)", "range(len(out))"),
     Mutant(
         PROVE + "reductions.py",
         "decide_zero(drifts, field, Ideal(field, functions, where, state))",
@@ -533,7 +540,7 @@ MUTANTS = (
     Mutant(PROVE + "reductions.py", "- rates[name]", "+ rates[name]"),
     Mutant(
         PROVE + "reductions.py",
-        "[field.substitute(restriction(f), restriction.section) for f in functions]",
-        "[field.substitute(f - f, restriction.section) for f in map(restriction, functions)]",
+        "restriction.setting.field.substitute(restriction(function), restriction.section)",
+        "restriction.setting.field.zero",
     ),
 )

@@ -97,16 +97,6 @@ class Equations:
             return None
         return sympy.ImmutableMatrix([[self._sympy(entry) for entry in row] for row in tensor])
 
-    @cached_property
-    def derivatives(self) -> dict[str, tuple[str, ...]]:
-        """The functions that are derivatives of the rates: by which names each of them is.
-
-        By inputs and parameters only where there are some.
-        """
-        setting = self.setting
-        by = {"input_jacobian": setting.inputs, "parameter_jacobian": setting.parameters}
-        return {"jacobian": setting.state} | {name: names for name, names in by.items() if names}
-
     def closed(self, element: Element) -> Element:
         """An element with the definitions substituted: in state and parameters alone.
 

@@ -2,6 +2,7 @@ r"""Restricted motions: any route on a whole system, restricted to a section tha
 
 If the motion :math:`\dot x = X(x, y), \dot y = Y(x, y)` keeps the submanifold :math:`y = s(x)`,
 that is :math:`Ds(x)\, X(x, s(x)) = Y(x, s(x))`, then on it :math:`\dot x = X(x, s(x))`.
+Forces and dissipation act on the whole system, and must keep it on the section as well.
 Comes in: a Setting of what is left, and a route. Goes out: Equations of what is left, derived by
 that route for the whole system in a field of its own. What must hold for it is proved in
 `coadjoint.prove.reductions`.
@@ -14,6 +15,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
+from coadjoint.derive.mechanics import external
 from coadjoint.derive.records import Exact, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
@@ -90,7 +92,7 @@ def whole_equations(setting: Setting, route: str) -> Equations:
     """The equations of the system before the restriction, in a field of its own."""
     reduction = setting.spec.reduction
     assert reduction is not None, f"{setting.spec.name} is not restricted"
-    whole = load_route(route)(make_setting(reduction.whole))
+    whole = external.forced(load_route(route)(make_setting(reduction.whole)))
     if whole.chart is not None:
         raise refusal(
             setting,

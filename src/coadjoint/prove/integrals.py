@@ -23,7 +23,8 @@ from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, claimed_by, decide_zero
-from coadjoint.spec.model import Integral, SpatialMomentum
+from coadjoint.spec.model import Integral
+from coadjoint.spec.spatial import SpatialMomentum
 
 
 def about_energy(motion: Motion) -> Iterator[Examined]:

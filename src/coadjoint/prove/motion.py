@@ -23,6 +23,7 @@ from coadjoint.prove.energy import Balance
 from coadjoint.prove.equivalence import in_velocities, kept_velocities
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import drift, gradient
+from coadjoint.prove.reductions import on_section, restriction_of
 from coadjoint.prove.relaxation import lost
 from coadjoint.spec import Spec
 
@@ -130,11 +131,13 @@ class Motion:
         return self.put(in_velocities(self.equations, [function])[0])
 
     def energy_balance(self) -> Element:
-        """``dE/dt`` minus what the energy gains by all that acts."""
-        balance = Balance(self.equations)
-        energy = balance.energy
-        slopes = dict(zip(self.setting.state, gradient(self.equations, energy), strict=True))
-        power = balance.power + balance.work_along_state(slopes) + lost(self.equations, energy)
+        """``dE/dt`` minus what the energy gains by all that acts, on a section where it is one."""
+        energy = Balance(self.equations).energy
+        if self.spec.reduction is None:
+            power = _power(self.equations)
+        else:
+            restriction = restriction_of(self.equations)
+            power = on_section(restriction, _power(restriction.whole))
         return self.rate(energy) - self.in_state(power)
 
     # -- matrices -------------------------------------------------------------------------
@@ -193,6 +196,13 @@ class Motion:
         parts = ["for all inputs"] * bool(self.setting.inputs)
         parts += ["at all times"] * bool(self.setting.time)
         return ", " + " and ".join(parts) if parts else ""
+
+
+def _power(equations: Equations) -> Element:
+    """What changes the energy, and by how much."""
+    balance = Balance(equations)
+    slopes = dict(zip(equations.setting.state, gradient(equations, balance.energy), strict=True))
+    return balance.power + balance.work_along_state(slopes) + lost(equations, balance.energy)
 
 
 def vector_names(motion: Motion, names: Sequence[str]) -> list[str]:

@@ -13,13 +13,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
+from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
 from coadjoint.spec.sections.constraints import Constraint
 from coadjoint.spec.sections.domain import Condition
@@ -38,6 +37,7 @@ from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
 from coadjoint.spec.sections.variables import Variable, state_of
+from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
 
 __all__ = [
     "FORMS",
@@ -71,30 +71,6 @@ __all__ = [
     "state_of",
     "unpacked",
 ]
-
-
-@dataclass(frozen=True)
-class SpatialMomentum:
-    """A momentum as seen from space, emitted where the state has the attitude: ``Pi_spatial``.
-
-    Attributes:
-        momentum: What it is in the body.
-        conserved: Whether the energy knows nothing that is advected and no force acts, so that it
-            stays what it is.
-    """
-
-    momentum: Variable
-    conserved: bool
-
-    @property
-    def name(self) -> str:
-        """Name of the observable."""
-        return f"{self.momentum.name}_spatial"
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, along the basis of the algebra."""
-        return component_names(self.name, self.momentum.shape, self.momentum.form)
 
 
 @dataclass(frozen=True)
@@ -254,17 +230,7 @@ class Spec:
     @property
     def spatial(self) -> tuple[SpatialMomentum, ...]:
         """The momenta seen from space; empty without an attitude that can be inverted."""
-        if self.attitude is None or self.algebra is None:
-            return ()
-        if self.attitude.form != "quaternion" and not inverse_by(self.algebra):
-            return ()
-        advected = self.having_role("advected")
-        names = {name for each in advected for name in (each.name, *each.components)}
-        energies = [f.tree for f in (self.lagrangian, self.hamiltonian) if f is not None]
-        used = {getattr(node, "name", "") for tree in energies for node in walk(tree)}
-        momenta = self.having_role("momentum")
-        free = not names & used and not self.is_driven
-        return tuple(SpatialMomentum(each, free) for each in momenta)
+        return spatial_momenta(self)
 
     @property
     def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:

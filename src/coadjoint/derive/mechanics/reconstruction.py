@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.algebra.attitudes import has_fixed_row
+from coadjoint.algebra.attitudes import has_fixed_row, turning_places
 from coadjoint.algebra.catalogue import inverse_by
 from coadjoint.algebra.matrices import size
 from coadjoint.derive.records import Relation
@@ -37,7 +37,11 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     g = setting.elements(attitude.components)
     mu = setting.elements(setting.momenta)
     if attitude.form == "quaternion":
-        return _turned(setting, Quaternion(*g), mu)
+        places = turning_places(setting.algebra)
+        assert places is not None, "quaternions turn along the rotations"
+        turned = _turned(setting, Quaternion(*g), [mu[place] for place in places])
+        along = dict(zip(places, turned, strict=True))
+        return tuple(along.get(place, m) for place, m in enumerate(mu))
     matrix = _whole(setting, g)
     outer, inner = inverse_of(setting.algebra, matrix), matrix
     if setting.sign == -1:

@@ -25,9 +25,8 @@ def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula
 
     Raises:
         SpecError: There is no such variable, a momentum is named whose velocity has a Lagrangian,
-            the force has another shape, or the motion is restricted.
+            or the force has another shape.
     """
-    check_whole(reading, "forces")
     scope, forced = reading.scope("a force", motion_roles(reading)), _find_forced(reading)
     return {
         name: read_along(reading, ("forces", name), text, scope, forced)
@@ -46,19 +45,6 @@ def _find_forced(reading: Reading) -> Mapping[str, Variable]:
         roles |= {"momentum"}
         roles |= {"coordinate"} if reading.file.poisson is not None else set()
     return {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
-
-
-def check_whole(reading: Reading, table: str) -> None:
-    """Nothing acts on a motion that is restricted to a submanifold."""
-    if getattr(reading.file, table) and reading.file.reduction is not None:
-        raise reading.source.fault(
-            (table,),
-            f"there is [{table}] beside [reduction]",
-            found=table,
-            expected="one of them",
-            hint=f"Write the equations on the submanifold without [reduction], or remove "
-            f"[{table}].",
-        )
 
 
 def read_along(
@@ -103,9 +89,8 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     """Rayleigh's function.
 
     Raises:
-        SpecError: It is no formula of velocities, or the motion is restricted.
+        SpecError: It is no formula of velocities.
     """
-    check_whole(reading, "dissipation")
     key: KeyPath = ("dissipation", "R")
     formula = reading.formula(key, part.R, reading.scope("a dissipation", motion_roles(reading)))
     velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
@@ -116,7 +101,9 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
             "Rayleigh's function names no velocity",
             found=part.R,
             expected="a function of velocities, whose force is -dR/dxi",
-            hint="Declare velocities, or write what acts along a momentum in [forces].",
+            hint="Declare velocities, or write what acts along a momentum in [forces]."
+            if reading.file.reduction is None
+            else "Write what acts along a momentum in [forces].",
         )
     return formula
 

@@ -15,7 +15,6 @@ from coadjoint.spec.core.parts import Accept, Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
-from coadjoint.spec.sections.forces import check_whole
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_of, state_roles
 
 
@@ -63,7 +62,7 @@ def read_double_bracket(reading: Reading, part: DoubleBracketPart) -> Relaxation
     """Dissipation that keeps Casimirs.
 
     Raises:
-        SpecError: The motion is restricted, or G has another size than the state.
+        SpecError: G has another size than the state.
     """
     return Relaxation(_read_metric(reading, "double_bracket", part.G))
 
@@ -89,7 +88,6 @@ def read_metriplectic(reading: Reading, part: MetriplecticPart) -> Relaxation:
 
 def _read_metric(reading: Reading, table: str, text: str) -> Formula:
     """G: a scalar, or a matrix with a row for each component of the state."""
-    check_whole(reading, table)
     key: KeyPath = (table, "G")
     scope = reading.scope("a metric", motion_roles(reading))
     G = reading.formula(key, text, scope, any_shape=True)

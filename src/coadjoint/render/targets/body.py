@@ -1,4 +1,4 @@
-"""Cross-check, reading: what the reader of each language makes of one function.
+"""Targets, reading: what the reader of each language makes of one function.
 
 Comes in: nothing. Goes out: the record that is compared with a Program, and the failure of rung 3.
 Read next: `coadjoint.crosscheck.parse_back`.

@@ -1,4 +1,4 @@
-"""Cross-check, reading C: a function of ``kernel.c`` by the lines that our template prints.
+"""The target C, reading: a function of ``kernel.c`` by the lines that our template prints.
 
 Comes in: the text. Goes out: a `Body` for each branch. This reader shares no code with the printer.
 Read next: `coadjoint.crosscheck.parse_back`.
@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from math import isfinite
 
-from coadjoint.crosscheck.body import Body, failure, joined
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
+from coadjoint.render.targets.body import Body, failure, joined
 
 _TOKEN = re.compile(
     r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/()\[\]])",
