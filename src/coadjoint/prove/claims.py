@@ -139,7 +139,7 @@ EXAMINATIONS = (
     Examination(lambda motion: about_casimirs(carry_over(motion)), names_bracket),
     Examination(about_integrals),
     Examination(about_galilean),
-    Examination(about_momenta, has_frame),
+    Examination(about_momenta),
     Examination(about_reduced_bracket, has_linear_constraints),
     Examination(about_symmetries, has_bracket),
     Examination(lambda motion: about_symmetries(carry_over(motion)), names_bracket),

@@ -18,10 +18,10 @@ from functools import cached_property, partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
-from coadjoint.derive.mechanics.constrained import section_components
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
+from coadjoint.derive.mechanics.sections import section_components
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import determinant, dot
@@ -149,7 +149,7 @@ class ConstrainedRates(Motion):
     def _directions(self) -> list[dict[str, Element]]:
         """The velocities and the declared sections, by the names of the accelerations."""
         found = self.distribution
-        sections = (section_components(found, each) for each in found.setting.spec.sections)
+        sections = (section_components(self.setting, each) for each in self.spec.sections)
         velocities = self.equations.setting.elements(found.independent)
         return [
             dict(zip(map(rate_name, found.independent), map(self.closed, values), strict=True))
