@@ -67,7 +67,7 @@ def read_sections(reading: Reading, parts: Mapping[str, SectionPart]) -> tuple[S
     Raises:
         SpecError: There is no Lagrangian, no such velocity that nothing gives, or a shape differs.
     """
-    if reading.file.lagrangian is None or reading.file.poisson is not None:
+    if parts and (reading.file.lagrangian is None or reading.file.poisson is not None):
         raise reading.source.fault(
             ("momenta",),
             "there is [momenta] without a Lagrangian, or beside a declared bracket",
