@@ -2,10 +2,10 @@ r"""Time reversal: whether the motion runs back when signs of the state are turn
 
 The map :math:`(\eta, z) \mapsto (-\eta, z)` of velocities or momenta takes a motion to its reverse
 if and only if their rates are even and rates of positions odd in them, and constraints that are
-kept hold on both sides. With constraints the kernel solves
-:math:`\mathcal{M}(z)\,\dot\eta = k(\eta, z)`, so that it is enough that k is even. Dissipation,
-forces linear in velocities and moving constraints break it. Time and the rates of inputs turn
-their signs as well.
+kept hold on both sides. With constraints the kernel solves :math:`\mathcal{M}\,\dot\eta = k`, so
+that it is enough that k is even, and :math:`\mathcal{M}` where forces proportional to reactions
+make it depend on velocities. Dissipation, forces linear in velocities and moving constraints break
+it. Time and the rates of inputs turn their signs as well.
 
 Where that map does not reverse a free motion, another change of signs S may: :math:`f(Sx) = -S
 f(x)`. Its signs :math:`(-1)^{s_k}` solve linear equations modulo 2, one for each monomial
@@ -20,11 +20,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from coadjoint.derive.mechanics.driving import turned_by_time
-from coadjoint.derive.mechanics.kinematics import rate_name
+from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.findings import finding, first_nonzero, for_parameters
+from coadjoint.prove.findings import finding, first_nonzero, for_parameters, nonzero_at_a_point
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
@@ -34,11 +34,15 @@ Parity = tuple[frozenset[str], int]
 
 def about_reversal(motion: Motion) -> Iterator[Examined]:
     """Whether the motion is time reversible."""
-    values = reversal_defects(motion)
-    name, decision = first_nonzero(values, motion.field, motion.where)
-    if name and motion.kept:  # a force along a constraint is lost in its reaction
-        values = rate_defects(motion)
+    if all(solve.symmetric for solve in motion.equations.exact.solves):
+        values = reversal_defects(motion)
         name, decision = first_nonzero(values, motion.field, motion.where)
+        if name and motion.kept:  # a force along a constraint is lost in its reaction
+            values = rate_defects(motion)
+            name, decision = first_nonzero(values, motion.field, motion.where)
+    else:  # normal forms of accelerations with friction take minutes
+        values = rate_defects(motion)
+        name, decision = nonzero_at_a_point(values, motion.field, motion.where)
     if name and motion.is_explicit and not isinstance(motion, ConstrainedRates):
         found = _other_signs(motion)
         if found is not None:
@@ -87,11 +91,17 @@ def reversal_defects(motion: Motion) -> dict[str, Element]:
     field, back = motion.field, _back(motion)
     values = {}
     for solve in motion.equations.exact.solves:
-        for name, known in zip(solve.names, solve.known, strict=True):
-            force = motion.equations.closed(known)
-            values[f"the force of {name} is not even in them"] = force - field.substitute(
-                force, back
-            )
+        for name, known, row in zip(solve.names, solve.known, solve.matrix, strict=True):
+            shares = dict(zip(solve.names, row, strict=True)) if not solve.symmetric else {}
+            parts = {"": known} | {
+                f", as far as it is a multiple of {motion.kept[n][0].reaction},": shares[unknown]
+                for n in range(len(motion.kept))
+                if (unknown := multiplier_name(n)) in shares
+            }
+            for which, part in parts.items():
+                force = motion.equations.closed(part)
+                defect = force - field.substitute(force, back)
+                values[f"the force of {name}{which} is not even in them"] = defect
     for name, rate in motion.rates.items():
         if name not in motion.fibre:
             values[f"{rate_name(name)} is not odd in them"] = rate + field.substitute(rate, back)
