@@ -110,7 +110,7 @@ class ConstrainedRates:
             element: In accelerations and multipliers.
             direction: A combination of the equations that may give it, by the names of theirs.
         """
-        rest = self.field.substitute(self.closed(element), self._resting)
+        rest = self.field.substitute(self.closed(element), self.resting)
         parts = []
         for block in self._blocks:
             slopes = self.field.gradient(rest, block.names)
@@ -156,7 +156,7 @@ class ConstrainedRates:
         ]
 
     @cached_property
-    def _resting(self) -> dict[str, Element]:
+    def resting(self) -> dict[str, Element]:
         """What rests on the accelerations, written out in them: other rates and the reactions."""
         solved = {name for solve in self.equations.exact.solves for name in solve.names}
         names = set(self.equations.kept) - solved - self.equations.intermediates
@@ -282,9 +282,11 @@ def _solved(first: Equations) -> list[Element]:
 
 
 def _same_solves(first: Equations, other: Equations) -> list[Element]:
-    """Differences of the linear equations of two routes, and of the rates.
+    """Differences of the linear equations of two routes, of the rates and of the reactions.
 
     The equations are compared entry by entry, whatever blocks each route has found in them.
+    Reactions, and rates of velocities that constraints give, rest on their solution; they are
+    compared where both routes have them.
     """
     one, two = _linear_equations(first), _linear_equations(other)
     field = first.setting.field
@@ -295,7 +297,8 @@ def _same_solves(first: Equations, other: Equations) -> list[Element]:
             defects += [a - field[rate_name(x)], b - field[rate_name(x)]]
         else:
             defects.append(first.closed(a) - other.closed(b))
-    return defects
+    resting, others = (ConstrainedRates(each).resting for each in (first, other))
+    return defects + [resting[name] - others[name] for name in resting if name in others]
 
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
