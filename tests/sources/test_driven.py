@@ -113,6 +113,14 @@ def test_a_hovering_quadrotor_is_controlled_by_thrust_and_torque():
     assert np.linalg.matrix_rank(reached) == 9
 
 
+def test_the_depth_has_a_unit_of_its_own():
+    """So that the energy has one, too."""
+    quadrotor = system("quadrotor")
+    assert quadrotor.OBSERVABLES["energy"].unit == "kg m^2/s^2"
+    motion = quadrotor.simulate(HOVERING, (0, 1), samples=2)
+    assert [motion.unit(name) for name in ("Gamma1", "Gamma4", "P1")] == ["1", "m", "kg m/s"]
+
+
 # -- a spacecraft with wheels ----
 
 
