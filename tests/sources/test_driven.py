@@ -8,6 +8,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from coadjoint.derive import derive
+from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict, prove
 from coadjoint.resources import derivations_folder
 from tests.conftest import rational_points
@@ -298,6 +300,14 @@ def test_a_shaken_top_stays_up_and_a_calmer_one_falls(a, least):
     assert (motion["Gamma"][2].min() > 0.9) == (least > 0)
     assert set(motion.drift) == {"casimir1", "casimir2"}
     assert max(motion.drift.values()) < 1e-8
+
+
+def test_a_weight_that_changes_is_no_cyclic_momentum():
+    """The route of Kaluza and Klein keeps ``p = -m g chi``; the message says what to do."""
+    text = (derivations_folder() / "kapitza_top.toml").read_text(encoding="utf-8")
+    declared = spec(text, ('"newton-euler",', '"newton-euler", "kaluza-klein",'))
+    with pytest.raises(DerivationError, match=r"depends on t.*Remove the route"):
+        derive(declared, "kaluza-klein")
 
 
 def test_the_pivot_is_highest_when_time_begins():
