@@ -8,7 +8,6 @@ from coadjoint.derive import derive, make_setting
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair
-from coadjoint.derive.records import Emitted
 from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove import lax as examined
@@ -167,10 +166,13 @@ def test_a_long_integral_that_no_trace_has_is_refuted(monkeypatch):
     setting = make_setting(shipped("manakov_so4"))
     routes = [derive(setting.spec, route, setting=setting) for route in setting.spec.routes]
     field, first = setting.field, routes[0]
-    seen = {each.name: each for each in first.exact.emitted}
-    (value,) = seen["integral1"].values
-    seen["integral1"] = dataclasses.replace(seen["integral1"], values=(value + field["M12"],))
-    exact = dataclasses.replace(first.exact, emitted=tuple(seen.values()))
+    emitted = tuple(
+        dataclasses.replace(each, values=(each.values[0] + field["M12"],))
+        if each.name == "integral1"
+        else each
+        for each in first.exact.emitted
+    )
+    exact = dataclasses.replace(first.exact, emitted=emitted)
     spoiled = [dataclasses.replace(first, exact=exact), *routes[1:]]
     examine = {text: decide for text, _, decide in examined.about_pairs(spoiled)}
     (decide,) = [decide for text, decide in examine.items() if text.startswith("integral1, from")]
@@ -185,8 +187,9 @@ def test_an_integral_that_is_missing_is_noticed():
     less = type(found)(found.pair, found.coefficients, ())
     assert examined._complete(first, less, 4).verdict is Verdict.REFUTED
     twice = type(found)(found.pair, found.coefficients, found.emitted * 2)
-    again = [Emitted(name, (), (name,), "", (value,)) for name, value in twice.named]
-    exact = dataclasses.replace(first.exact, emitted=(*first.exact.emitted, *again))
+    (one,) = (each for each in first.exact.emitted if each.name == "integral1")
+    again = dataclasses.replace(one, name="integral2", components=("integral2",))
+    exact = dataclasses.replace(first.exact, emitted=(*first.exact.emitted, again))
     first = dataclasses.replace(first, exact=exact)
     assert examined._complete(first, twice, 4).verdict is Verdict.REFUTED
 

@@ -53,7 +53,7 @@ class Setting:
     field: Field
     values: Mapping[str, Quantity]
     built: dict[Callable[[Setting], object], object] = attribute(
-        default_factory=dict, repr=False, compare=False
+        default_factory=dict, init=False, repr=False, compare=False
     )
 
     # -- names, in the order of the algebra ---------------------------------------------

@@ -88,6 +88,7 @@ _ROUTES = (
     Route("alignment", _SPACE, table="newton", emitted=False),
     _in_frame("nonholonomic"),
     _in_frame("hamel", emitted=False),
+    _in_frame("nonholonomic-hamilton-pontryagin", emitted=False),
 )
 #: Every route by its name.
 ROUTES: Mapping[str, Route] = MappingProxyType({route.name: route for route in _ROUTES})
