@@ -16,6 +16,7 @@ from time import perf_counter
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.domain import region
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.mechanics.reconstruction import fixed_row
@@ -174,6 +175,8 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from about_reduction(first)
     for other in routes[1:]:
         yield from _about_equality(first, other, pulled)
+    for chart in declared_charts(first):
+        yield from _about_chart(first, chart)
     yield from _about_motion(first)
     yield from about_pairs(routes)
 
@@ -312,14 +315,15 @@ def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
     where = f", where {relations}" if relations else ""
     elements = [relation.element for relation in other.chart.relations]
     held = while_constant(other, [*elements, *other.chart.state])
+    name = other.way if other.chart.name else other.route
     through = f"through {other.chart.through}{where}{held}"
     yield (
-        f"{first.route} and {other.route} give the same motion, {through}",
+        f"{first.route} and {name} give the same motion, {through}",
         "equivalence",
         chart_map.related,
     )
     if relations:
-        yield f"the route {other.route} keeps {relations}{held}", "equivalence", chart_map.kept
+        yield f"{other.way} keeps {relations}{held}", "equivalence", chart_map.kept
     statement, decision = reach(chart_map)
     yield statement, "equivalence", lambda: decision
 
