@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
-from difflib import get_close_matches
 from types import MappingProxyType, NoneType
 from typing import Annotated, Any, get_args, get_origin
 
@@ -20,7 +19,7 @@ from pydantic_core import ErrorDetails
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.core.decimals import read_float
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, find_near, listed
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, Span
 from coadjoint.spec.core.source import Source, joined, shown
@@ -198,7 +197,7 @@ def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
     for detail in details:
         *table, key = detail["loc"]
         if detail["type"] == "extra_forbidden":
-            meant |= {(*table, near) for near in get_close_matches(str(key), _keys(detail["loc"]))}
+            meant |= {(*table, near) for near in find_near(str(key), _keys(detail["loc"]))}
     return [d for d in details if d["type"] != "missing" or tuple(d["loc"]) not in meant]
 
 
