@@ -15,6 +15,7 @@ DISTRIBUTIONS = ("tests/derive/test_distribution.py", "-k", "annihilate or affin
 SLEIGH, BALL = ("chaplygin_sleigh",), ("chaplygin_ball_centred",)
 #: Systems that depend on time, with rates typed by hand.
 DRIVEN = ("tests/derive/test_driving.py",)
+PRINCIPLE = "nonholonomic-hamilton-pontryagin"
 PARTICLE = (BY_HAND, "-k", "particle")
 AFFINE = (BY_HAND, "-k", "constraint_that_moves")
 MOVING_MASS = (BY_HAND, "-k", "mass_that_moves")
@@ -117,6 +118,41 @@ CONSTRAINED_LAGRANGIAN = (
         "hamel",
         (),
         ("+ driven - carried", "- driven - carried"),
+        tests=FORCED,
+    ),
+)
+
+#: The principle with momenta and multipliers.
+VARIED = (
+    *of(
+        PRINCIPLE,
+        "nonholonomic_hamilton_pontryagin",
+        BALL,
+        ("moved) - force - outer", "moved) + force - outer", "F of the other sign"),
+        ("outer - reaction", "outer + reaction", "reactions of the other sign"),
+        (
+            "field.substitute(left[name], multipliers)",
+            "field.substitute(left[name], dict.fromkeys(multipliers, field.zero))",
+            "reactions that turn nothing",
+        ),
+        (
+            "known.momenta[:own])",
+            "known.momenta[:3] + (setting.field.zero,) * 3)",
+            "momenta of given velocities put in before varying",
+        ),
+        ("own + field.sum(slope * x", "own - field.sum(slope * x"),
+    ),
+    *of(
+        PRINCIPLE,
+        "nonholonomic_hamilton_pontryagin",
+        ("suslov",),
+        ("-field[multiplier_name(n)]", "field[multiplier_name(n)]"),
+    ),
+    *of(
+        PRINCIPLE,
+        "nonholonomic_hamilton_pontryagin",
+        (),
+        ("force - outer - reaction", "force + outer - reaction"),
         tests=FORCED,
     ),
 )

@@ -147,7 +147,7 @@ def test_combinations_of_rows_give_what_determinants_give(monkeypatch):
     monkeypatch.setattr(ConstrainedRates, "_weights", lambda *_: iter(()))
     for function, value in zip(functions, short, strict=True):
         assert of.field.is_zero(of.value(weighted(of, function)) - value)
-    monkeypatch.setattr(ConstrainedRates, "_along", lambda self, block, c: block.known[0])
+    monkeypatch.setattr(ConstrainedRates, "_along", lambda self, block, *_: block.known[0])
     assert not of.field.is_zero(of.value(weighted(of, functions[0])) - short[0])
 
 

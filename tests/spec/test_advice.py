@@ -21,6 +21,15 @@ from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
 END = "[claims]"
+BARE = """
+title = "A Lax pair alone"
+routes = ["lax"]
+[variables]
+x = { role = "coordinate", shape = [3] }
+[lax]
+L = "hat(x)"
+M = "hat(vector(x1, 2*x2, 3*x3))"
+"""
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
 ONE = 'routes = ["euler-poincare"]'
@@ -120,6 +129,12 @@ ADVICE = [
         write("[hamiltonian]", '[representations.r]\nleft = "a"\n[hamiltonian]'),
         "Remove [representations].",
         write('[representations.r]\nleft = "a"\n', ""),
+    ),
+    (
+        BARE,
+        write("[lax]", 'v = { role = "velocity", of = "x" }\n[lax]'),
+        "Write M in variables of the state, or declare [hamiltonian].",
+        write('v = { role = "velocity", of = "x" }\n', ""),
     ),
     # -- what acts
     (RIGID_BODY, write(END, SHAKEN), "remove it from [inputs].", write(SHAKEN, END)),
@@ -369,6 +384,13 @@ ADVICE = [
         "Write for instance 'Y == cross(Omega, s)'.",
         write('"u = 0"', '"u == 0"'),
     ),
+    (
+        PARTICLE,
+        write("[constraints]", '[definitions]\npull = "blade_reaction"\n[constraints]')
+        + write('"w == y*u"', '"w == pull*u"'),
+        "Write pull without reactions, or use it in [forces] alone.",
+        write('pull = "blade_reaction"', 'pull = "y"'),
+    ),
     # -- further tables
     (
         LAW,
@@ -385,7 +407,7 @@ ADVICE = [
     (
         CANONICAL,
         write("[parameters]", 'k = { role = "coordinate" }\n[parameters]'),
-        "Declare a constant as a parameter.",
+        "Declare a constant as a parameter, or let a force or [metriplectic] move it.",
         write('k = { role = "coordinate" }\n[parameters]', "[parameters]\nk = {}"),
     ),
     (
@@ -535,6 +557,7 @@ ELSEWHERE = {
     "Write diag(m) for a mass of each row.": "test_newton.py",
     "Remove the momentum ": "below",
     "The first is in line ": "names the place",
+    "Blocks of ": "names what there is",
     "is not part of the language": "a problem and no advice",
     "there is no such ": "a problem and no advice",
     " do not fit": "a problem and no advice",
@@ -550,11 +573,13 @@ def find_advice(folder):
                 getattr(n, "id", "") for t in getattr(node, "targets", []) for n in ast.walk(t)
             ]
             is_hint = getattr(node, "arg", "") == "hint" and isinstance(node, ast.keyword)
-            if is_hint or "hint" in names:
-                place = f"{path.name}:{node.value.lineno}"
-                found[place] = [
+            value = node.value if is_hint or "hint" in names else None
+            if getattr(getattr(node, "func", None), "attr", "") == "at_key" and node.args[4:]:
+                value = node.args[4]
+            if value is not None:
+                found[f"{path.name}:{value.lineno}"] = [
                     piece.value
-                    for piece in ast.walk(node.value)
+                    for piece in ast.walk(value)
                     if isinstance(piece, ast.Constant)
                     and isinstance(piece.value, str)
                     and len(piece.value.split()) > 1

@@ -81,7 +81,7 @@ def test_forces_sections_and_dissipation_are_read():
     assert (section.name, list(section.section), section.unit) == ("J", ["u", "v"], "kg")
 
 
-ROUTES = 'routes = ["nonholonomic", "hamel"]'
+ROUTES = 'routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]'
 CLAIMS = "[claims]"
 FAULTS = [
     ((BLADE, ""), "constraints", "an empty table", "expected at least 1 item."),
@@ -93,8 +93,8 @@ FAULTS = [
         "knows no constraints",
     ),
     (
-        ('"hamel"]', '"euler-lagrange"]'),
-        "routes[2]",
+        ('"nonholonomic-hamilton-pontryagin"]', '"euler-lagrange"]'),
+        "routes[3]",
         "euler-lagrange",
         'Remove "euler-lagrange", or remove [constraints].',
     ),
@@ -120,10 +120,16 @@ FAULTS = [
         "expected a scalar, as 'u' is",
     ),
     (
-        (CLAIMS, '[forces]\nu = "blade_reaction"\n[claims]'),
+        (CLAIMS, '[forces]\nu = "edge_reaction"\n[claims]'),
         "forces.u",
-        "blade_reaction",
-        "'blade_reaction' is not declared",
+        "edge_reaction",
+        "'edge_reaction' is not declared",
+    ),
+    (
+        (BLADE, BLADE + '\nslow = "u == pull*v"\n[definitions]\npull = "blade_reaction"'),
+        "constraints.slow",
+        "pull",
+        "Write pull without reactions, or use it in [forces] alone.",
     ),
     (
         (CLAIMS, '[dissipation]\nR = "vector(u, v)"\n[claims]'),

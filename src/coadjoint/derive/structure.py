@@ -105,7 +105,15 @@ def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
 
 
 def _reordered(structure: PoissonStructure, names: Sequence[str]) -> PoissonStructure:
-    """The same bracket with its coordinates in another order."""
-    places = [structure.names.index(name) for name in names]
-    tensor = tuple(tuple(structure.tensor[i][j] for j in places) for i in places)
+    """The same bracket with its coordinates in another order; others commute with everything."""
+    places = dict(zip(structure.names, range(len(structure.names)), strict=True))
+    tensor = tuple(
+        tuple(
+            structure.tensor[places[a]][places[b]]
+            if {a, b} <= places.keys()
+            else structure.field.zero
+            for b in names
+        )
+        for a in names
+    )
     return PoissonStructure(structure.field, tuple(names), tensor, structure.name)

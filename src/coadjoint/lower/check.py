@@ -7,7 +7,7 @@ second rung of the ladder: sharing, factoring and naming may not change a single
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -40,6 +40,18 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
     if not rows.by:
         return values
     return [slope for value in values for slope in equations.setting.field.gradient(value, rows.by)]
+
+
+def check_programs(equations: Equations, programs: Mapping[str, Program]) -> None:
+    """Hold each function to the limits of size, and to the equations that it was lowered from.
+
+    Raises:
+        LimitError: One is too large.
+        CrossCheckError: Lowering changed a value.
+    """
+    for program in programs.values():
+        check_size(equations, program)
+        check_inverse(equations, program)
 
 
 def check_size(equations: Equations, program: Program) -> None:

@@ -193,7 +193,7 @@ _REWRITE = (
     "without functions that hide the identity, or leave out the route."
 )
 #: What is likely wrong where a claim is refuted, in general and by kind.
-_FIX = "Correct the claim, or the Lagrangian or Hamiltonian that contradicts it."
+_FIX = "Correct the claim, or the formulas of the spec that contradict it."
 _FIXES = MappingProxyType(
     {
         "rolling": "The body slips or leaves the plane: correct the arm in [rolling], the profile "

@@ -13,8 +13,10 @@ Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
+from types import MappingProxyType
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
@@ -32,6 +34,8 @@ from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
+#: No combination of the equations of motion.
+NO_DIRECTION: Mapping[str, Element] = MappingProxyType({})
 #: Characters of a determinant that a statement shows.
 SHORT = 60
 
@@ -74,6 +78,18 @@ class ConstrainedRates:
         """The time derivative of a function of state and velocities, or of reactions."""
         return self.value(self._carried(self.in_state(function)))
 
+    def balance(self, function: Element, gain: Element, along: Row) -> Element:
+        """The time derivative of a function minus what it gains, in the state alone.
+
+        Args:
+            function: Of state and velocities.
+            gain: Affine in the reactions.
+            along: The vector of the frame whose equation of motion says so, if there is one.
+        """
+        names = self.distribution.frame.velocities
+        direction = {rate_name(n): self.closed(x) for n, x in zip(names, along, strict=False)}
+        return self.value(self._carried(self.in_state(function)) - gain, direction)
+
     def _carried(self, function: Element) -> Element:
         """The time derivative of a function of state and time, in accelerations."""
         own = explicit(self.equations.setting, function)
@@ -87,25 +103,30 @@ class ConstrainedRates:
         rests = self.field.reach(closed) & set(self.equations.kept)
         return self.value(closed) if rests else closed
 
-    def value(self, element: Element) -> Element:
-        """An element affine in accelerations and multipliers, in the state alone."""
-        rest = self.field.substitute(self.closed(element), self._resting)
+    def value(self, element: Element, direction: Mapping[str, Element] = NO_DIRECTION) -> Element:
+        """An element affine in accelerations and multipliers, in the state alone.
+
+        Args:
+            element: In accelerations and multipliers.
+            direction: A combination of the equations that may give it, by the names of theirs.
+        """
+        rest = self.field.substitute(self.closed(element), self.resting)
         parts = []
         for block in self._blocks:
             slopes = self.field.gradient(rest, block.names)
             if any(slope != 0 for slope in slopes):
-                parts.append(self._along(block, slopes))
+                parts.append(self._along(block, slopes, direction))
         unknown = {name: self.field.zero for block in self._blocks for name in block.names}
         return self.field.sum([self.field.substitute(rest, unknown), *parts])
 
-    def _along(self, block: Solve, c: Row) -> Element:
+    def _along(self, block: Solve, c: Row, direction: Mapping[str, Element]) -> Element:
         """``c . x`` where x solves a block.
 
         No determinant is needed where ``c = w M``: for the energy w is eta, for the momentum along
         a section of the distribution it is that section, and a unit vector for its basis.
         """
         field = self.field
-        for weights in self._weights(block):
+        for weights in self._weights(block, direction):
             turned = (dot(weights, column) for column in zip(*block.matrix, strict=True))
             if all(field.is_zero(x - y) for x, y in zip(turned, c, strict=True)):
                 return dot(weights, block.known)
@@ -115,12 +136,12 @@ class ConstrainedRates:
         )
         return -determinant(bordered) / determinant(tuple(map(tuple, block.matrix)))
 
-    def _weights(self, block: Solve) -> Iterator[Row]:
+    def _weights(self, block: Solve, direction: Mapping[str, Element]) -> Iterator[Row]:
         """Combinations of the equations of a block that are worth a trial."""
         one, zero = self.field.one, self.field.zero
         for name in block.names:
             yield tuple(one if name == other else zero for other in block.names)
-        for values in self._directions:
+        for values in (*self._directions, *([direction] if direction else [])):
             yield tuple(values.get(name, zero) for name in block.names)
 
     @cached_property
@@ -135,7 +156,7 @@ class ConstrainedRates:
         ]
 
     @cached_property
-    def _resting(self) -> dict[str, Element]:
+    def resting(self) -> dict[str, Element]:
         """What rests on the accelerations, written out in them: other rates and the reactions."""
         solved = {name for solve in self.equations.exact.solves for name in solve.names}
         names = set(self.equations.kept) - solved - self.equations.intermediates
@@ -149,11 +170,10 @@ class ConstrainedRates:
     def _blocks(self) -> list[Solve]:
         """Every solve, in the state alone."""
         return [
-            Solve(
-                tuple(tuple(map(self.closed, row)) for row in solve.matrix),
-                list(map(self.closed, solve.known)),
-                solve.block,
-                solve.names,
+            replace(
+                solve,
+                matrix=tuple(tuple(map(self.closed, row)) for row in solve.matrix),
+                known=list(map(self.closed, solve.known)),
             )
             for solve in self.equations.exact.solves
         ]
@@ -173,8 +193,11 @@ def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> 
         text = f"the {count} constraints are" if count > 1 else "the constraint is"
         rank, decision = _rank(found)
         yield f"{text} independent: {rank}", "constraint", lambda: decision
+    matrix, factored = "B^T M B", "L D L^T"
+    if not all(solve.symmetric for solve in first.exact.solves):
+        matrix, factored = "[[B^T M B, A^T + C], [A, 0]], with forces k + C lambda", "W U"
     yield (
-        "the kernel solves for the accelerations: L D L^T = B^T M B",
+        f"the kernel solves for the accelerations: {factored} = {matrix}",
         "constraint",
         lambda: _solved(first),
     )
@@ -259,9 +282,11 @@ def _solved(first: Equations) -> list[Element]:
 
 
 def _same_solves(first: Equations, other: Equations) -> list[Element]:
-    """Differences of the linear equations of two routes, and of the rates.
+    """Differences of the linear equations of two routes, of the rates and of the reactions.
 
     The equations are compared entry by entry, whatever blocks each route has found in them.
+    Reactions, and rates of velocities that constraints give, rest on their solution; they are
+    compared where both routes have them.
     """
     one, two = _linear_equations(first), _linear_equations(other)
     field = first.setting.field
@@ -272,7 +297,8 @@ def _same_solves(first: Equations, other: Equations) -> list[Element]:
             defects += [a - field[rate_name(x)], b - field[rate_name(x)]]
         else:
             defects.append(first.closed(a) - other.closed(b))
-    return defects
+    resting, others = (ConstrainedRates(each).resting for each in (first, other))
+    return defects + [resting[name] - others[name] for name in resting if name in others]
 
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:

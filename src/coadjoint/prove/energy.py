@@ -102,7 +102,7 @@ class Balance:
             if variable.name in self.spec.forces and variable.role != "velocity"
             for name, part in zip(
                 variable.components,
-                self.setting.components(self.spec.forces[variable.name]),
+                self.setting.components(self.spec.forces[variable.name], self.setting.reactions),
                 strict=True,
             )
         )
@@ -125,7 +125,7 @@ class Balance:
         """``<dR/dxi, xi>``."""
         if self.spec.dissipation is None:
             return self.field.zero
-        R = self.setting.formula(self.spec.dissipation)
+        R = self.setting.formula(self.spec.dissipation, self.setting.reactions)
         slopes = self.field.gradient(R, self._velocities)
         pairs = zip(slopes, self.setting.elements(self._velocities), strict=True)
         return self.field.sum(slope * xi for slope, xi in pairs)
@@ -134,7 +134,7 @@ class Balance:
     def _is_quadratic(self) -> bool:
         """Whether ``<dR/dxi, xi> = 2 R``, as of every R quadratic in the velocities."""
         assert self.spec.dissipation is not None, "asked for only beside R"
-        R = self.setting.formula(self.spec.dissipation)
+        R = self.setting.formula(self.spec.dissipation, self.setting.reactions)
         return self.field.is_zero(self._lost - 2 * R)
 
     def _work_along_velocities(self) -> list[Element]:
@@ -142,7 +142,8 @@ class Balance:
         found = [-self._lost]
         for variable in self.spec.having_role("velocity"):
             if variable.name in self.spec.forces:
-                parts = self.setting.components(self.spec.forces[variable.name])
+                force = self.spec.forces[variable.name]
+                parts = self.setting.components(force, self.setting.reactions)
                 moved = self.setting.elements(variable.components)
                 found += [f * xi for f, xi in zip(parts, moved, strict=True)]
         return found

@@ -32,6 +32,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
+from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import solve_with_right_side
 from coadjoint.exact.dense import determinant
@@ -114,15 +115,26 @@ class Measure:
                 velocity = self._accelerated(name)
                 if velocity is None:
                     continue
-                slopes = [
-                    field.derivative(self.motion.closed(known), velocity) for known in solve.known
-                ]
+                slopes = [self._slope(solve, n, velocity) for n in range(len(matrix))]
                 turned = tuple(
                     (*row[:place], k, *row[place + 1 :])
                     for row, k in zip(matrix, slopes, strict=True)
                 )
                 parts.append(determinant(turned) / whole)  # Cramer's rule
         return field.sum([*of_positions, *parts])
+
+    def _slope(self, solve: Solve, row: int, velocity: str) -> Element:
+        """How ``(k - A x)_row`` changes with a velocity at fixed x.
+
+        A depends on velocities where a force is proportional to a reaction.
+        """
+        field, motion = self.field, self.motion
+        slope = field.derivative(motion.closed(solve.known[row]), velocity)
+        if solve.symmetric:
+            return slope
+        entries = (field.derivative(motion.closed(a), velocity) for a in solve.matrix[row])
+        pairs = zip(entries, solve.names, strict=True)
+        return slope - field.sum(a * motion.in_state(field[x]) for a, x in pairs if a != 0)
 
     def _accelerated(self, name: str) -> str | None:
         """The velocity of which a solved name is the rate; None for a multiplier."""
@@ -459,5 +471,6 @@ def _name(motion: ConstrainedRates, factor: Element) -> str:
     for solve in motion.equations.exact.solves:
         whole = determinant(tuple(tuple(map(motion.closed, row)) for row in solve.matrix))
         if len(solve.block) == len(motion.distribution.independent) + len(kept) and whole == factor:
-            return "|det [[B^T M B, A^T], [A, 0]]|" if kept else "det(B^T M B)"
+            corner = "A^T" if solve.symmetric else "A^T + C"
+            return f"|det [[B^T M B, {corner}], [A, 0]]|" if kept else "det(B^T M B)"
     return ""

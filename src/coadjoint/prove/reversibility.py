@@ -2,8 +2,9 @@ r"""Time reversal: whether the motion runs back when its velocities are turned r
 
 The map :math:`(\eta, z) \mapsto (-\eta, z)` takes a motion to its reverse if and only if
 accelerations are even and rates of positions odd in the velocities, and constraints that are kept
-hold on both sides. The kernel solves :math:`\mathcal{M}(z)\,\dot\eta = k(\eta, z)`, so that it is
-enough that k is even. Dissipation, forces linear in velocities and moving constraints break it.
+hold on both sides. The kernel solves :math:`\mathcal{M}\,\dot\eta = k`, so that it is enough
+that k is even, and :math:`\mathcal{M}` where forces proportional to reactions make it depend on
+velocities. Dissipation, forces linear in velocities and moving constraints break it.
 Comes in: rates along a constrained motion. Goes out: a finding for the certificate.
 Read next: `coadjoint.prove.constrained`.
 """
@@ -12,20 +13,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from coadjoint.derive.mechanics.kinematics import rate_name
+from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
 from coadjoint.exact import Element
 from coadjoint.prove.constrained import ConstrainedRates
-from coadjoint.prove.findings import finding, first_nonzero, for_parameters
+from coadjoint.prove.findings import finding, first_nonzero, for_parameters, nonzero_at_a_point
 from coadjoint.prove.zero import Examined
 
 
 def about_reversal(motion: ConstrainedRates) -> Iterator[Examined]:
     """Whether the motion is time reversible."""
-    values = reversal_defects(motion)
-    name, decision = first_nonzero(values, motion.field, motion.where)
-    if name and motion.distribution.kept:  # a force along a constraint is lost in its reaction
-        values = rate_defects(motion)
+    if all(solve.symmetric for solve in motion.equations.exact.solves):
+        values = reversal_defects(motion)
         name, decision = first_nonzero(values, motion.field, motion.where)
+        if name and motion.distribution.kept:  # a force along a constraint is lost in its reaction
+            values = rate_defects(motion)
+            name, decision = first_nonzero(values, motion.field, motion.where)
+    else:  # normal forms of accelerations with friction take minutes
+        values = rate_defects(motion)
+        name, decision = nonzero_at_a_point(values, motion.field, motion.where)
     names = [v.name for v in motion.equations.spec.state if v.role == "velocity"]
     turned = ", ".join(f"{name} -> -{name}" for name in names)
     scope = for_parameters(motion.equations.setting, [values.get(name, motion.field.zero)])
@@ -57,11 +62,17 @@ def reversal_defects(motion: ConstrainedRates) -> dict[str, Element]:
     back = {name: -field[name] for name in found.independent}
     values = {}
     for solve in equations.exact.solves:
-        for name, known in zip(solve.names, solve.known, strict=True):
-            force = equations.closed(known)
-            values[f"the force of {name} is not even in them"] = force - field.substitute(
-                force, back
-            )
+        for name, known, row in zip(solve.names, solve.known, solve.matrix, strict=True):
+            shares = dict(zip(solve.names, row, strict=True)) if not solve.symmetric else {}
+            parts = {"": known} | {
+                f", as far as it is a multiple of {found.kept[n][0].reaction},": shares[unknown]
+                for n in range(len(found.kept))
+                if (unknown := multiplier_name(n)) in shares
+            }
+            for which, part in parts.items():
+                force = equations.closed(part)
+                defect = force - field.substitute(force, back)
+                values[f"the force of {name}{which} is not even in them"] = defect
     for name, rate in motion.rates.items():
         if name not in back:
             values[f"{rate_name(name)} is not odd in them"] = rate + field.substitute(rate, back)

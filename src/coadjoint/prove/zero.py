@@ -170,6 +170,20 @@ def decide_zero(
     return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {found} random points")
 
 
+def refute_at_a_point(element: Element, ring: Field, where: Ideal) -> Decision | None:
+    """A point where relations hold and an element is not zero; None where none is found.
+
+    No normal form is taken, which may be long.
+    """
+    for branch in where.branches:
+        with suppress(ZeroDivisionError, UndecidedError):
+            value = ring.substitute(element, branch.solved)
+            found = _look([value], ring, branch, where.scope, where.given)
+            if isinstance(found, Decision):
+                return found
+    return None
+
+
 class UndecidedError(ClaimError):
     """Nothing is known of a claim: no point is found at which it could fail."""
 

@@ -90,6 +90,7 @@ def check_routes(reading: Reading) -> None:
         SpecError: Something is missing for a route, or is used by none.
     """
     file = reading.file
+    _check_bare(reading)
     for place, route in enumerate(file.routes):
         obstacles = list(_find_obstacles(file, route))
         if obstacles:
@@ -116,13 +117,34 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
     if not start.takes_driving and (file.inputs or file.time):
         yield _Obstacle("knows neither inputs nor time")
     energies = energies_of(route, kinds)
-    if energies and not any(getattr(file, each) for each in energies):
+    if not start.needs_energy:
+        if not _is_bare(file) and kinds == ("configuration",):
+            yield _Obstacle("knows no bracket of coordinates with velocities or momenta")
+    elif energies and not any(getattr(file, each) for each in energies):
         names = [each.title() for each in energies]
         one_of = f"no {names[0]}" if len(names) == 1 else f"neither a {' nor a '.join(names)}"
         yield _Obstacle(f"has {one_of}", energies)
     for table in TABLES:
         if table.acts and getattr(file, table.key) and table.key not in start.options:
             yield _Obstacle(f"knows no {table.key}", acting=table.key)
+
+
+def _is_bare(file: Any) -> bool:
+    """Whether a Lax pair alone moves the state."""
+    return bool(file.lax) and not (file.hamiltonian or file.lagrangian or file.newton)
+
+
+def _check_bare(reading: Reading) -> None:
+    """Where a Lax pair alone moves the state, there are no velocities."""
+    velocities = [each.name for each in VARIABLES.of(reading) if each.role == "velocity"]
+    if _is_bare(reading.file) and velocities:
+        raise reading.at_key(
+            ("variables", velocities[0]),
+            f"the velocity {velocities[0]!r} has no energy to follow from",
+            velocities[0],
+            "a Lax pair of the state alone, or a table [hamiltonian] beside it",
+            "Write M in variables of the state, or declare [hamiltonian].",
+        )
 
 
 def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
@@ -298,7 +320,7 @@ def check_covered(reading: Reading) -> None:
             _check_partners(reading)
         if file.lagrangian is not None:
             _check_spanned(reading, "velocity", "Omega", algebra)
-    elif file.poisson is None or file.lagrangian is not None:
+    elif (file.poisson is None and not _is_bare(file)) or file.lagrangian is not None:
         _check_partners(reading)
 
 

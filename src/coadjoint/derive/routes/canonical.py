@@ -113,7 +113,7 @@ def _hamilton(
         magnetic: B.
     """
     field = setting.field
-    rates: dict[str, Element] = {}
+    rates = dict.fromkeys(setting.state, field.zero)  # what is in no pair rests
     for q, p, weight in pairs:
         rates[q] = velocities[p] if p in velocities else slopes[p] * weight
         turning = field.sum(magnetic[p, k] * slopes[k] for _, k, _ in pairs if (p, k) in magnetic)

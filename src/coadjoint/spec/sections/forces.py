@@ -18,6 +18,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
+from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
 
 
@@ -28,7 +29,9 @@ def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula
         SpecError: There is no such variable, a momentum is named whose velocity has a Lagrangian,
             or the force has another shape.
     """
-    scope, forced = reading.scope("a force", motion_roles(reading)), _find_forced(reading)
+    reactions = reaction_shapes(CONSTRAINTS.of(reading))  # which friction is proportional to
+    scope = reading.scope("a force", motion_roles(reading), reactions)
+    forced = _find_forced(reading)
     return {
         name: read_along(reading, ("forces", name), text, scope, forced)
         for name, text in texts.items()
@@ -102,7 +105,9 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
         SpecError: It is no formula of velocities.
     """
     key: KeyPath = ("dissipation", "R")
-    formula = reading.formula(key, part.R, reading.scope("a dissipation", motion_roles(reading)))
+    reactions = reaction_shapes(CONSTRAINTS.of(reading))
+    scope = reading.scope("a dissipation", motion_roles(reading), reactions)
+    formula = reading.formula(key, part.R, scope)
     velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
     known = {name for each in velocities for name in (each.name, *each.components)}
     if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
