@@ -39,6 +39,7 @@ class Mutant:
 ALGEBRA = "src/coadjoint/algebra/"
 FAMILIES = ALGEBRA + "families.py"
 GROUPS = "src/coadjoint/groups/"
+THEORY = "src/coadjoint/theory/"
 POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
@@ -222,43 +223,43 @@ MUTANTS = (
     # groups
     Mutant(EXACT + "dense.py", "a3 * b1 - a1 * b3", "a1 * b3 - a3 * b1"),
     Mutant(
-        GROUPS + "group.py",
+        THEORY + "group.py",
         "product(g, self.matrix(eta), self.inverse(g))",
         "product(self.inverse(g), self.matrix(eta), g)",
     ),
     Mutant(
-        GROUPS + "group.py",
+        THEORY + "group.py",
         "zip(mu, column, strict=True))\n            for column in transpose(self.Ad_matrix(g))",
         "zip(mu, column, strict=True))\n            for column in self.Ad_matrix(g)",
     ),
-    Mutant(GROUPS + "group.py", "self.algebra.ad_star(xi, mu)", "self.algebra.ad_star(mu, xi)"),
-    Mutant(GROUPS + "actions.py", "inverse, xi = group.inverse(g)", "inverse, xi = g"),
+    Mutant(THEORY + "group.py", "self.algebra.ad_star(xi, mu)", "self.algebra.ad_star(mu, xi)"),
+    Mutant(THEORY + "actions.py", "inverse, xi = group.inverse(g)", "inverse, xi = g"),
     Mutant(
-        GROUPS + "actions.py",
+        THEORY + "actions.py",
         "left_translation(group.matrix(xi))",
         "right_translation(group.matrix(xi))",
     ),
     Mutant(
-        GROUPS + "maps.py", "-HALF * trace(product(mu, xi)).re", "HALF * trace(product(mu, xi)).re"
+        THEORY + "maps.py", "-HALF * trace(product(mu, xi)).re", "HALF * trace(product(mu, xi)).re"
     ),
-    Mutant(GROUPS + "maps.py", "HALF * (mu[k][j] - mu[j][k])", "HALF * (mu[j][k] - mu[k][j])"),
-    Mutant(GROUPS + "maps.py", "((zero, -a3, a2), (a3", "((zero, a3, a2), (a3"),
+    Mutant(THEORY + "maps.py", "HALF * (mu[k][j] - mu[j][k])", "HALF * (mu[j][k] - mu[k][j])"),
+    Mutant(EXACT + "dense.py", "((zero, -a3, a2), (a3", "((zero, a3, a2), (a3"),
     Mutant(GROUPS + "quaternions.py", "a * x + b * w - s * (", "a * x + b * w + s * ("),
     Mutant(GROUPS + "quaternions.py", "- self.square * planes", "+ self.square * planes"),
-    Mutant(GROUPS + "rotations.py", "return mu * xi - xi * mu", "return xi * mu - mu * xi"),
-    Mutant(GROUPS + "hopf.py", "scale(-4, cross(n, dH_dn))", "scale(4, cross(n, dH_dn))"),
-    Mutant(GROUPS + "charts.py", "(zeta.norm - 1) / below", "(1 - zeta.norm) / below"),
+    Mutant(THEORY + "rotations.py", "return mu * xi - xi * mu", "return xi * mu - mu * xi"),
+    Mutant(THEORY + "hopf.py", "scale(-4, cross(n, dH_dn))", "scale(4, cross(n, dH_dn))"),
+    Mutant(THEORY + "charts.py", "(zeta.norm - 1) / below", "(1 - zeta.norm) / below"),
     Mutant(
-        GROUPS + "vector_fields.py",
+        THEORY + "vector_fields.py",
         "return -lie_derivative(u, curl(u))",
         "return lie_derivative(u, curl(u))",
     ),
     Mutant(
-        GROUPS + "vector_fields.py",
+        THEORY + "vector_fields.py",
         "*scale(-1, field.gradient(energy, positions))",
         "*field.gradient(energy, positions)",
     ),
-    Mutant(GROUPS + "central_forces.py", "scale(-lam / d**3,", "scale(lam / d**3,"),
+    Mutant(THEORY + "central_forces.py", "scale(-lam / d**3,", "scale(lam / d**3,"),
     Mutant(GROUPS + "complex_numbers.py", "(-z.im for z in row)", "(z.im for z in row)"),
     # Poisson brackets
     Mutant(
@@ -291,7 +292,7 @@ MUTANTS = (
     ),
     Mutant(POISSON + "polynomial_bracket.py", "+ value * power", "+ value"),
     Mutant(
-        POISSON + "nambu_theory.py",
+        THEORY + "nambu.py",
         "(x1**2 + x2**2 + x3**2) / 2 - i3 * h",
         "(x1**2 + x2**2 + x3**2) / 2 + i3 * h",
     ),

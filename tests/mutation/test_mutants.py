@@ -22,14 +22,18 @@ SOURCES = "tests/sources/"
 EQUATIONS = SOURCES + "test_equations.py"
 #: Kernels of systems with parameters and zero rows; the others are built the same way.
 KERNELS = (SOURCES + "test_kernels.py", "-k", "heavy_top or bargmann")
-GROUP_ROWS = ("actions", "semidirect_actions", "quaternions", "vector_fields", "galileo")
+GROUP_ROWS = tuple(
+    f"{SOURCES}test_{row}.py"
+    for row in ("actions", "semidirect_actions", "quaternions", "vector_fields", "galileo")
+)
 BODIES = (SOURCES + "test_tops.py", SOURCES + "test_complex.py")
 WHERE = ("tests/prove/test_ideals.py", "tests/prove/test_integrals.py")
 #: Tests that judge a mutant, by the beginning of its file, the more special first: those of its
 #: step and the book's.
 JUDGES = {
     "src/coadjoint/algebra": (EQUATIONS, SOURCES + "test_lie_algebras.py", "tests/algebra"),
-    "src/coadjoint/groups": ("tests/groups", *(f"{SOURCES}test_{row}.py" for row in GROUP_ROWS)),
+    "src/coadjoint/groups": ("tests/groups", "tests/theory", *GROUP_ROWS),
+    "src/coadjoint/theory": ("tests/theory", *GROUP_ROWS),
     "src/coadjoint/poisson/momentum_maps": (
         "tests/poisson/test_momentum_maps.py",
         SOURCES + "test_momentum_maps.py",

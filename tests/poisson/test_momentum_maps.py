@@ -5,9 +5,10 @@ import pytest
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
+from coadjoint.exact.dense import cross
 from coadjoint.groups.vector_fields import VectorField
 from coadjoint.poisson import canonical, lie_poisson, magnetic
-from coadjoint.poisson.momentum_maps import MomentumMap, generating_function, lifted, lifted_value
+from coadjoint.poisson.momentum_maps import MomentumMap, generating_function, lifted
 
 NAMES = ("q1", "q2", "q3", "p1", "p2", "p3")
 SO3 = algebra_by_name("so(3)")
@@ -22,7 +23,7 @@ def rotations(sign=1, factor=1):
     units = ([int(i == k) for k in range(3)] for i in range(3))
     turns = [dict(zip(NAMES, SO3.bracket(unit, q), strict=False)) for unit in units]
     generators = tuple(lifted(space, pairs, turn) for turn in turns)
-    values = tuple(lifted_value(field, pairs, turn) * factor for turn in turns)
+    values = tuple(factor * x for x in cross(q, [field[name] for name in NAMES[3:]]))
     return MomentumMap(SO3, space, generators, values, sign)
 
 

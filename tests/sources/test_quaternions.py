@@ -20,13 +20,17 @@ from coadjoint.exact.dense import (
     commutator,
     cross,
     dot,
+    hat,
     identity,
     scale,
     subtract,
     transpose,
 )
 from coadjoint.exact.dense import product as matmul
-from coadjoint.groups.central_forces import (
+from coadjoint.groups.complex_numbers import Complex, I, adjoint
+from coadjoint.groups.quaternions import Coquaternion, Quaternion, euler_rodrigues
+from coadjoint.groups.vector_fields import VectorField
+from coadjoint.theory.central_forces import (
     alignment,
     alignment_defect,
     hamilton_vector,
@@ -40,9 +44,8 @@ from coadjoint.groups.central_forces import (
     poincare_vector,
     point_motion,
 )
-from coadjoint.groups.charts import north_point
-from coadjoint.groups.complex_numbers import Complex, I, adjoint
-from coadjoint.groups.hopf import (
+from coadjoint.theory.charts import north_point
+from coadjoint.theory.hopf import (
     amplitudes,
     canonical_bracket,
     coherence_matrix,
@@ -50,30 +53,19 @@ from coadjoint.groups.hopf import (
     hopf_map,
     reduced_motion,
 )
-from coadjoint.groups.maps import (
-    PAULI,
-    dual_tilde,
-    hat,
-    pairing_so3,
-    pairing_su2,
-    su2,
-    tilde,
-    untilde,
-)
-from coadjoint.groups.quaternions import Coquaternion, Quaternion
-from coadjoint.groups.rotations import (
+from coadjoint.theory.maps import PAULI, dual_tilde, pairing_so3, pairing_su2, su2, tilde, untilde
+from coadjoint.theory.rotations import (
     AD,
     Ad_star,
     ad,
     ad_star,
     body_angular_velocity,
     cayley_klein,
-    euler_rodrigues,
     parallel_and_perpendicular,
     quaternion_rate,
     unit_quaternion,
 )
-from coadjoint.groups.vector_fields import VectorField, curl, hamiltonian_vector_field
+from coadjoint.theory.vector_fields import curl, hamiltonian_vector_field
 
 NAMES = [f"{letter}{n}" for letter in "qruv" for n in range(4)]
 

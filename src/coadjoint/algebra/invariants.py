@@ -218,10 +218,6 @@ class Invariants:
             largest = max(largest, rank_modulo(rows, prime) if rational else Span(rows).rank)
         return largest
 
-    def casimir_count(self) -> int:
-        """Number of independent (local) Casimirs: dimension minus generic rank."""
-        return self.dimension - self.generic_rank()
-
 
 def _diagonal(form: Sequence[Sequence[Any]]) -> list[Any]:
     """Coefficients of a sum of squares that a symmetric form is congruent to; zeros left out."""

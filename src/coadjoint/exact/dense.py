@@ -128,6 +128,20 @@ def cross(a: Sequence[Any], b: Sequence[Any]) -> Vector:
     return (a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1)
 
 
+def hat(a: Sequence[Any]) -> Matrix:
+    """The matrix with ``hat(a) b = a x b``, that is ``hat(a)_ij = -epsilon_ijk a_k``.
+
+    Source:
+        Holm (2011), Geometric Mechanics II, section 2.1.1.
+
+    >>> hat((1, 2, 3))
+    ((0, -3, 2), (3, 0, -1), (-2, 1, 0))
+    """
+    a1, a2, a3 = a
+    zero = 0 * a1
+    return ((zero, -a3, a2), (a3, zero, -a1), (-a2, a1, zero))
+
+
 def apply(matrix: Sequence[Sequence[Entry]], a: Sequence[Any]) -> tuple[Entry, ...]:
     """The matrix times a column."""
     return tuple(dot(row, a) for row in matrix)

@@ -2,7 +2,7 @@
 
 Comes in: real and imaginary parts of anything that adds and multiplies. Goes out: `Complex`, and
 complex matrices written as real ones of twice the size.
-Read next: `coadjoint.groups.maps`.
+Read next: `coadjoint.theory.maps`.
 """
 
 from __future__ import annotations

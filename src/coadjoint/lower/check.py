@@ -18,7 +18,7 @@ from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.linear import primes
-from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS
 from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
 from coadjoint.lower.vanishing import vanishing
@@ -147,5 +147,4 @@ def _call(function: str, argument: Residue, prime: int) -> Residue:
 
     Lowering knows no relation between values of functions, so it may not need any.
     """
-    seed = f"{function} {argument.value}"
-    return Residue(random.Random(seed).randrange(1, prime), prime)  # noqa: S311
+    return draw(f"{function} {argument.value}", prime)

@@ -51,7 +51,8 @@ class MomentumMap:
     >>> plane = canonical(field, [("x", "px"), ("y", "py")])
     >>> pairs = [("x", "px", field.one), ("y", "py", field.one)]
     >>> turn = {"x": -field["y"], "y": field["x"]}
-    >>> field_of_turn, value = lifted(plane, pairs, turn), lifted_value(field, pairs, turn)
+    >>> field_of_turn = lifted(plane, pairs, turn)
+    >>> value = generating_function(plane, field_of_turn)
     >>> J = MomentumMap(algebra_by_name("so(2)"), plane, (field_of_turn,), (value,))
     >>> J.values, any(J.field_defects()), J.rates(field["x"] ** 2 + field["y"] ** 2)
     ((-px*y + py*x,), False, (0,))
@@ -189,11 +190,6 @@ def lifted(
     for (_, p, weight), value in zip(pairs, turned, strict=True):
         components[p] = -value * weight
     return VectorField(field, structure.names, tuple(components[x] for x in structure.names))
-
-
-def lifted_value(field: Field, pairs: Sequence[Pair], generator: Mapping[str, Element]) -> Element:
-    """``J^xi = <p, xi_Q(q)>`` (Holm 2011, 11.2.4)."""
-    return field.sum(field[p] / weight * generator[q] for q, p, weight in pairs if q in generator)
 
 
 def generating_function(structure: PoissonStructure, X: VectorField) -> Element:

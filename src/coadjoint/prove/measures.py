@@ -36,13 +36,14 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import solve_with_right_side
 from coadjoint.exact.dense import determinant
+from coadjoint.exact.irreducible import divided_factors
 from coadjoint.exact.linear import SpanModulo
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
-from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors, factors
+from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors
 from coadjoint.prove.samples import AtNumbers, Point, Samples, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
@@ -427,8 +428,8 @@ def _factors_of_minors(motion: ConstrainedRates, measure: Measure) -> list[Eleme
     """
     whole, found = Measure(motion), list[Element]()
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
-        reducible = len(factors(measure.field, short)) > 1
-        own = factors(measure.field, minor, found) if reducible else [minor]
+        reducible = len(divided_factors(measure.field, short)) > 1
+        own = divided_factors(measure.field, minor, found) if reducible else [minor]
         (written,) = motion.field.quotients(minor.combined())
         found = [*own, *(divisor for divisor, _ in written.divisors), *found]
     known = list[Element]()

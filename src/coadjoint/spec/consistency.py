@@ -75,12 +75,12 @@ class _Obstacle:
     Attributes:
         problem: A predicate, such as ``has no Lagrangian``.
         missing: Tables of which one would remove it.
-        acting: The table that it does not know, or "".
+        cure: What would remove it, as a clause; "" if nothing else does.
     """
 
     problem: str
     missing: tuple[str, ...] = ()
-    acting: str = ""
+    cure: str = ""
 
 
 def check_routes(reading: Reading) -> None:
@@ -119,14 +119,18 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
     energies = energies_of(route, kinds)
     if not start.needs_energy:
         if not _is_bare(file) and kinds == ("configuration",):
-            yield _Obstacle("knows no bracket of coordinates with velocities or momenta")
+            yield _Obstacle(
+                "knows no bracket of coordinates with velocities or momenta",
+                cure="declare the momenta as coordinates, with [poisson] and "
+                'canonical = [["q", "p"]]',
+            )
     elif energies and not any(getattr(file, each) for each in energies):
         names = [each.title() for each in energies]
         one_of = f"no {names[0]}" if len(names) == 1 else f"neither a {' nor a '.join(names)}"
         yield _Obstacle(f"has {one_of}", energies)
     for table in TABLES:
         if table.acts and getattr(file, table.key) and table.key not in start.options:
-            yield _Obstacle(f"knows no {table.key}", acting=table.key)
+            yield _Obstacle(f"knows no {table.key}", cure=f"remove [{table.key}]")
 
 
 def _is_bare(file: Any) -> bool:
@@ -171,7 +175,7 @@ def _advise(reading: Reading, obstacles: Sequence[_Obstacle], others: Sequence[s
     (obstacle, *more) = obstacles
     if not more:
         ways += list(filter(None, (_write_table(reading, each) for each in obstacle.missing)))[:1]
-        ways += [f"remove [{obstacle.acting}]"] if obstacle.acting else []
+        ways += [obstacle.cure] if obstacle.cure else []
     text = ", or ".join(ways)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
