@@ -429,7 +429,7 @@ MUTANTS = (
     Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
     # definitions
     Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
-    Mutant(DEFINED, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
