@@ -44,7 +44,6 @@ POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
 DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
-DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 TARGETS = RENDER + "targets/"
@@ -433,7 +432,7 @@ MUTANTS = (
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
-        DEFINED,
+        DEFINITIONS,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
     ),
