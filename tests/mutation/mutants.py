@@ -44,7 +44,6 @@ POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
 DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
-DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 TARGETS = RENDER + "targets/"
@@ -429,11 +428,11 @@ MUTANTS = (
     Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
     # definitions
     Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
-    Mutant(DEFINED, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
-        DEFINED,
+        DEFINITIONS,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
     ),

@@ -23,6 +23,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.records import Relation, Step, rate, symbol
+from coadjoint.derive.refusals import leave_route
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact.dense import Vector, add, cross, dot, scale
@@ -69,7 +70,8 @@ def _check_particle(setting: Setting) -> None:
             setting,
             laws[0].force,
             f"the route alignment is that of one particle in three dimensions, and the coordinates "
-            f"are {coordinates}; expected one coordinate with shape = [3]. Remove the route.",
+            f"are {coordinates}; expected one coordinate with shape = [3]. "
+            f"{leave_route(setting, 'alignment').capitalize()}.",
             coordinates,
         )
 

@@ -115,8 +115,7 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
             "nothing is advected",
             setting.spec.name,
             "an advected quantity, beside which a cyclic coordinate turns the potential into "
-            "kinetic energy",
-            "Remove the route: without a potential the motion is geodesic already.",
+            "kinetic energy; without a potential the motion is geodesic already",
         )
     slopes = setting.field.gradient(lagrangian, names)
     for name, slope in zip(names, slopes, strict=True):
@@ -129,7 +128,6 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
                 f"dl/d{name} = {text} depends on {', '.join(sorted(moving))}",
                 text,
                 "a Lagrangian linear in what is advected, such as T - m*g*dot(Gamma, chi)",
-                "Remove the route.",
             )
     return slopes
 
