@@ -50,7 +50,7 @@ SHOWN = 60
 
 
 def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
-    """The rank of a sparse matrix at almost every point, as found: never above the true one.
+    """The rank of a sparse matrix at random points: never above that at almost every point.
 
     Raises:
         AlgebraError: No real point was found at which all entries are defined.
@@ -64,7 +64,7 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
     if not most:
         return 0
     exact = is_exact(field, _entries(rows))
-    ranks = _ranks_modulo(field, rows) if exact else map(_count, _bounded(field, rows))
+    ranks = _ranks_modulo(field, rows) if exact else map(_count, _enclose(field, rows))
     for rank in islice(ranks, POINTS):
         largest = max(largest, rank)
         if largest == most:
@@ -104,8 +104,8 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
     if not _most(rows):
         return []
     if not is_exact(field, _entries(rows)):
-        return max(islice(_bounded(field, rows), POINTS), key=len)
-    spans = ((SpanModulo(prime), numbers) for prime, numbers in _sampled(field, rows))
+        return max(islice(_enclose(field, rows), POINTS), key=len)
+    spans = ((SpanModulo(prime), numbers) for prime, numbers in _sample(field, rows))
     chosen = (span.independent(numbers) for span, numbers in islice(spans, POINTS))
     return max(chosen, key=len)
 
@@ -133,10 +133,10 @@ def _most(rows: Sequence[Mapping[int, Element]]) -> int:
 
 
 def _ranks_modulo(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[int]:
-    return (rank_modulo(numbers, prime) for prime, numbers in _sampled(field, rows))
+    return (rank_modulo(numbers, prime) for prime, numbers in _sample(field, rows))
 
 
-def _sampled(
+def _sample(
     field: Field, rows: Sequence[Mapping[int, Element]]
 ) -> Iterator[tuple[int, list[dict[int, int]]]]:
     """The matrix at random points, each modulo a prime of its own; poles are passed over.
@@ -168,19 +168,19 @@ def _no_call(function: str, argument: Residue) -> Residue:
 # -- at real points -------------------------------------------------------------------------------
 
 
-def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[int]]:
+def _enclose(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[int]]:
     """Places of rows that are certainly independent, at several real points.
 
     Raises:
         AlgebraError: No real point was found.
     """
-    found = False
+    result = False
     for point in points_inside(field, list(_entries(rows))):
         with suppress(*UNDEFINED):
             values = [{j: enclosure(field, e, point) for j, e in row.items()} for row in rows]
-            found = True
+            result = True
             yield _independent(values)
-    if not found:
+    if not result:
         entry = next(e for e in _entries(rows) if not field.function_free(e))
         text = element_text(field, entry)
         shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

@@ -38,8 +38,8 @@ def witness_regular(field: Field, *matrices: Matrix) -> Point | None:
     >>> witness_regular(field, [[exp, field.one], [field.one, exp]])
     {'x': Fraction(-3, 5)}
     """
-    for point, found in _values(field, matrices):
-        if all(_pivots(rows, choose=True) == len(rows) for rows in found):
+    for point, result in _values(field, matrices):
+        if all(_pivots(rows, choose=True) == len(rows) for rows in result):
             return point
     return None
 
@@ -53,12 +53,12 @@ def certain_minors(field: Field, matrix: Matrix) -> int:
     >>> certain_minors(field, [[field.zero, field.one], [field.one, field["x"]]])
     0
     """
-    found = 0
+    result = 0
     for _, (rows,) in _values(field, [matrix]):
-        found = max(found, _pivots(rows, choose=False))
-        if found == len(matrix):
+        result = max(result, _pivots(rows, choose=False))
+        if result == len(matrix):
             break
-    return found
+    return result
 
 
 def _values(
@@ -82,10 +82,10 @@ def _pivots(rows: list[list[Enclosure]], *, choose: bool) -> int:
         choose: Whether the rows may change places.
     """
     for k in range(len(rows)):
-        found = [n for n in range(k, len(rows) if choose else k + 1) if rows[n][k].sign]
-        if not found:
+        result = [n for n in range(k, len(rows) if choose else k + 1) if rows[n][k].sign]
+        if not result:
             return k
-        best = max(found, key=lambda n: rows[n][k].size)
+        best = max(result, key=lambda n: rows[n][k].size)
         rows[k], rows[best] = rows[best], rows[k]
         for n in range(k + 1, len(rows)):
             factor = rows[n][k] / rows[k][k]

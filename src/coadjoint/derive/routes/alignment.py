@@ -41,7 +41,7 @@ def derive(setting: Setting) -> Equations:
     v = add(scale(alpha, r), cross(chi, r))
     moved = dict(zip(setting.velocities, v, strict=True))
     force = tuple(field.substitute(f, moved) for f in accelerations(setting))
-    source = Quaternion(dot(r, force), *cross(r, force)).scaled(1 / dot(r, r))
+    source = Quaternion(dot(r, force), *cross(r, force)).scale(1 / dot(r, r))
     q = Quaternion(alpha, *chi)
     rates = (*v, *(source - q * q).components)
     named = dict(zip(setting.positions, r, strict=True)) | moved
