@@ -292,15 +292,7 @@ def from_matrices(
     brackets = {}
     for i, j in _overlapping(matrices):
         product = commutator(matrices[i], matrices[j])
-        coordinates = span.coordinates(product)
-        if coordinates is None:
-            raise AlgebraError(
-                f"{name}: the commutator of {basis[i]} and {basis[j]} is not in the span of the "
-                f"basis; it has the entries {entries_text(product)}. Add what is missing to the "
-                "basis.",
-                pair=[basis[i], basis[j]],
-            )
-        brackets[i, j] = coordinates
+        brackets[i, j] = _coordinates(name, span, (basis[i], basis[j]), product)
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
 
 
@@ -335,14 +327,7 @@ def from_bracket(
                 "antisymmetric bracket. Subtract what it is with X and Y exchanged.",
                 pair=[basis[i], basis[j]],
             )
-        coordinates = span.coordinates(product)
-        if coordinates is None:
-            raise AlgebraError(
-                f"{name}: the bracket of {basis[i]} and {basis[j]} is not in the span of the "
-                f"basis; it has the entries {entries_text(product)}. Add what is missing to the "
-                "basis.",
-                pair=[basis[i], basis[j]],
-            )
+        coordinates = _coordinates(name, span, (basis[i], basis[j]), product)
         if i < j:
             brackets[i, j] = coordinates
     made = from_brackets(name, basis, brackets)
@@ -361,6 +346,20 @@ def _independent(name: str, basis: Sequence[str], matrices: Sequence[SparseMatri
             found=redundant,
         )
     return span
+
+
+def _coordinates(
+    name: str, span: Span, pair: tuple[str, str], product: SparseMatrix
+) -> dict[int, Any]:
+    """The coordinates of a bracket of two basis vectors."""
+    coordinates = span.coordinates(product)
+    if coordinates is None:
+        raise AlgebraError(
+            f"{name}: the bracket of {pair[0]} and {pair[1]} is not in the span of the basis; it "
+            f"has the entries {entries_text(product)}. Add what is missing to the basis.",
+            pair=list(pair),
+        )
+    return coordinates
 
 
 def _overlapping(matrices: Sequence[SparseMatrix]) -> Iterator[tuple[int, int]]:
