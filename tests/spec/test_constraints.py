@@ -96,10 +96,10 @@ FAULTS = [
         ('"nonholonomic-hamilton-pontryagin"]', '"euler-lagrange"]'),
         "routes[3]",
         "euler-lagrange",
-        'Write "nonholonomic" in its place, or remove [constraints].',
+        'Remove "euler-lagrange", or remove [constraints].',
     ),
-    ((ROUTES, 'routes = ["hamel"]'), "routes[1]", "hamel", 'Write "nonholonomic" before it.'),
-    (("[lagrangian]\nl", "[hamiltonian]\nh"), "routes", "lagrangian", "has no Lagrangian"),
+    ((ROUTES, 'routes = ["hamel"]'), "routes[1]", "hamel", 'Put "nonholonomic" first.'),
+    (("[lagrangian]\nl", "[hamiltonian]\nh"), "routes[1]", "nonholonomic", "has no Lagrangian"),
     (
         ("[parameters]", 'p = { role = "momentum", of = "x" }\n[parameters]'),
         "variables.p.role",
@@ -107,7 +107,12 @@ FAULTS = [
         "'p' is a momentum, and the state has velocities on these routes",
     ),
     ((CLAIMS, '[forces]\nq = "3"\n[claims]'), "forces.q", "q", "expected one of u, v, w"),
-    ((CLAIMS, '[forces]\nx = "3"\n[claims]'), "forces.x", "x", "no such velocity as 'x'"),
+    (
+        (CLAIMS, '[forces]\nx = "3"\n[claims]'),
+        "forces.x",
+        "x",
+        "'x' is a coordinate; expected one of u, v, w. Write u in its place.",
+    ),
     (
         (CLAIMS, '[forces]\nu = "vector(u, v)"\n[claims]'),
         "forces.u",
@@ -186,7 +191,7 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
     with pytest.raises(SpecError, match="cannot be the first") as caught:
         spec(RIGID_BODY, ('["euler-poincare", "lie-poisson"]', f'["{route}", "lie-poisson"]'))
     assert caught.value.parts["found"] == route
-    assert 'Write "euler-poincare" before it.' in str(caught.value)
+    assert 'Put "euler-poincare" first.' in str(caught.value)
     assert listed(["euler-poincare", "lie-poisson"]) in str(caught.value)
 
 

@@ -72,12 +72,6 @@ TABLES: tuple[Table[Any], ...] = (
 BY_KEY: Mapping[str, Table[Any]] = MappingProxyType({table.key: table for table in TABLES})
 
 
-def how_to_write(table: str) -> str:
-    """A sentence that shows how a table is written; "" for tables without an example."""
-    example = BY_KEY[table].example
-    return f"Write [{table}] and below it {example}." if example else ""
-
-
 def list_formulas(record: Any) -> Iterator[Formula]:
     """Every formula of a `Spec`, or of a record or several in it, in the order of their fields."""
     if isinstance(record, Formula):

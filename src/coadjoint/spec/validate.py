@@ -41,12 +41,11 @@ _KINDS = MappingProxyType(
 _HOW_TO_WRITE: Mapping[str | int, str] = MappingProxyType(
     {
         "title": 'Write title = "..." at the top.',
-        "routes": 'Write routes = ["euler-poincare", "lie-poisson"] at the top.',
         "algebra": 'Write algebra = "so(3)".',
         "variables": 'Write [variables] and below it Pi = { role = "momentum" }.',
         "role": 'Write { role = "momentum" }.',
-        "l": 'Write l = "dot(Omega, diag(I)*Omega)/2".',
-        "h": 'Write h = "dot(Pi, inverse(diag(I))*Pi)/2".',
+        "l": 'Write for instance l = "dot(Omega, diag(I)*Omega)/2".',
+        "h": 'Write for instance h = "dot(Pi, inverse(diag(I))*Pi)/2".',
         "expression": 'Write { expression = "..." }.',
         "matrices": "Write matrices = { e1 = [[0, 1], [0, 0]] }.",
     }
@@ -157,7 +156,9 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
             f"the key {path[-1]!r} is missing",
             found=str(path[-1]),
             expected=_keys(path)[str(path[-1])].description or "",
-            hint=_HOW_TO_WRITE.get(path[-1], ""),
+            hint=_advise_routes(document)
+            if path == ("routes",)
+            else _HOW_TO_WRITE.get(path[-1], ""),
             at=source.positions.key(present),
         )
     if kind == "extra_forbidden":
@@ -174,6 +175,21 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
         kind=LimitError if limit else SpecError,
         limit=limit,
     )
+
+
+def _advise_routes(document: Mapping[str, Any]) -> str:
+    """How routes are written, by the tables that are there."""
+    ways = {
+        "constraints": '"nonholonomic"',
+        "newton": '"newton"',
+        "poisson": '"poisson"',
+        "algebra": '"euler-poincare", "lie-poisson"'
+        if "lagrangian" in document
+        else '"lie-poisson"',
+        "lagrangian": '"euler-lagrange"',
+    }
+    names = next((way for table, way in ways.items() if table in document), '"canonical"')
+    return f"Write routes = [{names}] at the top."
 
 
 def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
@@ -210,7 +226,7 @@ def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
         path,
         f"unknown key {shown(path[-1])}",
         found=str(path[-1]),
-        expected=f"one of {listed(known)}",
+        expected=f"one of {listed(known, most=len(known))}",
         hint=did_you_mean(str(path[-1]), known),
         at=source.positions.key(path),
     )

@@ -98,6 +98,7 @@ class Scalars:
                     f"{node.name!r} is {ROLES[self._driving[node.name]]}",
                     found=node.name,
                     expected="constants of the algebra in terms of numbers and parameters",
+                    hint="Put a parameter in its place.",
                 )
 
     def check_terms(self, tree: Node, terms: int) -> None:

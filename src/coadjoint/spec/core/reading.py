@@ -198,6 +198,11 @@ class Reading:
         hint = naming.why or owner.why or usual
         return self.at_key(naming.key, problem, derived, "names and components that differ", hint)
 
+    def free_name(self, name: str, of: str = "thing") -> str:
+        """A free name, for a message: the wanted one, or one that tells what it is of."""
+        names = (name, f"{name}_{of}", *(f"{name}_{of}_{n}" for n in range(2, 99)))
+        return next(each for each in names if each not in self.owners and refusal(each) is None)
+
     # -- formulas -----------------------------------------------------------------------
 
     @cached_property

@@ -173,6 +173,10 @@ def _shape_text(value: object) -> str:
     )
 
 
+#: What says how many components the entries of a table have.
+_SIZED = {"variables": "block, representation or shape", "parameters": "shape"}
+
+
 def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
     """A number of components that no matrix of a form keeps."""
     counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
@@ -181,5 +185,5 @@ def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> Coadjoin
         f"{count} components fill no matrix of the form {form!r}",
         found=count,
         expected=f"{counts[form]} components for an n by n matrix",
-        hint="Remove form, or choose another block, representation or shape.",
+        hint=f"Remove form, or choose another {_SIZED[str(key[0])]}.",
     )

@@ -10,8 +10,9 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import did_you_mean, listed
-from coadjoint.spec.core.formulas import Formula, Scope, misfit
+from coadjoint.spec.core.formulas import ROLES, Formula, Scope, misfit
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
@@ -56,15 +57,7 @@ def read_along(
     """A formula of the shape of the velocity that its key names."""
     name = str(key[-1])
     if name not in velocities:
-        roles = {each.role for each in velocities.values()} or {"velocity"}
-        what = "velocity" if roles == {"velocity"} else "variable"
-        raise reading.at_key(
-            key,
-            f"there is no such {what} as {name!a}",
-            name,
-            f"one of {listed(velocities)}" if velocities else "a declared velocity",
-            did_you_mean(name, velocities),
-        )
+        raise _no_velocity(reading, key, name, velocities)
     formula = reading.formula(key, text, scope, any_shape=True)
     wanted = velocities[name].shape
     if formula.shape != wanted:
@@ -88,6 +81,23 @@ class DissipationPart(Part):
     R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
 
 
+def _no_velocity(
+    reading: Reading, key: KeyPath, name: str, velocities: Mapping[str, Variable]
+) -> CoadjointError:
+    """An error for something along what is no velocity, or nothing that a force may change."""
+    roles = {each.role for each in velocities.values()} or {"velocity"}
+    what = "velocity" if roles == {"velocity"} else "variable"
+    problem, hint = f"there is no such {what} as {name!a}", did_you_mean(name, velocities)
+    declared = {each.name: each for each in VARIABLES.of(reading)}
+    if name in declared:
+        own = declared[name]
+        problem = f"{name!r} is {ROLES[own.role]}"
+        near = [v for v, each in velocities.items() if (each.block, each.of) == (own.block, own.of)]
+        hint = f"Write {(near or list(velocities))[0]} in its place." if velocities else ""
+    expected = f"one of {listed(velocities)}" if velocities else "a declared velocity"
+    return reading.at_key(key, problem, name, expected, hint or f"Remove {name}.")
+
+
 def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     """Rayleigh's function.
 
@@ -106,8 +116,8 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
             "Rayleigh's function names no velocity",
             found=part.R,
             expected="a function of velocities, whose force is -dR/dxi",
-            hint="Declare velocities, or write what acts along a momentum in [forces]."
-            if reading.file.reduction is None
+            hint=f"Name {listed(each.name for each in velocities)} in it, or remove [dissipation]."
+            if velocities
             else "Write what acts along a momentum in [forces].",
         )
     return formula

@@ -91,7 +91,7 @@ def _on_matrices(
             f"the representation {name!r} says nothing of how the algebra acts",
             found=name,
             expected="matrices, or a block of the algebra as left or right",
-            hint='Write for instance right = "rotation".',
+            hint=f'Write for instance right = "{next(iter((*algebra.blocks, *algebra.basis)))}".',
             at=source.positions.key(key),
         )
     left, right = (
