@@ -193,7 +193,7 @@ def _search(
 ) -> CasimirSearch:
     """Casimirs beyond those known, in the coordinates of the state."""
     setting = equations.setting
-    if setting.spec.algebra is None:
+    if setting.spec.algebra is None or not setting.momenta:  # velocities are the state
         return search_summands(emitted, None, degree, known)
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = [*setting.momenta, *advected]

@@ -9,7 +9,7 @@ each point.
 Candidates are the velocities, the factors of their rates, and the factors of the determinant of
 :math:`\eta, \dot\eta, \ddot\eta, \dots`, which every invariant linear function of the velocities
 divides (the extactic polynomial of Lagutinskii; Christopher, Llibre and Pereira 2007).
-Comes in: the rates of a constrained motion. Goes out: factors, each of which passed the test.
+Comes in: a motion. Goes out: factors, each of which passed the test.
 Read next: `coadjoint.prove.measures`.
 """
 
@@ -22,7 +22,7 @@ from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.element import remove_factor
 from coadjoint.exact.irreducible import divided_factors, numerator
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import leading
 
 #: Terms of a polynomial that is factored, and symbols of the state in it: more may take minutes.
@@ -42,9 +42,9 @@ class InvariantFactors:
         allowed: The velocities that kept constraints give in terms of the others.
     """
 
-    def __init__(self, motion: ConstrainedRates, allowed: Mapping[str, Element]) -> None:
+    def __init__(self, motion: Motion, allowed: Mapping[str, Element]) -> None:
         self.motion, self.field, self.allowed = motion, motion.field, allowed
-        self.free = [n for n in motion.distribution.independent if n not in allowed]
+        self.free = [n for n in motion.fibre if n not in allowed]
 
     def short(self) -> list[Element]:
         """Those among the velocities and the factors of the common divisor of their rates."""
