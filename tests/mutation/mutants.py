@@ -63,8 +63,8 @@ SIGNS = (
     Mutant(ALGEBRA + "invariants.py", "yield j, i, k, -c", "yield j, i, k, c"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
-        "result[j] + scaled(xi[i] * mu[k], c)",
-        "result[j] - scaled(xi[i] * mu[k], c)",
+        "result[j] + multiply_constant(xi[i] * mu[k], c)",
+        "result[j] - multiply_constant(xi[i] * mu[k], c)",
     ),
     Mutant(
         POISSON + "brackets.py",
@@ -171,22 +171,38 @@ MUTANTS = (
     ),
     Mutant(ALGEBRA + "lie_algebra.py", "term = (b, a, c, n), -inner", "term = (b, a, c, n), inner"),
     # ad*, brackets, tensors
-    Mutant(ALGEBRA + "lie_algebra.py", "scaled(xi[i] * mu[k], c)", "scaled(xi[j] * mu[k], c)"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
-        "result[k] + scaled(xi[i] * eta[j], c)",
-        "result[k] - scaled(xi[i] * eta[j], c)",
+        "multiply_constant(xi[i] * mu[k], c)",
+        "multiply_constant(xi[j] * mu[k], c)",
     ),
-    Mutant(ALGEBRA + "lie_algebra.py", "scaled(mu[k], sign * c)", "scaled(mu[k], -sign * c)"),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "result[k] + multiply_constant(xi[i] * eta[j], c)",
+        "result[k] - multiply_constant(xi[i] * eta[j], c)",
+    ),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "multiply_constant(mu[k], sign * c)",
+        "multiply_constant(mu[k], -sign * c)",
+    ),
     Mutant(ALGEBRA + "lie_algebra.py", "sign: int = -1", "sign: int = 1"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
-        "matrix[k][j] + scaled(xi[i], c)",
-        "matrix[k][j] - scaled(xi[i], c)",
+        "matrix[k][j] + multiply_constant(xi[i], c)",
+        "matrix[k][j] - multiply_constant(xi[i], c)",
     ),
     # representations, products, extensions
-    Mutant(ALGEBRA + "representation.py", "result[row] + scaled(", "result[row] - scaled("),
-    Mutant(ALGEBRA + "representation.py", "result[i] - scaled(", "result[i] + scaled("),
+    Mutant(
+        ALGEBRA + "representation.py",
+        "result[row] + multiply_constant(",
+        "result[row] - multiply_constant(",
+    ),
+    Mutant(
+        ALGEBRA + "representation.py",
+        "result[i] - multiply_constant(",
+        "result[i] + multiply_constant(",
+    ),
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(c, r): v for"),
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(r, c): -v for"),
     Mutant(

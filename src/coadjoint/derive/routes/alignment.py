@@ -46,7 +46,7 @@ def derive(setting: Setting) -> Equations:
     v = add(scale(alpha, r), cross(chi, r))
     moved = dict(zip(setting.velocities, v, strict=True))
     force = tuple(field.substitute(f, moved) for f in accelerations(setting))
-    source = Quaternion(dot(r, force), *cross(r, force)).scaled(1 / dot(r, r))
+    source = Quaternion(dot(r, force), *cross(r, force)).scale(1 / dot(r, r))
     q = Quaternion(alpha, *chi)
     rates = zip((*setting.positions, *own), (*v, *(source - q * q).components), strict=True)
     relation = Relation("chi . r = 0", dot(chi, r))
