@@ -46,7 +46,7 @@ PROVE = "src/coadjoint/prove/"
 DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
-TARGETS = RENDER + "targets/"
+TARGETS = "templates/"
 
 #: Structure constants, ad* and the choice of minus or plus: tried in every run.
 SIGNS = (

@@ -1,6 +1,6 @@
 """The target C: loops over members that a compiler turns into vector code, in two builds.
 
-Read next: ``kernel.c.j2``, and its twin in `coadjoint.render.targets.numpy`.
+Read next: `templates/c/kernel.c.j2` and its twin `templates/numpy/kernel.py.j2`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The target NumPy: formulas over arrays of members.
 
-Read next: ``kernel.py.j2``, and its twin in `coadjoint.render.targets.c`.
+Read next: `templates/numpy/kernel.py.j2` and its twin `templates/c/kernel.c.j2`.
 """
 
 from __future__ import annotations

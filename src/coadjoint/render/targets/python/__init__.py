@@ -1,6 +1,6 @@
 """The target Python: one member at a time, of numbers and `math` alone, to be read and pasted.
 
-Read next: ``kernel_python.py.j2``.
+Read next: `templates/python/kernel_python.py.j2`.
 """
 
 from __future__ import annotations
