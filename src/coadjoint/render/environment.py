@@ -39,7 +39,7 @@ def environment() -> ImmutableSandboxedEnvironment:
     )
     made.filters["python_call"] = python_call
     for target in TARGETS.values():
-        made.filters |= target.filters()
+        made.filters |= target.filters
     return made
 
 
