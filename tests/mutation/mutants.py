@@ -382,7 +382,7 @@ MUTANTS = (
     Mutant(PROVE + "candidates.py", "if not unproved:", "if True:"),
     Mutant(PROVE + "candidates.py", "if bounded and certain ==", "if certain =="),
     Mutant(
-        PROVE + "candidates.py",
+        PROVE + "families.py",
         "if moved.keys() <= place.keys():",
         "if moved.keys() & place.keys():",
     ),
