@@ -24,7 +24,7 @@ from coadjoint.exact.ansatz import Exponents, Solution, monomials
 from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
 from coadjoint.exact.residues import residue
 from coadjoint.exact.written import Written
-from coadjoint.prove.measures import Measure
+from coadjoint.prove.densities import Measure
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import Point, Samples, Slopes, leading
 
