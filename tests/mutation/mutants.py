@@ -336,7 +336,7 @@ MUTANTS = (
     Mutant(POISSON + "summands.py", "c if a < b else -c", "c"),
     Mutant(PROVE + "claims.py", "if decide().verdict is Verdict.PROVED:", "if decide():"),
     Mutant(PROVE + "measures.py", "- len(samples.unit):", "- len(samples.unit) or found:"),
-    Mutant(PROVE + "measures.py", "rates, -point.value(self", "rates, point.value(self"),
+    Mutant(PROVE + "densities.py", "rates, -point.value(self", "rates, point.value(self"),
     Mutant(PROVE + "invariant_factors.py", "return rate != 0 and", "return rate == 0 or"),
     Mutant(PROVE + "reversibility.py", "if name and motion.distribution.kept", "if not name"),
     Mutant(PROVE + "almost_poisson.py", "plain or total > 0 or total < 0", "True"),
@@ -382,7 +382,7 @@ MUTANTS = (
     Mutant(PROVE + "candidates.py", "if not unproved:", "if True:"),
     Mutant(PROVE + "candidates.py", "if bounded and certain ==", "if certain =="),
     Mutant(
-        PROVE + "candidates.py",
+        PROVE + "families.py",
         "if moved.keys() <= place.keys():",
         "if moved.keys() & place.keys():",
     ),
