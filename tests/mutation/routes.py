@@ -1,7 +1,7 @@
 """Single changes to the routes that must be refuted: a sign flipped, a term dropped.
 
-Each names a route or a step that routes share, a piece of text that occurs exactly once in a
-module or a spec, what takes its place, and the systems whose certificates judge it.
+Each names a route or a step that routes share, a function or a key of a spec, what is changed in
+it, and the systems whose certificates judge it.
 """
 
 from __future__ import annotations

@@ -1,0 +1,130 @@
+"""What a mutant is: a file, a line that names one change of it, and what must refute it.
+
+Read next: `tests.mutation.addresses`, how a line names a change, then `tests.mutation.routes` and
+`tests.mutation.engine`, the lists.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from tests.mutation.addresses import AddressError, find_edit, source_with, tree_of
+from tests.mutation.texts import changed_spec, changed_template
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "coadjoint"
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change.
+
+    Attributes:
+        file: Path below the root of the repository.
+        line: The change, as `tests.mutation.addresses` and `tests.mutation.texts` say it; empty
+            for none.
+        route: The route as specs name it, or the step that several routes share.
+        systems: Whose certificates judge it, the cheapest first.
+        tests: Tests that judge what those let pass, each as a run of pytest has it.
+        fallacy: The mistake that the change is, where it has a name.
+        equivalent: Why no check can see it, if so.
+        always: Whether it is tried in every run of the tests, not only in campaigns.
+    """
+
+    file: str
+    line: str
+    route: str = ""
+    systems: tuple[str, ...] = ()
+    tests: tuple[str, ...] = ()
+    fallacy: str = ""
+    equivalent: str = ""
+    always: bool = False
+
+    @property
+    def name(self) -> str:
+        """Short name for reports."""
+        change = self.fallacy or f"{Path(self.file).name.partition('.')[0]}.{self.line}"
+        return f"{self.route}: {change}" if self.route else change
+
+    def text(self) -> str:
+        """The changed text of the file.
+
+        Raises:
+            AddressError: The line fits nowhere, or at several places.
+        """
+        return _text(self.file, self.line)
+
+
+@cache
+def _text(file: str, line: str) -> str:
+    path = ROOT / file
+    if not line:
+        return path.read_text(encoding="utf-8")
+    try:
+        return _CHANGED[path.suffix](path, line)
+    except AddressError as error:
+        raise AddressError(f"{file}: {error}") from None
+
+
+def _changed_module(path: Path, line: str) -> str:
+    tree = tree_of(path)
+    return source_with(tree, find_edit(tree, line))
+
+
+def _of_text(change: Callable[[str, str], str]) -> Callable[[Path, str], str]:
+    return lambda path, line: change(path.read_text(encoding="utf-8"), line)
+
+
+_CHANGED = {
+    ".py": _changed_module,
+    ".toml": _of_text(changed_spec),
+    ".j2": _of_text(changed_template),
+}
+#: A line, with the name of the mistake where it has one.
+Change = str | tuple[str, str]
+
+
+@cache
+def module(name: str) -> str:
+    """The path of a module below ``src/coadjoint``, by its name and folders that are above it.
+
+    Other folders may stand between: ``derive/hamel`` is ``derive/routes/hamel.py``.
+    """
+    *folders, stem = name.split("/")
+    found = [
+        path.relative_to(ROOT).as_posix()
+        for path in SOURCE.rglob(f"{stem}.py")
+        if {*folders} <= {*path.relative_to(SOURCE).parts}
+    ]
+    found = [each for each in found if each == f"src/coadjoint/{name}.py"] or found
+    assert len(found) == 1, f"{name!r} names {found or 'no module'} below {SOURCE}"
+    return found[0]
+
+
+def of(
+    route: str,
+    name: str,
+    systems: tuple[str, ...],
+    *changes: Change,
+    tests: tuple[str, ...] = (),
+) -> tuple[Mutant, ...]:
+    """Changes of one module of ``derive/``, judged by the same systems and tests."""
+    return tuple(
+        Mutant(module(f"derive/{name}"), line, route, systems, tests, fallacy)
+        for line, fallacy in map(_with_fallacy, changes)
+    )
+
+
+def of_spec(system: str, *changes: Change) -> tuple[Mutant, ...]:
+    """Changes of a shipped spec, judged by its own certificate."""
+    return tuple(
+        Mutant(f"derivations/{system}.toml", line, "spec", (system,), fallacy=fallacy)
+        for line, fallacy in map(_with_fallacy, changes)
+    )
+
+
+def _with_fallacy(change: Change) -> tuple[str, str]:
+    return (change, "") if isinstance(change, str) else change
