@@ -43,6 +43,8 @@ class TextSystem:
         self.python = {}
         self.texts = texts
         exec(texts["kernel.py"], self.python)
+        self.plain = {}
+        exec(texts["kernel_python.py"], self.plain)
         self.libraries = {}
         for target, flags in (("c", c_flags), ("c-fast", FUSED)):
             # A folder of its own: dlopen takes a path it has loaded before for the same library.
@@ -51,19 +53,34 @@ class TextSystem:
 
     def load_kernels(self, targets):
         """Everything was compiled when the system was made; the hash of each text."""
-        files = {target: "kernel.py" if target == "numpy" else "kernel.c" for target in targets}
+        files = {"numpy": "kernel.py", "python": "kernel_python.py"}
         return {
-            target: hashlib.sha256(self.texts[file].encode()).hexdigest()
-            for target, file in files.items()
+            target: hashlib.sha256(self.texts[files.get(target, "kernel.c")].encode()).hexdigest()
+            for target in targets
         }
 
     def __getattr__(self, function):
         def method(state, parameters, target="c", out=None):
             if target == "numpy":
                 return self.python[function](state, parameters, out)
+            if target == "python":
+                return self._plain(function, state, parameters, out)
             return self._call(function, state, parameters, target, out)
 
         return method
+
+    def _plain(self, function, state, parameters, out):
+        """The plain Python function, one member after the other; NaN where Python has no number."""
+        members = state.shape[1]
+        out = np.empty((*self.rows[function], members)) if out is None else out
+        for member in range(members):
+            own = parameters if parameters.ndim == 1 else parameters[:, member]
+            try:
+                values = self.plain[function](state[:, member].tolist(), own.tolist())
+            except (ArithmeticError, ValueError):
+                values = np.nan
+            out[..., member] = values
+        return out
 
     def _call(self, function, state, parameters, target, out):
         """One call of the C function, as its header declares it."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 from fractions import Fraction
 
+from coadjoint.declared import Quantity
 from coadjoint.lower.program import (
     Add,
     Call,
@@ -22,7 +23,7 @@ from coadjoint.lower.program import (
     Symbol,
     walk,
 )
-from coadjoint.render.kernels import KernelContext, Quantity
+from coadjoint.render.kernels import KernelContext
 
 KINDS = {ast.Add: Add, ast.Mult: Multiply, ast.Div: Divide}
 

@@ -64,6 +64,7 @@ def test_the_wheel_carries_specs_templates_and_systems(wheel):
         ("templates", "coadjoint/templates"),
         ("derivations", "coadjoint/derivations"),
         ("generated", "coadjoint/systems"),
+        ("src/coadjoint/render/targets", "coadjoint/render/targets"),
     ):
         files = [
             path.relative_to(ROOT / folder).as_posix()

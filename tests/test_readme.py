@@ -1,4 +1,4 @@
-"""The README is true: its Python runs, its commands work, its spec is the one of the examples."""
+"""README and docs are true: their Python runs, their commands work, their specs are proved."""
 
 from __future__ import annotations
 
@@ -19,9 +19,8 @@ from tests.conftest import SYSTEMS
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SPECS = (ROOT / "docs" / "specs.md").read_text(encoding="utf-8")
-CONSTRAINED = (ROOT / "docs" / "nonholonomic.md").read_text(encoding="utf-8")
-DRIVEN = (ROOT / "docs" / "driven.md").read_text(encoding="utf-8")
+PAGES = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "docs").glob("*.md")}
+SPECS, DRIVEN = PAGES["specs"], PAGES["driven"]
 
 
 def blocks(language, page=README):
@@ -30,8 +29,9 @@ def blocks(language, page=README):
 
 
 def commands():
-    """The command lines of the README, their comments dropped."""
-    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    """The command lines of the README and of the tutorial, their comments dropped."""
+    shown = blocks("sh") + blocks("sh", PAGES["tutorial"])
+    lines = [line for block in shown for line in block.splitlines()]
     return [words for line in lines if (words := shlex.split(line, comments=True))]
 
 
@@ -48,11 +48,20 @@ def folder(tmp_path, monkeypatch):
 def test_python_of_the_readme_runs(folder):
     """The Python blocks run one after the other, as a reader would type them."""
     names = {}
-    assert len(blocks("python")) >= 4
+    assert len(blocks("python")) == 3
     for block in blocks("python"):
         exec(compile(block, "README.md", "exec"), names)
     assert max(names["top"].drift.values()) < 1e-8
     assert names["motion"]["Pi2"].min() > 0.9
+
+
+@pytest.mark.parametrize("page", ["python", "algebras"])
+def test_python_of_a_page_runs(page, folder):
+    """The Python blocks of a page run one after the other, in the folder of the gyrostat."""
+    names = {}
+    assert blocks("python", PAGES[page])
+    for block in blocks("python", PAGES[page]):
+        exec(compile(block, f"{page}.md", "exec"), names)
 
 
 def test_python_of_driven_systems_runs(folder):
@@ -94,17 +103,21 @@ def test_the_example_of_a_spec_is_the_one_that_ships():
 
 def test_what_a_command_prints_is_what_it_printed():
     """Each console block is a command with the output of today."""
-    shown = [block.removeprefix("$ coadjoint ").split("\n", 1) for block in blocks("console")]
+    shown = [
+        block.removeprefix("$ coadjoint ").split("\n", 1)
+        for block in blocks("console", PAGES["algebras"])
+    ]
     assert shown
     for command, output in shown:
         result = CliRunner().invoke(main, shlex.split(command))
         assert (result.exit_code, result.stdout) == (0, output), command
 
 
-def test_other_specs_of_the_readme_are_proved(folder):
+def test_specs_of_the_pages_are_proved(folder):
     """The shorter declarations are whole, and everything claimed of them holds."""
-    _, *others = [*blocks("toml"), *blocks("toml", SPECS), *blocks("toml", CONSTRAINED)]
-    assert len(others) >= 3
+    pages = ("algebras", "specs", "nonholonomic")
+    others = [spec for page in pages for spec in blocks("toml", PAGES[page])]
+    assert len(others) >= 4
     for number, spec in enumerate(others):
         path = folder / f"other{number}.toml"
         path.write_text(spec, encoding="utf-8")
@@ -114,7 +127,7 @@ def test_other_specs_of_the_readme_are_proved(folder):
 
 def test_the_bound_that_is_stated_is_the_bound():
     """The number of generators in the text is that of the limits."""
-    assert f"more than {EXAMINED_GENERATORS}\ngenerators is refused" in README
+    assert f"more than {EXAMINED_GENERATORS}\ngenerators is refused" in PAGES["algebras"]
 
 
 def test_every_decision_is_listed():
@@ -129,7 +142,7 @@ def test_every_decision_is_listed():
 
 def test_the_claim_that_is_said_to_fail_fails(folder):
     """`L*Pi[1]` is refuted, as the walk-through says."""
-    assert '`"L*Pi[1]"`' in README
+    assert '`"L*Pi[1]"`' in PAGES["tutorial"]
     spec = folder / "gyrostat.toml"
     spec.write_text(spec.read_text().replace('"L"]', '"L", "L*Pi[1]"]'))
     result = CliRunner().invoke(main, ["prove", str(spec)])
@@ -138,8 +151,8 @@ def test_the_claim_that_is_said_to_fail_fails(folder):
 
 
 def test_the_message_that_is_shown_is_the_one_that_comes(folder):
-    """The mistake of the README gives its message."""
-    (message,) = blocks("text")
+    """The mistake on the page of commands gives its message."""
+    (message,) = blocks("text", PAGES["commands"])
     spec = folder / "gyrostat.toml"
     spec.write_text(
         spec.read_text().replace("dot(Omega, diag(I)*Omega)/2 +", "dot(Omega, diag(I)*Omga)/2 +")
@@ -152,7 +165,7 @@ def test_the_message_that_is_shown_is_the_one_that_comes(folder):
 def test_tables_are_complete():
     """Every command, every function of expressions and every key of a spec is in a table."""
     for command in COMMANDS:
-        assert f"| `coadjoint {command}" in README
+        assert f"| `coadjoint {command}" in PAGES["commands"]
     for function in FUNCTIONS:
         assert re.search(rf"`{function}\W", SPECS), function
     schema = SpecFile.model_json_schema()
@@ -164,8 +177,11 @@ def test_tables_are_complete():
 
 
 def test_every_shipped_system_is_listed():
-    """The table of systems names those that ship, and no others."""
-    lines = [line for line in README.splitlines() if line.startswith("| ") and "_" in line]
+    """The table of systems names those that ship, and no others; the README counts them."""
+    assert f"[{len(SYSTEMS)} of them](docs/systems.md)" in README
+    lines = [
+        line for line in PAGES["systems"].splitlines() if line.startswith("| ") and "_" in line
+    ]
     named = {name for line in lines for name in re.findall(r"`([a-z0-9_]+)`", line)}
     assert named == set(SYSTEMS)
 

@@ -137,10 +137,10 @@ def test_time_by_the_clock_does_not_count(helper):
 
 
 def test_a_child_that_waits_for_ever_is_stopped(helper):
-    """The generous limit by the clock ends it and says that it has not computed."""
-    with pytest.raises(ResourceError, match=r"sleep: stopped after 2 s by the clock") as caught:
+    """The generous limit on wall time ends it and says that it has not computed."""
+    with pytest.raises(ResourceError, match=r"sleep: stopped after 2 s of wall time") as caught:
         run_bounded(helper + "sleep", 600, seconds=1, memory=2**31, wall=2)
-    assert "has computed for" in str(caught.value)
+    assert "of which it computed for" in str(caught.value)
     assert (caught.value.limit, caught.value.used < 2) == (2, True)
 
 

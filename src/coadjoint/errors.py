@@ -165,11 +165,11 @@ def system_error(error: OSError | ImportError) -> OutputError | None:
     number, help_with = _number(error), remedy_for(error)
     reason = getattr(error, "strerror", None) or str(error)
     if number == errno.ENOENT and "temporary directory" in str(error):
-        reason, help_with = str(error), "Set TMPDIR to a folder that can be written."
+        reason, help_with = str(error), "Set TMPDIR to a folder that you can write to."
         if 0 <= resource.getrlimit(resource.RLIMIT_FSIZE)[0] < _TRIAL:
             reason, help_with = os.strerror(errno.EFBIG), _REFUSALS[errno.EFBIG]
     if number == errno.ENOENT and not _has_working_folder():
-        reason, help_with = "the working folder is gone", "Go to one that is there."
+        reason, help_with = "the working folder no longer exists", "Change to an existing folder."
     if not help_with:
         return None
     name = getattr(error, "filename", None)

@@ -14,7 +14,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from coadjoint.resources import templates_folder
+from coadjoint.resources import targets_folder, templates_folder
 
 #: Packages whose version may move the output or its verification.
 WATCHED = ("jinja2", "mpmath", "numpy", "sympy")
@@ -29,7 +29,7 @@ def engine_fingerprint() -> str:
     package = Path(__file__).parent
     files = {
         f"src/{path.relative_to(package).as_posix()}": _sha256(path)
-        for path in sorted(package.rglob("*.py"))
+        for path in sorted((*package.rglob("*.py"), *package.rglob("reserved.txt")))
         if path.relative_to(package).parts[0] not in NOT_ENGINE
     }
     versions = {name: version(name) for name in WATCHED} | {"python": platform.python_version()}
@@ -37,10 +37,10 @@ def engine_fingerprint() -> str:
 
 
 def template_hashes() -> dict[str, str]:
-    """SHA-256 of each template by its path below the templates folder."""
-    folder = templates_folder()
+    """SHA-256 of each template by its path, below the folder of templates or that of targets."""
     return {
-        f"templates/{path.relative_to(folder).as_posix()}": _sha256(path)
+        f"{name}/{path.relative_to(folder).as_posix()}": _sha256(path)
+        for name, folder in (("targets", targets_folder()), ("templates", templates_folder()))
         for path in sorted(folder.glob("*/*.j2"))
     }
 

@@ -17,28 +17,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from coadjoint.build.cache import working_folder
 from coadjoint.crosscheck.ladder import Report, crosscheck
+from coadjoint.declared import Quantity
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.records import Emitted
 from coadjoint.derive.reference import Reference
 from coadjoint.derive.setting import Declared
-from coadjoint.exact import Element
 from coadjoint.lower.check import check_inverse, check_size
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.driven import while_constant
-from coadjoint.prove.energy import keeps_energy
-from coadjoint.render.kernels import Bound, KernelContext, Quantity, render_system
+from coadjoint.prove.energy import is_conserved
+from coadjoint.render.kernels import KernelContext, render_system
 from coadjoint.solve.system import load_folder
-from coadjoint.spec import Formula, Spec, Variable
-from coadjoint.spec.core.units import Unit, parse_unit, product_of, unit_of, unit_text
-from coadjoint.spec.model import Constraint, Reconstructed, Shape, component_names
+from coadjoint.spec import Spec
+from coadjoint.spec.model import Reconstructed
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
@@ -130,15 +130,13 @@ def kernel_context(
         equations=equation_lines(equations),
         state=tuple(map(_quantity, spec.state)),
         parameters=tuple(map(_quantity, spec.parameters)),
-        observables=_observables(equations),
+        observables=tuple(_observable(equations, each) for each in equations.exact.emitted),
         programs=tuple(programs.values()),
         supported=supported,
         reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
-        domain=tuple(
-            Bound(each.name, each.kind, each.strict, each.inputs) for each in bounds(equations)
-        ),
+        domain=tuple(bound for bound, _ in bounds(equations)),
     )
 
 
@@ -177,129 +175,18 @@ def _followed(spec: Spec, each: Reconstructed) -> Quantity:
     return Quantity(each.name, each.shape, each.unit, each.components, default, upright=upright)
 
 
-def _observables(equations: Equations) -> tuple[Quantity, ...]:
-    """What the function ``observables`` returns, in the order of `coadjoint.derive.observables`."""
-    spec, found = equations.spec, equations.setting.integrals
-    stated = {claim.formula.text.strip() for claim in spec.conserved if not claim.where}
-    energy = [
-        _emitted("energy", _unit(spec, formula), conserved=keeps_energy(equations))
-        for formula in (spec.hamiltonian or spec.lagrangian,)
-        if equations.exact.energy is not None
-    ]
-    casimirs = [
-        _emitted(
-            f"casimir{n}",
-            _unit(spec, casimir),
-            casimir.shape,
-            conserved=all(
-                equations.setting.field.is_zero(equations.work(part))
-                for part in equations.setting.components(casimir)
-            ),
-        )
-        for n, casimir in enumerate(spec.casimirs, 1)
-    ]
-    declared = [
-        _emitted(entry.name, entry.unit, entry.shape, conserved=entry.name in stated)
-        for entry in spec.observables
-    ]
-    maps = [
-        Quantity(each.name, each.shape, each.unit, each.components, conserved=each.name in stated)
-        for each in spec.symmetries
-    ]
-    of_pair = [
-        _emitted(name, _unit_of_value(equations, value), conserved=True)
-        for name, value in (found.named if found is not None else ())
-    ]
-    of_space = [
-        Quantity(
-            each.name,
-            each.momentum.shape,
-            each.momentum.unit,
-            each.components,
-            conserved=each.conserved,
-        )
-        for each in spec.spatial
-    ]
-    velocities = map(_quantity, spec.defined)
-    reactions = [
-        _emitted(each.reaction, _unit_of_reaction(spec, each), each.shape, conserved=False)
-        for each in spec.constraints
-    ]
-    momenta = [
-        Quantity(each.name, each.velocity.shape, _unit_along(spec, each.velocity), each.components)
-        for each in spec.reduced_momenta
-    ]
-    momenta += [
-        _emitted(each.name, each.unit, conserved=each.name in stated) for each in spec.sections
-    ]
-    emitted = (
-        *energy,
-        *casimirs,
-        *velocities,
-        *reactions,
-        *momenta,
-        *declared,
-        *maps,
-        *of_pair,
-        *of_space,
+def _observable(equations: Equations, each: Emitted) -> Quantity:
+    """What is emitted as the generated package declares it."""
+    conserved = is_conserved(equations, each)
+    held = conserved and while_constant(equations, each.values)
+    return Quantity(
+        name=each.name,
+        shape=each.shape,
+        unit=each.unit,
+        components=each.components,
+        conserved=conserved,
+        while_constant=bool(held),
     )
-    return tuple(_held(equations, each) if each.conserved else each for each in emitted)
-
-
-def _held(equations: Equations, quantity: Quantity) -> Quantity:
-    """A conserved quantity, marked if it is one only while the inputs are constant."""
-    values = dict(equations.exact.observables)
-    named = [values[name] for name in quantity.components if name in values]
-    return replace(quantity, while_constant=bool(while_constant(equations, named)))
-
-
-def _emitted(name: str, unit: str, shape: Shape = (), *, conserved: bool) -> Quantity:
-    return Quantity(name, shape, unit, component_names(name, shape), conserved=conserved)
-
-
-def _unit(spec: Spec, formula: Formula | None) -> str:
-    """The unit of a formula, as far as the declared units tell."""
-    assert formula is not None, "the reader asks for a Lagrangian or a Hamiltonian"
-    return unit_text(unit_of(formula.tree, _units(spec)))
-
-
-def _unit_of_reaction(spec: Spec, constraint: Constraint) -> str:
-    """The unit of a multiplier: with the residual of its constraint it makes a power."""
-    units, energy = _units(spec), spec.lagrangian
-    assert energy is not None, "the reader asks for a Lagrangian beside constraints"
-    known = {
-        "energy": unit_of(energy.tree, units),
-        "time": parse_unit("s"),
-        "residual": unit_of(constraint.left.tree, units) or unit_of(constraint.right.tree, units),
-    }
-    return unit_text(product_of(known, [("energy", 1), ("time", -1), ("residual", -1)]))
-
-
-def _unit_along(spec: Spec, velocity: Variable) -> str:
-    """The unit of a momentum: that of the Lagrangian over that of its velocity."""
-    assert spec.lagrangian is not None, "the reader asks for a Lagrangian"
-    units = {"l": unit_of(spec.lagrangian.tree, _units(spec)), "v": parse_unit(velocity.unit)}
-    return unit_text(product_of(units, [("l", 1), ("v", -1)]))
-
-
-def _unit_of_value(equations: Equations, element: Element) -> str:
-    """The unit of an element, as its first addend tells it."""
-    field, units = equations.setting.field, _units(equations.spec)
-    written = field.quotients(field.terms(element)[0])[0]
-    factors = [power for monomial in written.monomials for power in monomial.powers]
-    if written.divisors or not all(name in units for name, _ in factors):
-        return ""
-    return unit_text(product_of(units, factors))
-
-
-def _units(spec: Spec) -> dict[str, Unit | None]:
-    """The unit of every declared name."""
-    quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
-    return {
-        name: parse_unit(quantity.unit)
-        for quantity in quantities
-        for name in (quantity.name, *quantity.components)
-    }
 
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:

@@ -13,12 +13,40 @@ from pathlib import Path
 
 
 def templates_folder() -> Path:
-    """The folder of Jinja2 templates, one folder per language in it.
+    """The folder of Jinja2 templates of documents and of the package of a system.
 
-    >>> (templates_folder() / "numpy" / "kernel.py.j2").is_file()
+    >>> (templates_folder() / "package" / "__init__.py.j2").is_file()
     True
     """
     return _folder(installed="templates", checkout="templates")
+
+
+def targets_folder() -> Path:
+    """The folder of targets, each with its templates and reserved words in a folder of its own.
+
+    >>> (targets_folder() / "numpy" / "kernel.py.j2").is_file()
+    True
+    """
+    return Path(__file__).resolve().parent / "render" / "targets"
+
+
+def reserved_words() -> dict[str, str]:
+    """Words that some target reserves, each with what it is there: ``a keyword of C``.
+
+    In the files ``reserved.txt`` of targets, words stand below a line that says what they are.
+
+    >>> reserved_words()["restrict"]
+    'a keyword of C'
+    """
+    found: dict[str, str] = {}
+    for path in sorted(targets_folder().glob("*/reserved.txt")):
+        kind = ""
+        for line in path.read_text(encoding="ascii").splitlines():
+            if line.startswith("# "):
+                kind = line.removeprefix("# ")
+            else:
+                found |= {word: kind for word in line.split() if word not in found}
+    return found
 
 
 def derivations_folder() -> Path:

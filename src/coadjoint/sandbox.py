@@ -312,10 +312,10 @@ class _Task:
     def _out_of_patience(self) -> str:
         """The limit of time by the clock was reached."""
         return (
-            f"stopped{self._where} after {self.wall:g} s by the clock, in which it has computed "
-            f"for {self.used:.1f} s. Something it waits for does not answer, or the machine is "
-            "busy with other work: try again later, or allow more with --seconds (the clock may "
-            f"show {WALL_FACTOR} times that), seconds=, or {VARIABLE}."
+            f"stopped{self._where} after {self.wall:g} s of wall time, of which it computed "
+            f"for {self.used:.1f} s. It waits for something that does not answer, or the machine "
+            "is busy: try again later, or allow more with --seconds (the limit on wall time is "
+            f"{WALL_FACTOR} times that), seconds=, or {VARIABLE}."
         )
 
     def _killed(self, status: int, errors: bytes) -> str:
@@ -324,7 +324,7 @@ class _Task:
         tail = errors.decode(errors="replace").strip()[-400:]
         return (
             f"lost{self._where} ({found}, after {self.used:.1f} s of processor time; limit of "
-            f"memory {self.memory // 2**20} MiB). Simplify the spec, or look whether something "
+            f"memory {self.memory // 2**20} MiB). Simplify the spec, or check whether something "
             f"ended the process. {tail}".rstrip()
         )
 

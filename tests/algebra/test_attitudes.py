@@ -4,11 +4,12 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.algebra import algebra_by_name
+from coadjoint.algebra import LieAlgebra, algebra_by_name, direct_sum
 from coadjoint.algebra.attitudes import attitude, has_fixed_row, quaternion
 from coadjoint.algebra.catalogue import inverse_by, representation_by_name
+from coadjoint.errors import AlgebraError
+from coadjoint.exact.dense import product
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import matmul
 
 G = tuple(tuple(Fraction(3 * i + j * j + 1, 1 + j) for j in range(3)) for i in range(3))
 
@@ -31,8 +32,8 @@ def test_attitudes_multiply_matrices(name):
         unit = [int(n == k) for n in range(algebra.dimension)]
         left = attitude(algebra).act(unit, entries(G))
         right = attitude(algebra, "right").act(unit, entries(G))
-        assert left == tuple(-x for x in entries(matmul(G, dense(X, 3))))
-        assert right == entries(matmul(dense(X, 3), G))
+        assert left == tuple(-x for x in entries(product(G, dense(X, 3))))
+        assert right == entries(product(dense(X, 3), G))
         assert left != right
 
 
@@ -55,6 +56,26 @@ def test_quaternions_multiply(name):
     assert left == (Fraction(-1, 2) * (q * pure)).components
     assert right == (Fraction(1, 2) * (pure * q)).components
     assert left != (Fraction(-1, 2) * (pure * q)).components
+
+
+def test_quaternions_turn_by_the_rotations_of_a_larger_algebra():
+    """Wheels and translations leave them alone; what brings translations among the rotations not.
+
+    With [P1, P2] = J3 the rotations are no quotient: the action would not be one of the algebra.
+    """
+    q = (1, 2, -1, 3)
+    for larger in (
+        direct_sum([algebra_by_name("so(3)"), algebra_by_name("R^3")]),
+        algebra_by_name("se(3)"),
+    ):
+        action = quaternion(larger)
+        assert action.act((2, 7, -4, 5, 6, 1), q) == quaternion(algebra_by_name("so(3)")).act(
+            (2, 7, -4), q
+        )
+    flat = algebra_by_name("se(3)")
+    curved = {**flat.constants, (3, 4): {2: 1}, (3, 5): {1: -1}, (4, 5): {0: 1}}
+    with pytest.raises(AlgebraError, match="no other bracket reaches"):
+        quaternion(LieAlgebra("so(4)", flat.basis, curved, flat.blocks))
 
 
 def test_attitudes_have_names():

@@ -15,9 +15,9 @@ from coadjoint.algebra import (
     representation_by_name,
     semidirect_product,
 )
-from coadjoint.algebra.linear import PRIME
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
+from coadjoint.exact.linear import PRIME
 from tests.algebra.laws import pairing, vector
 
 

@@ -124,7 +124,9 @@ def test_the_folder_is_private(folder):
 def test_a_folder_that_others_may_write_is_refused(tmp_path):
     """The mode and the remedy are in the message."""
     tmp_path.chmod(0o777)
-    with pytest.raises(OutputError, match=r"others may write to it \(mode 777\), which `chmod 700"):
+    with pytest.raises(
+        OutputError, match=r"other users may write to it \(mode 777\), run `chmod 700"
+    ):
         check_private(tmp_path)
 
 
@@ -212,7 +214,9 @@ def test_without_a_home_the_cache_is_temporary(monkeypatch, tmp_path):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(Path, "home", unknown)
     cache._usable.cache_clear()
-    with pytest.warns(CacheWarning, match="no home folder for the cache. Set HOME"):
+    with pytest.warns(
+        CacheWarning, match="no home folder is set, so there is no place for the cache. Set HOME"
+    ):
         found = cache_folder()
     shutil.rmtree(found)
     cache._usable.cache_clear()

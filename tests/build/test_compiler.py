@@ -236,7 +236,7 @@ def test_a_compiler_is_found_from_any_folder(monkeypatch, tmp_path):
 def test_a_compiler_that_makes_nothing_is_noticed(tmp_path, body):
     """Exit status 0 without a shared object is not believed."""
     fake = script(tmp_path, "liar", body)
-    with pytest.raises(CompilerError, match="made no shared object"):
+    with pytest.raises(CompilerError, match="produced no shared object"):
         compile_kernel(Compiler((str(fake),), "liar"), sources(tmp_path), "exact")
 
 

@@ -127,7 +127,7 @@ def test_every_state_is_told(folder, monkeypatch):
     found = "\n".join(cache_problems())
     assert f"{damaged} is damaged" in found
     assert f"{kernels / named('key')} is not a file" in found
-    assert f"{litter} was left by a run that was killed" in found
+    assert f"{litter} was left behind by a killed run" in found
     assert "more than its bound" in found
     assert len(found.splitlines()) == 4
     assert litter.is_dir()  # nothing was changed

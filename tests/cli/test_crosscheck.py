@@ -10,16 +10,17 @@ from coadjoint.resources import systems_folder
 
 
 def test_figures_of_a_shipped_system(run):
-    """All rungs pass, k stays below 4, and NumPy and C have the same bits at every point."""
+    """All rungs pass, k stays below 4, and NumPy, C and Python have the same bits everywhere."""
     find_compiler()
     record = json.loads(run("crosscheck", "rigid_body", "--points", "1001", "--json").stdout)
     assert record["rungs"] == {"3": "passed", "4": "passed", "5": "passed"}
     assert set(record["figures"]) == {
         *("rhs", "jacobian", "parameter_jacobian", "energy", "observables", "poisson_tensor"),
     }
-    assert set(record["figures"]["rhs"]) == {"numpy", "c", "c-fast"}
+    assert set(record["figures"]["rhs"]) == {"numpy", "c", "c-fast", "python"}
     assert 0 < max(figures["k"] for figures in record["figures"]["rhs"].values()) <= 4
-    assert min(record["equal"].values()) >= 1001
+    assert min(equal["c"] for equal in record["equal"].values()) >= 1001
+    assert min(equal["python"] for equal in record["equal"].values()) > 100
 
 
 def test_the_table_names_functions_targets_and_rungs(run):
@@ -28,6 +29,7 @@ def test_the_table_names_functions_targets_and_rungs(run):
     assert result.exit_code == 0, result.stderr
     assert result.stdout.count("c-fast") == 6
     assert "rung 5: passed" in result.stdout
+    assert result.stdout.count("same bits at") == 12  # C and Python, each with NumPy
 
 
 def test_a_spoiled_kernel_is_caught(run, folder, monkeypatch):
@@ -43,3 +45,14 @@ def test_a_spoiled_kernel_is_caught(run, folder, monkeypatch):
     assert result.exit_code == 1
     assert "rhs" in result.stderr
     assert result.stdout == ""
+
+
+def test_a_kernel_that_is_missing_is_named(run, folder, monkeypatch):
+    """A folder without the kernel of one target is refused, with the command that writes it."""
+    shutil.copytree(systems_folder() / "rigid_body", folder / "generated" / "rigid_body")
+    (folder / "generated" / "rigid_body" / "kernel_python.py").unlink(missing_ok=True)
+    monkeypatch.setattr("coadjoint.cli.arguments.systems_folder", lambda: folder / "generated")
+    result = run("crosscheck", "rigid_body", "--points", "17")
+    assert result.exit_code != 0
+    assert "kernel_python.py cannot be read" in result.stderr
+    assert "coadjoint regenerate" in result.stderr

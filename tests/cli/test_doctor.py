@@ -52,7 +52,7 @@ def test_a_compiler_that_lies_is_a_failure(run, monkeypatch):
     monkeypatch.setattr(doctor, "PROBE", doctor.PROBE.replace("42", "41"))
     found, status = findings(run)
     assert status == 1
-    assert "answered 41" in found["C kernels"]["found"]
+    assert "returned 41" in found["C kernels"]["found"]
 
 
 def test_a_cache_that_others_may_write_is_a_failure(run, folder, monkeypatch):
@@ -61,7 +61,7 @@ def test_a_cache_that_others_may_write_is_a_failure(run, folder, monkeypatch):
     monkeypatch.setenv("COADJOINT_CACHE", str(folder))
     found, status = findings(run)
     assert status == 1
-    assert "others may write to it (mode 777)" in found["cache"]["found"]
+    assert "other users may write to it (mode 777)" in found["cache"]["found"]
     assert list(doctor._cache_state()) == []  # nothing promises that it heals
 
 
@@ -106,7 +106,7 @@ def test_no_home_is_a_finding(monkeypatch):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("coadjoint.build.cache.Path.home", home)
     finding = doctor._attempt("cache", doctor._cache)
-    assert (finding.status, "no home folder" in finding.found) == ("failed", True)
+    assert (finding.status, "no home folder is set" in finding.found) == ("failed", True)
     assert list(doctor._cache_state()) == []
 
 

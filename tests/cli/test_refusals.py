@@ -112,7 +112,7 @@ def test_a_folder_that_is_gone_is_said(tmp_path):
     shell = f"rmdir {gone}; exec {' '.join(COMMAND)} regenerate"
     done = subprocess.run(["sh", "-c", shell], cwd=gone, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "the working folder is gone" in done.stderr
+    assert "the working folder no longer exists" in done.stderr
 
 
 def test_faults_of_ours_stay_faults_of_ours():

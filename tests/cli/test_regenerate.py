@@ -120,6 +120,6 @@ def test_unknown_names_and_empty_folders_are_refused(project):
     with pytest.raises(SpecError, match="Did you mean 'body'") as caught:
         spec_paths(project / "derivations", ["bodi"])
     assert caught.value.found == "bodi"
-    with pytest.raises(SpecError, match="no spec is there") as caught:
+    with pytest.raises(SpecError, match="no specs found") as caught:
         spec_paths(project)
     assert caught.value.path == str(project)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from coadjoint.crosscheck.compare import Subject, depth
+from coadjoint.crosscheck.subject import Subject, depth
 from tests.kernels import ProgramReference
 from tests.programs import PENDULUM, TOP_ENERGY, TOP_RHS, program
 

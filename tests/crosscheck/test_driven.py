@@ -22,6 +22,9 @@ SPOILED = [
     ("kernel.py", "else inputs[:, chunk]", "else inputs[:, :1]"),
     ("kernel.py", "else time[:, chunk]", "else time[:, :1]"),
     ("kernel.py", "state, parameters, inputs, time, out)", "state, parameters, time, inputs, out)"),
+    ("kernel_python.py", "    u = inputs[0]\n", "    u = parameters[0]\n"),
+    ("kernel_python.py", "    t = time\n", "    t = inputs[0]\n"),
+    ("kernel_python.py", "inputs, *, time)", "time, *, inputs)"),
     ("kernel.c", "= inputs[0 * _inputs_row", "= time[0 * _inputs_row"),
     ("kernel.c", "_n * _time_member]", "_n * 0]"),
     ("kernel.c", "_time_member = time_stride != 0", "_time_member = 0"),
@@ -47,6 +50,7 @@ def test_texts_that_lose_inputs_are_caught(pendulum, file, right, wrong):
 def test_signatures_of_driven_kernels(pendulum):
     """Inputs follow the parameters, time goes by name in Python and follows them in C."""
     assert "def rhs(state, parameters, inputs, *, time, out=None):" in pendulum.texts["kernel.py"]
+    assert "def rhs(state, parameters, inputs, *, time):" in pendulum.texts["kernel_python.py"]
     prototype = """void sample_input_jacobian(
     size_t count,
     const double *state, size_t state_stride,

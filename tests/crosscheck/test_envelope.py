@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from coadjoint import pipeline
-from coadjoint.crosscheck.compare import depth
 from coadjoint.crosscheck.ladder import crosscheck
 from coadjoint.crosscheck.oracle import error_in_envelopes, oracle
+from coadjoint.crosscheck.subject import depth
 from coadjoint.derive.reference import Reference
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import read_spec

@@ -7,21 +7,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coadjoint.crosscheck import compare, ladder
-from coadjoint.crosscheck.compare import (
-    ExactPoints,
-    Subject,
-    against_oracle,
-    differing,
-    equal_bits,
-    exact_points,
-)
-from coadjoint.crosscheck.ladder import TARGETS, crosscheck
+from coadjoint.crosscheck import bits, compare, ladder
+from coadjoint.crosscheck.bits import differing, equal_bits
+from coadjoint.crosscheck.compare import ExactPoints, against_oracle, exact_points
+from coadjoint.crosscheck.ladder import crosscheck
+from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.kernels import render_system
+from coadjoint.render.targets import BUILDS
 from tests.kernels import COMPILER, EXACT, FUSED, ProgramReference, TextSystem
 from tests.programs import HEAVY_TOP, PENDULUM, program
 
+TARGETS = tuple(BUILDS)
+#: The targets that are compared with NumPy.
+EXACT_TARGETS = {"c", "python"}
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 
 
@@ -102,9 +101,12 @@ def test_the_textbook_top_passes_every_rung(tmp_path):
     for targets in report.figures.values():
         assert all(figures.points == 6 * 17 for figures in targets.values())
     assert report.points == 6 * 17 * len(TARGETS) * len(report.figures)
-    assert report.together == dict.fromkeys(report.figures, 0)  # bits say more
+    assert report.together == {name: {} for name in report.figures}  # bits say more
     assert all(lines >= 3 for lines in report.lines.values())
-    assert all(equal >= 20_000 for equal in report.equal.values())
+    for equal in report.equal.values():
+        assert set(equal) == EXACT_TARGETS
+        assert equal["c"] >= 20_000
+        assert equal["python"] >= 500
     record = json.loads(json.dumps(report.as_record()))
     assert record["rungs"] == {"3": "passed", "4": "passed", "5": "passed"}
     assert record["figures"]["rhs"]["c"]["k"] == report.figures["rhs"]["c"].k
@@ -126,8 +128,10 @@ def test_functions_beyond_sqrt_have_a_wider_threshold(tmp_path):
     report = crosscheck(programs_of(context), texts, reference, system, TARGETS, 300, 1000)
     assert report.passed
     assert report.threshold == 16
-    assert report.equal["rhs"] == report.equal["energy"] == 0
-    assert min(report.together["rhs"], report.together["energy"]) >= 90
+    for function in ("rhs", "energy"):
+        assert report.equal[function] == dict.fromkeys(EXACT_TARGETS, 0)
+        assert set(report.together[function]) == EXACT_TARGETS
+        assert min(report.together[function].values()) >= 90
 
 
 def test_functions_without_sin_are_compared_bit_by_bit_beside_others(tmp_path):
@@ -139,9 +143,10 @@ def test_functions_without_sin_are_compared_bit_by_bit_beside_others(tmp_path):
     system = TextSystem(context, texts, tmp_path)
     reference, programs = ProgramReference([plain, wavy]), programs_of(context)
     report = crosscheck(programs, texts, reference, system, TARGETS, 100, 1000)
-    assert report.equal["rhs"] >= 1000
-    assert report.equal["observables"] == report.together["rhs"] == 0
-    assert report.together["observables"] >= 50
+    assert report.equal["rhs"]["c"] >= 1000
+    assert report.equal["observables"] == dict.fromkeys(EXACT_TARGETS, 0)
+    assert report.together["rhs"] == {}
+    assert report.together["observables"]["c"] >= 50
 
 
 GOOD = "Omega3 * Pi2 - Omega2 * Pi3"
@@ -152,7 +157,10 @@ SPOILED = [
 ]
 
 
-@pytest.mark.parametrize(("file", "target"), [("kernel.py", "numpy"), ("kernel.c", "c")])
+@pytest.mark.parametrize(
+    ("file", "target"),
+    [("kernel.py", "numpy"), ("kernel.c", "c"), ("kernel_python.py", "python")],
+)
 @pytest.mark.parametrize(("bad", "fault"), SPOILED, ids=[fault for _, fault in SPOILED])
 def test_rung_4_catches_wrong_formulas(file, target, bad, fault, tmp_path):
     """A wrong sign, index or constant in one language alone is far above any threshold."""
@@ -179,12 +187,12 @@ def test_rung_4_catches_single_precision(tmp_path):
 
 
 def test_rung_4_catches_exchanged_rows(tmp_path):
-    """Two rows exchanged in both languages, so that NumPy and C agree, are caught."""
+    """Two rows exchanged in all languages, so that these agree, are caught."""
     rows = ("Omega1 * Gamma3 - Omega3 * Gamma1", "Omega2 * Gamma1 - Omega1 * Gamma2")
 
     def exchange(texts):
         spoiled = dict(texts)
-        for file in ("kernel.py", "kernel.c"):
+        for file in ("kernel.py", "kernel.c", "kernel_python.py"):
             text = texts[file].replace(rows[0], "?").replace(rows[1], rows[0]).replace("?", rows[1])
             assert text != texts[file]
             spoiled[file] = text
@@ -207,6 +215,51 @@ def test_rung_4_catches_wrong_equations(tmp_path):
     equal_bits(spoiled, 1000)
     with pytest.raises(CrossCheckError, match="rung 4"):
         compared(spoiled, "energy", 100)
+
+
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        (GOOD + " + (_p4 * Gamma2 - _p3 * Gamma3)", GOOD + " + _p4 * Gamma2 - _p3 * Gamma3"),
+        ("Pi1 / I1", "1.0 / I1 * Pi1"),
+        ("= -Gamma3", "= 0.0 - Gamma3"),
+        (" / 2.0", " / 2.0000000000000004"),
+    ],
+    ids=["order of a sum", "reciprocal", "sign of a zero", "last bit of a constant"],
+)
+def test_rung_5_holds_plain_python_to_each_bit(good, bad, tmp_path):
+    """What passes rung 4 in Python alone is seen beside NumPy, at fewer points than C has."""
+    spoiled = subject(tmp_path, spoil=replaced("kernel_python.py", good, bad))
+    for function in spoiled.programs:
+        compared(spoiled, function, 50)
+    with pytest.raises(CrossCheckError, match="rung 5") as caught:
+        equal_bits(spoiled, 20_000)
+    assert caught.value.python != caught.value.numpy or caught.value.python == 0
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [("q/p", False), ("1/(1/p)", False), ("sqrt(q)", False), ("q*p", True), ("sqrt(q*q)", True)],
+)
+def test_python_is_nan_exactly_where_it_has_no_number(value, expected, tmp_path):
+    """A quotient by zero and the root of a negative number stop it; NaN elsewhere is a fault.
+
+    NumPy gives 0 for 1/(1/0), which Python cannot pass through.
+    """
+    each = program("rhs", "q p", "k", "", value, (1,))
+    context = replace(PENDULUM, programs=(each,))
+    good = subject(tmp_path, context, reference=ProgramReference([each]))
+    batch = good.points.special(1, 400)
+    goes_on = bits._has_numbers(good, "rhs", batch)
+    found = good.evaluate("rhs", batch, "python")
+    assert np.isnan(found[:, ~goes_on]).all()
+    assert goes_on.all() == expected
+    assert goes_on.any()
+    assert equal_bits(good, 1000)["rhs"]["python"] > 100
+    lazy = dict.fromkeys(good.programs, lambda *_: np.nan)
+    good.system.plain = lazy
+    with pytest.raises(CrossCheckError, match=r"rung 5.*python nan"):
+        equal_bits(good, 1000)
 
 
 @pytest.mark.parametrize(
@@ -333,16 +386,16 @@ def test_a_system_without_values_is_an_error(tmp_path):
 
 
 def test_without_a_compiler_the_c_rungs_are_not_called_passed(tmp_path, monkeypatch):
-    """NumPy is checked alone, and the report says what was not run."""
+    """Only the Python kernels are checked, and the report says what was not run."""
     monkeypatch.setattr(ladder, "compiler_version", lambda: "none")
     texts = render_system(HEAVY_TOP)
     system = TextSystem(HEAVY_TOP, texts, tmp_path)
     report = crosscheck(programs_of(HEAVY_TOP), texts, TopReference(), system, None, 100, 100)
     assert not report.passed
-    assert report.targets == ("numpy",)
+    assert report.targets == ("numpy", "python")
     assert report.rungs[3] == "passed"
-    assert "no compiler" in report.rungs[4]
-    assert report.rungs[5] == "not run: no compiler"
+    assert report.rungs[4] == "numpy, python; the others not run: no compiler"
+    assert report.rungs[5] == report.rungs[4]
 
 
 def test_a_compiler_that_does_not_work_is_not_passed_over(monkeypatch):

@@ -4,26 +4,42 @@ import re
 
 import pytest
 
-from coadjoint.crosscheck.parse_back import check_c, check_python
-from coadjoint.crosscheck.read_c import read_c
-from coadjoint.crosscheck.read_c import read_expression as read_c_expression
-from coadjoint.crosscheck.read_python import read_expression as read_python_expression
+from coadjoint.crosscheck.parse_back import check_text
 from coadjoint.errors import CrossCheckError
 from coadjoint.render.kernels import render_system
+from coadjoint.render.targets import TARGETS
+from coadjoint.render.targets.c.reader import read_c
+from coadjoint.render.targets.c.reader import read_expression as read_c_expression
+from coadjoint.render.targets.numpy.reader import read_expression as read_python_expression
 from tests.programs import HEAVY_TOP, PENDULUM, TOP_RHS
 from tests.render.test_kernels import CROWD
 
 TEXTS = render_system(HEAVY_TOP)
 
 
+def check_python(program, text):
+    """One function in a text of the target NumPy."""
+    return check_text(program, TARGETS["numpy"], text, "heavy_top")
+
+
+def check_c(program, text, system="heavy_top"):
+    """One function in a text of the target C."""
+    return check_text(program, TARGETS["c"], text, system)
+
+
+def check_plain(program, text):
+    """One function in a text of the target Python."""
+    return check_text(program, TARGETS["python"], text, "heavy_top")
+
+
 @pytest.mark.parametrize("context", [HEAVY_TOP, PENDULUM, CROWD], ids=lambda context: context.name)
 def test_rendered_texts_read_back(context):
-    """Every function of both languages, in every branch, is its Program."""
+    """Every function of every language, in every branch, is its Program."""
     texts = render_system(context)
     assert context.programs
     for program in context.programs:
-        check_python(program, texts["kernel.py"])
-        check_c(program, texts["kernel.c"], context.name)
+        for target in TARGETS.values():
+            assert check_text(program, target, texts[target.kernel], context.name)
 
 
 def test_both_branches_are_read():
@@ -61,6 +77,57 @@ def test_spoiled_python_is_caught(good, bad, found):
     with pytest.raises(CrossCheckError, match=found) as caught:
         check_python(TOP_RHS, spoiled)
     assert (caught.value.rung, caught.value.function) == (3, "rhs")
+
+
+SPOILED_PLAIN = [
+    ("Omega3 * Pi2 - Omega2 * Pi3", "Omega3 * Pi2 + Omega2 * Pi3", "the line of 0"),
+    ("out[3] =", "out[4] =", "the line of"),
+    ("    out[3] =", "    out[5] = 0.0\n    out[3] =", "the line of"),
+    ("    Omega1 = Pi1 / I1\n", "", "Omega"),
+    ("Pi1, Pi2, Pi3, G", "Pi2, Pi1, Pi3, G", "inputs"),
+    ("_p1 = m * g", "_p1 = sqrt(m * g)", "the line of _p1"),
+    ("_p1 = m * g", "_p1 = np.sqrt(m * g)", "no form"),
+    ("_p1 = m * g", "_p1 = abs(m * g)", "no form"),
+    ("_p1 = m * g", "_p1 = m * g * 1", "'1'"),
+    ("_p1 = m * g", "_p1 += m * g", "_p1 \\+= m"),
+    ("out = [0.0] * 6", "out = [0.0] * 7", "no form"),
+    ("out = [0.0] * 6", "out = [1.0] * 6", "no form"),
+    ("return out\n", "return out[::-1]\n", "not what is returned, out"),
+    ("(state, parameters)", "(parameters, state)", "takes parameters, state"),
+    ("\nID =", "\nimport os\nID =", "out of place"),
+    ("\nID =", "\nfrom math import cos as sqrt\nID =", "out of place"),
+    ("\nID =", "\nfrom cmath import sqrt\nID =", "out of place"),
+    ("def energy(", "def rhs(state, parameters):\n    pass\n\n\ndef energy(", "out of place"),
+]
+
+
+@pytest.mark.parametrize(("good", "bad", "found"), SPOILED_PLAIN)
+def test_spoiled_plain_python_is_caught(good, bad, found):
+    """The same in the target without NumPy; a row may be given once, and the list as it is."""
+    text = TEXTS["kernel_python.py"]
+    assert good in text
+    with pytest.raises(CrossCheckError, match=found) as caught:
+        check_plain(TOP_RHS, text.replace(good, bad, 1))
+    assert (caught.value.rung, caught.value.function) == (3, "rhs")
+
+
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("return _rows(out, 6)", "return _rows(out, 5)"),
+        ("return _rows(out, 6)", "return out"),
+        ("range(0, len(out), size)", "range(0, len(out), 6)"),
+        ("def _rows(out, size)", "def _rows(size, out)"),
+    ],
+)
+def test_spoiled_rows_of_a_matrix_are_caught(good, bad):
+    """The helper that makes rows of a list is read, too."""
+    tensor = next(each for each in HEAVY_TOP.programs if each.name == "poisson_tensor")
+    text = TEXTS["kernel_python.py"]
+    assert check_plain(tensor, text)
+    assert good in text
+    with pytest.raises(CrossCheckError, match=r"returned|_rows"):
+        check_plain(tensor, text.replace(good, bad))
 
 
 SPOILED_C = [
@@ -111,6 +178,8 @@ def test_a_missing_function_is_caught():
         check_python(TOP_RHS, "")
     with pytest.raises(CrossCheckError, match="heavy_top_rhs"):
         check_c(TOP_RHS, "", "heavy_top")
+    with pytest.raises(CrossCheckError, match="no function 'rhs'"):
+        check_plain(TOP_RHS, "")
 
 
 @pytest.mark.parametrize("text", ["a + b", "-(a * b) / 2.5e-07", "np.sqrt(a) - 1.0"])

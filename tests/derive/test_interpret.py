@@ -5,9 +5,9 @@ import pytest
 from coadjoint.derive.interpret import entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Field
+from coadjoint.spec.core.definitions import expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.model import Definition
-from coadjoint.spec.sections.definitions import expand, functions
 
 FIELD = Field(["a1", "a2", "b1", "b2", "b3", "A11", "A12", "A21", "A22"])
 x = {name: FIELD[name] for name in FIELD.names}

@@ -6,8 +6,8 @@ import pytest
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair
-from coadjoint.derive.routes.manakov import find_pair
 from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove import lax as examined

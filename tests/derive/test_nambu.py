@@ -6,7 +6,8 @@ import pytest
 import sympy
 from sympy.combinatorics import Permutation
 
-from coadjoint.derive import derive, nambu
+from coadjoint.derive import derive
+from coadjoint.derive.routes import nambu
 from coadjoint.prove import prove
 from tests.specs import shipped, spec
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from coadjoint.exact.dense import dot, scale
 from coadjoint.groups.central_forces import (
     alignment,
     alignment_defect,
@@ -15,7 +16,6 @@ from coadjoint.groups.central_forces import (
     poincare_vector,
     point_motion,
 )
-from coadjoint.groups.vectors import dot, scale
 
 
 @pytest.fixture

@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.dense import dot
 from coadjoint.groups.charts import north_chart, north_point, south_chart, south_point
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.vectors import dot
 
 POINT = (Fraction(2, 7), Fraction(3, 7), Fraction(6, 7))
 

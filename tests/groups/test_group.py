@@ -6,8 +6,8 @@ import pytest
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
+from coadjoint.exact.dense import commutator, identity, product, subtract
 from coadjoint.groups import MatrixGroup, matrix_group
-from coadjoint.groups.matrix import commutator, identity, product, subtract
 from tests.groups.exactly import check_agrees, dot, random_point, random_vector, same
 
 #: Groups whose actions are compared with the generic element, in its symbols.

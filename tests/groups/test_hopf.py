@@ -3,9 +3,9 @@
 import numpy as np
 
 from coadjoint.exact import Field
+from coadjoint.exact.dense import apply, product, scale
 from coadjoint.groups.complex_numbers import adjoint
 from coadjoint.groups.hopf import amplitudes, coherence_matrix, hopf_map, reduced_motion
-from coadjoint.groups.vectors import apply, matmul, scale
 
 
 def test_the_amplitudes_come_back_up_to_a_phase():
@@ -14,7 +14,7 @@ def test_the_amplitudes_come_back_up_to_a_phase():
     a = amplitudes(field)
     Q, n0 = coherence_matrix(a), hopf_map(a)[0]
     assert apply(Q, a) == scale(n0, a)
-    assert matmul(Q, Q) == tuple(scale(n0, row) for row in Q)
+    assert product(Q, Q) == tuple(scale(n0, row) for row in Q)
     assert adjoint(Q) == Q
     assert apply(Q, (a[1], a[0])) != scale(n0, (a[1], a[0]))
 

@@ -5,10 +5,11 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.algebra.linear import Span
 from coadjoint.exact import Field
+from coadjoint.exact.dense import identity
+from coadjoint.exact.linear import Span
 from coadjoint.groups import MatrixGroup, matrix_group
-from coadjoint.groups.matrix import complex_multiple, determinant, identity
+from coadjoint.groups.matrix import complex_multiple, determinant
 from tests.groups.exactly import random_point, same
 from tests.groups.test_group import EVERY
 

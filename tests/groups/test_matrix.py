@@ -6,13 +6,24 @@ import pytest
 import sympy
 
 from coadjoint.exact import Field
+from coadjoint.exact.dense import (
+    apply,
+    commutator,
+    identity,
+    product,
+    scale,
+    subtract,
+    trace,
+    transpose,
+    weighted,
+)
 from coadjoint.groups import matrix as m
 
 A = ((2, 1, 0), (3, -1, 4), (1, 1, 5))
 J = ((0, 0, -1, 0), (0, 0, 0, -1), (1, 0, 0, 0), (0, 1, 0, 0))
 
 
-def exact(matrix):
+def exactly(matrix):
     """Integers as fractions, so that division is exact."""
     return tuple(tuple(map(Fraction, row)) for row in matrix)
 
@@ -26,16 +37,16 @@ def complex_matrix(real, imaginary):
 def test_determinant_and_inverse_are_those_of_sympy():
     """The traces give the determinant and inverse that an independent program gives."""
     reference = sympy.Matrix(A)
-    assert m.determinant(exact(A)) == (reference.det(), 0)
-    assert m.product(A, m.inverse(exact(A))) == m.identity(3)
-    assert m.inverse(exact(A)) != exact(A)
+    assert m.determinant(exactly(A)) == (reference.det(), 0)
+    assert product(A, m.inverse(exactly(A))) == identity(3)
+    assert m.inverse(exactly(A)) != exactly(A)
 
 
 def test_the_complex_determinant_is_that_of_sympy():
     """With a complex structure the determinant is that of half the size."""
     real, imaginary = ((1, 2), (0, 3)), ((4, 0), (1, -1))
     reference = (sympy.Matrix(real) + sympy.I * sympy.Matrix(imaginary)).det()
-    a, b = m.determinant(exact(complex_matrix(real, imaginary)), J)
+    a, b = m.determinant(exactly(complex_matrix(real, imaginary)), J)
     assert sympy.expand(reference) == a + b * sympy.I
     assert b != 0
 
@@ -43,14 +54,14 @@ def test_the_complex_determinant_is_that_of_sympy():
 @pytest.mark.parametrize("structure", [None, J])
 def test_the_resolvent_inverts(structure):
     """``(1 - a) adj = det`` with ``det`` a complex number where there is a structure."""
-    a = exact(complex_matrix(((1, 2), (0, 3)), ((4, 0), (1, -1))))
+    a = exactly(complex_matrix(((1, 2), (0, 3)), ((4, 0), (1, -1))))
     adjugate, d = m.resolvent(a, structure)
-    expected = m.multiple(d[0], m.identity(4))
+    expected = scale(d[0], identity(4))
     if structure:
         expected = m.complex_multiple(d, J)
-    one_less_a = m.subtract(m.identity(4), a)
-    assert m.product(one_less_a, adjugate) == expected
-    assert m.product(a, adjugate) != expected
+    one_less_a = subtract(identity(4), a)
+    assert product(one_less_a, adjugate) == expected
+    assert product(a, adjugate) != expected
 
 
 def test_exponential_logarithm_and_inverse_of_unipotents():
@@ -61,15 +72,15 @@ def test_exponential_logarithm_and_inverse_of_unipotents():
     u = m.exponential(n)
     assert u[0][2] == c + a * b / 2
     assert m.unipotent_logarithm(u) == n
-    assert m.product(u, m.unipotent_inverse(u)) == m.identity(3)
-    assert m.unipotent_inverse(u) == m.exponential(m.multiple(-1, n))
+    assert product(u, m.unipotent_inverse(u)) == identity(3)
+    assert m.unipotent_inverse(u) == m.exponential(scale(-1, n))
 
 
 def test_coordinates_of_overlapping_matrices():
     """Readers give the coordinates also where no entry belongs to one matrix alone."""
     basis = [{(0, 0): 1, (1, 1): -1}, {(0, 0): 1, (1, 1): 1}, {(0, 1): 2}]
     readers = m.coordinate_readers(basis)
-    matrix = m.combination([5, 7, -3], basis, 2)
+    matrix = weighted([5, 7, -3], basis, 2)
     assert [sum(matrix[r][c] * w for (r, c), w in reader.items()) for reader in readers] == [
         *(5, 7, -3)
     ]
@@ -83,5 +94,5 @@ def test_dependent_matrices_have_no_coordinates():
 def test_the_rest_of_the_arithmetic():
     """Commutator, trace, transpose and application to a vector, by hand."""
     X, Y = ((0, 1), (0, 0)), ((0, 0), (1, 0))
-    assert m.commutator(X, Y) == ((1, 0), (0, -1))
-    assert (m.trace(A), m.transpose(X), m.apply(A, (1, 2, 3))) == (6, Y, (4, 13, 18))
+    assert commutator(X, Y) == ((1, 0), (0, -1))
+    assert (trace(A), transpose(X), apply(A, (1, 2, 3))) == (6, Y, (4, 13, 18))

@@ -4,8 +4,8 @@ import pytest
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.dense import product, trace, transpose
 from coadjoint.groups import matrix_group, trace_pairing
-from coadjoint.groups.matrix import product, trace, transpose
 
 PAIRS = [
     ("so(3)", "tr(mu^T xi)/2", "algebra"),

@@ -6,8 +6,8 @@ import pytest
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
+from coadjoint.exact.dense import apply, product, transpose
 from coadjoint.groups.quaternions import Coquaternion, Hypercomplex, Quaternion
-from coadjoint.groups.vectors import apply, matmul, transpose
 
 
 def check_associative(a, b, c):
@@ -55,10 +55,10 @@ def test_left_and_right_matrices(generic):
     a, b, c = generic
     assert apply(a.left_matrix(), b.components) == (a * b).components
     assert apply(b.right_matrix(), a.components) == (a * b).components
-    assert (a * b).left_matrix() == matmul(a.left_matrix(), b.left_matrix())
-    assert (a * b).right_matrix() == matmul(b.right_matrix(), a.right_matrix())
-    assert matmul(a.left_matrix(), c.right_matrix()) == matmul(c.right_matrix(), a.left_matrix())
-    assert (a * b).left_matrix() != matmul(b.left_matrix(), a.left_matrix())
+    assert (a * b).left_matrix() == product(a.left_matrix(), b.left_matrix())
+    assert (a * b).right_matrix() == product(b.right_matrix(), a.right_matrix())
+    assert product(a.left_matrix(), c.right_matrix()) == product(c.right_matrix(), a.left_matrix())
+    assert (a * b).left_matrix() != product(b.left_matrix(), a.left_matrix())
 
 
 def test_conjugation_is_transposition_for_quaternions_only():

@@ -16,16 +16,7 @@ from dataclasses import dataclass
 GENERATED = ("flip", "drop", "omit", "swap", "transpose")
 #: Operations whose last two arguments are of one kind and do not commute.
 ORDERED = frozenset(
-    [
-        "add_multiple",
-        "bracket",
-        "cross",
-        "diamond",
-        "dot_matrix",
-        "multiplied",
-        "product",
-        "subtract",
-    ]
+    {"add_multiple", "bracket", "commutator", "cross", "diamond", "product", "subtract"}
 )
 Function = ast.FunctionDef | ast.Module
 Signed = list[tuple[int, ast.expr]]

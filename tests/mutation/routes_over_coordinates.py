@@ -168,7 +168,7 @@ NEWTON = (
         "newton",
         "forces",
         (),
-        "_acceleration: use mass for inverse in applied",
+        "_acceleration: use mass for inverse in apply",
         "_acceleration: rewrite (_1 for row in _2 for k in _3) -> (_1 for k in _3 for row in _2)",
         tests=MASSES,
     ),

@@ -61,14 +61,8 @@ SHARED = (
     *of(
         "formulas",
         "interpret",
-        ("bloch_iserles_3",),
-        "determinant: omit 1 j",
-    ),
-    *of(
-        "formulas",
-        "interpret",
         TOP,
-        "_subtract: flip b",
+        "module: use add for subtract in _BINARY",
         "_value: invert below",
     ),
     *of(
@@ -76,13 +70,6 @@ SHARED = (
         "interpret",
         ("kepler",),
         "_value: flip field",
-    ),
-    *of(
-        "formulas",
-        "interpret",
-        (),
-        "inverse: omit 1 i j",
-        tests=("tests/derive/test_routes.py",),
     ),
     *of(
         "solver",

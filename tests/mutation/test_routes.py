@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from coadjoint.derive import ROUTES
+from coadjoint.spec.routes import ROUTES
 from tests.mutation.mutant import ROOT, Mutant, module
 from tests.mutation.routes import ROUTE_MUTANTS
 

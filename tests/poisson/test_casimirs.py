@@ -5,15 +5,15 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.algebra import algebra_by_name, direct_sum, from_brackets, semidirect_product
-from coadjoint.algebra.linear import PRIME
 from coadjoint.algebra.representation import defining
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field, element_text
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.limits import MONOMIALS
 from coadjoint.poisson import PoissonStructure, declared, lie_poisson, nambu
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.poisson.polynomials import Polynomial, read_polynomial
-from coadjoint.poisson.ranks import generic_rank
 from coadjoint.poisson.search import independent_polynomials
 from coadjoint.poisson.summands import restricted_algebra, summands
 
@@ -139,7 +139,7 @@ def test_casimirs_of_a_bracket_that_is_not_linear():
     x, y, z = (field[name] for name in field.names)
     c = x**4 + x * y + z**2 - 3 * z
     structure = nambu(field, field.names, [c])
-    (found,) = structure.casimirs(4).generators
+    (found,) = casimirs(structure, 4).generators
     assert found == c
 
 
@@ -198,7 +198,7 @@ def test_a_term_between_the_summands_joins_them():
         field, names, {pair: e * square if pair[0] > 2 else e for pair, e in entries.items()}
     )
     assert summands(joined) == [tuple(range(6))]
-    assert [degree(joined, c) for c in joined.casimirs(2).generators] == [2, 2]
+    assert [degree(joined, c) for c in casimirs(joined, 2).generators] == [2, 2]
 
 
 def test_a_summand_in_another_order_keeps_its_algebra():
@@ -218,7 +218,7 @@ def test_a_search_refuses_parameters_and_quotients_and_functions():
     for entry, found in ((a * z, "'a'"), (1 / z, "quotient"), (root, "'sqrt'")):
         structure = declared(field, ("x", "y", "z"), {(0, 1): entry})
         with pytest.raises(AlgebraError, match=found):
-            structure.casimirs(2)
+            casimirs(structure, 2)
 
 
 def test_a_search_refuses_a_bracket_that_is_not_poisson():
@@ -227,7 +227,7 @@ def test_a_search_refuses_a_bracket_that_is_not_poisson():
     x, y, zero = field["x"], field["y"], field.zero
     tensor = ((zero, x, y), (-x, zero, zero), (-y, zero, zero))
     with pytest.raises(AlgebraError, match="Jacobi"):
-        PoissonStructure(field, field.names, tensor).casimirs(2)
+        casimirs(PoissonStructure(field, field.names, tensor), 2)
 
 
 def test_both_signs_of_the_bracket_have_the_same_casimirs():

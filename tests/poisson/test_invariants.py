@@ -4,12 +4,12 @@ import pytest
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.limits import INVARIANT_TERMS
 from coadjoint.poisson.casimirs import casimirs, lie_poisson_dual
 from coadjoint.poisson.invariants import dual_matrix, has_trace_form, matrix_invariants
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Polynomial
-from coadjoint.poisson.ranks import generic_rank
 
 
 @pytest.mark.parametrize(

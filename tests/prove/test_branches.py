@@ -6,9 +6,9 @@ from itertools import permutations, product
 
 import pytest
 
-from coadjoint.algebra.linear import nullspace
 from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.exact import Condition, Field, Region
+from coadjoint.exact.linear import nullspace
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.certificate import failure_text
 from coadjoint.prove.ideals import Ideal

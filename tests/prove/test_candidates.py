@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.algebra.linear import PRIME
+from coadjoint.exact.linear import PRIME
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.candidates import (
     CandidateSearch,

@@ -6,7 +6,7 @@ import pytest
 
 from coadjoint.derive import Chart, Equations, Exact, Relation, derive
 from coadjoint.derive import setting as settings
-from coadjoint.poisson.ranks import CHANCE
+from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.charts import ChartMap, reach
 from tests.specs import shipped, spec

@@ -6,8 +6,8 @@ from random import Random
 
 import pytest
 
-from coadjoint.algebra.linear import PRIME, primes
 from coadjoint.exact import Field
+from coadjoint.exact.linear import PRIME, primes
 from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint, echelon_of_integers
 from coadjoint.prove.samples import AtNumbers, Samples, leading
 from tests.prove.rolling import motion

@@ -51,8 +51,7 @@ CENTRED = (
 def rates_of_both():
     """The rates of M and Gamma by both derivations, at the same Omega and Gamma, in one field."""
     right = motion(BALL, *CENTRED)
-    lagrangian = LegendreMap(right.equations).lagrangian
-    momenta = dict(reduced_momenta(right.distribution, lagrangian))
+    momenta = dict(reduced_momenta(right.distribution))
     assert list(momenta) == ["Omega_momentum1", "Omega_momentum2", "Omega_momentum3"]
     positions = [right.field[f"Gamma{n}"] for n in (1, 2, 3)]
     ours = [right.rate(x) for x in (*momenta.values(), *positions)]
@@ -132,8 +131,6 @@ def test_rates_are_taken_by_the_solve():
     """The rate of a momentum without a determinant is the one with it."""
     ball = motion(BALL)
     assert isinstance(ball, ConstrainedRates)
-    (momentum, *_) = dict(
-        reduced_momenta(ball.distribution, LegendreMap(ball.equations).lagrangian)
-    ).values()
+    (momentum, *_) = dict(reduced_momenta(ball.distribution)).values()
     twice = ball.rate(momentum + ball.field["Omega1"]) - ball.rate(ball.field["Omega1"])
     assert ball.field.is_zero(twice - ball.rate(momentum))

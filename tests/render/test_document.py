@@ -12,7 +12,7 @@ from markupsafe import escape
 
 from coadjoint.derive import derive
 from coadjoint.derive.document import ADDENDS, document, formula, formula_line
-from coadjoint.derive.equations import symbol
+from coadjoint.derive.records import symbol
 from coadjoint.exact import Field
 from coadjoint.render.document import FORMATS, WIDTH, latex_escaped, render_document
 from tests.specs import shipped

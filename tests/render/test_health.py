@@ -94,7 +94,7 @@ def test_leftovers_and_a_lock_in_use_heal(tree):
     with (tree / LOCK).open("rb") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         found = problems(tree)
-    assert any("left by a run that was killed" in text and heals for text, heals in found)
+    assert any("left behind by a killed run" in text and heals for text, heals in found)
     assert any("is held" in text and heals for text, heals in found)
 
 

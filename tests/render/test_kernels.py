@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coadjoint.declared import Quantity
 from coadjoint.lower.program import Program
-from coadjoint.render.kernels import NO_LICENSE, KernelContext, Quantity, fingerprint, render_system
+from coadjoint.render.kernels import NO_LICENSE, KernelContext, fingerprint, render_system
 from tests.kernels import COMPILER, EXACT, STRICT, TextSystem, compile_text
 from tests.programs import HEAVY_TOP, PENDULUM, program
 from tests.render.test_printers import check_formatted
@@ -58,7 +59,7 @@ def context(request):
 def test_python_files_pass_our_formatter_and_linter(context, tmp_path):
     """`ruff format` leaves each file as it is and `ruff check` finds nothing."""
     texts = render_system(context)
-    for name in ("kernel.py", "__init__.py"):
+    for name in ("kernel.py", "__init__.py", "kernel_python.py"):
         check_formatted(texts[name], tmp_path)
         # E741: I and l are what books call inertia and length.
         rules = ["--select=E,F,W,I", "--ignore=E741", "--line-length=100"]
@@ -229,7 +230,7 @@ def test_heads_say_where_a_file_comes_from(context):
         assert context.spec in text
         assert licence in text
         assert f"id: {identity}" in text
-    for name in ("kernel.py", "kernel.c"):
+    for name in ("kernel.py", "kernel.c", "kernel_python.py"):
         assert "Operations per member:" in texts[name]
         for component in context.programs[0].state:
             assert re.search(rf"^ +\d+ +{component} +\S", texts[name], re.MULTILINE)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from coadjoint.declared import Quantity
 from coadjoint.lower.program import Program
-from coadjoint.render.kernels import KernelContext, Quantity, render_system
+from coadjoint.render.kernels import KernelContext, render_system
 from coadjoint.solve.system import System, load_folder
 from tests.programs import PENDULUM, program
 

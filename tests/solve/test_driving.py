@@ -29,7 +29,7 @@ def system(tmp_path_factory):
 # -- kernels --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("target", ["numpy", "c", "c-fast"])
+@pytest.mark.parametrize("target", ["numpy", "c", "c-fast", "python"])
 @pytest.mark.parametrize("batch", [(), (7,), (3, 5)], ids=str)
 def test_inputs_and_time_for_each_member(system, target, batch):
     """Hand-typed rates of the pendulum; parameters, inputs and time shared or one for each."""
@@ -101,7 +101,7 @@ def test_a_system_without_inputs_has_none():
         rigid_body.rhs([1.0, 2.0, 3.0], None, [1.0])
 
 
-@pytest.mark.parametrize("target", ["numpy", "c"])
+@pytest.mark.parametrize("target", ["numpy", "c", "python"])
 def test_bound_calls_read_inputs_and_time_in_place(system, target):
     """They follow the arrays, as the state is followed."""
     pendulum = system(PENDULUM)

@@ -11,6 +11,7 @@ import pytest
 from coadjoint.build import compiler
 from coadjoint.build.compiler import CompilerWarning, find_compiler
 from coadjoint.errors import OutputError
+from coadjoint.render.targets.c import loader
 from coadjoint.solve import kernels
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top, kirchhoff, rigid_body
@@ -84,7 +85,7 @@ def test_every_branch_of_a_wrong_kernel_is_noticed(monkeypatch, fresh, tmp_path,
 @pytest.mark.parametrize("size", [1, 7, 500, 10_000])
 def test_large_batches_are_computed_in_pieces(monkeypatch, size):
     """Ctrl-C is heard between pieces, called or bound; the pieces fit together."""
-    monkeypatch.setattr(kernels, "CHUNK", size)
+    monkeypatch.setattr(loader, "CHUNK", size)
     source = np.random.default_rng(0)
     state = source.normal(size=(6, 50))
     own = source.uniform(0.5, 2.0, size=(kirchhoff.PARAMETERS.size, 50))
@@ -98,7 +99,7 @@ def test_large_batches_are_computed_in_pieces(monkeypatch, size):
 
 def test_one_call_is_short_enough_to_be_interrupted():
     """The largest piece of the largest function computes for less than a second."""
-    state = np.ones((6, kernels.CHUNK // (6 + 36 + 1)))
+    state = np.ones((6, loader.CHUNK // (6 + 36 + 1)))
     out = np.empty((6, 6, state.shape[1]))
     call = heavy_top.bind("jacobian", state, None, out=out)
     start = process_time()
@@ -129,10 +130,10 @@ def test_agreement_is_strict_where_bits_are_promised():
     for row, value in enumerate((np.nextafter(1.0, 2.0), 1.0, -np.inf, np.nan)):
         spoiled = exact.copy()
         spoiled[row] = value
-        assert not kernels._agree(spoiled, exact, exact=True)
-        assert kernels._agree(spoiled, exact, exact=False) == (row == 0)
-    assert kernels._agree(exact.copy(), exact, exact=True)
-    assert kernels._agree(exact.copy(), exact, exact=False)
+        assert not loader._agree(spoiled, exact, exact=True)
+        assert loader._agree(spoiled, exact, exact=False) == (row == 0)
+    assert loader._agree(exact.copy(), exact, exact=True)
+    assert loader._agree(exact.copy(), exact, exact=False)
 
 
 def test_a_kernel_that_was_verified_says_nothing(fresh):

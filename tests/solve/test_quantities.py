@@ -2,8 +2,9 @@
 
 import pytest
 
+from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.quantities import Quantities, Quantity
+from coadjoint.solve.quantities import Quantities
 
 STATE = Quantities(
     Quantity("Pi", (2,), "kg m^2/s", ("Pi1", "Pi2")),

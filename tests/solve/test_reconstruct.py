@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coadjoint.crosscheck.compare import differing
+from coadjoint.crosscheck.bits import differing
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.reconstruct import upright
 from coadjoint.systems import rigid_body

@@ -32,6 +32,11 @@ def plus(a: Vector, b: Vector) -> list[Any]:
     return [x + y for x, y in zip(a, b, strict=True)]
 
 
+def minus(a: Vector, b: Vector) -> list[Any]:
+    """``a - b`` in components."""
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
 def hat(a: Vector) -> list[list[Any]]:
     """``hat(a) b = a x b``."""
     return [[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]]

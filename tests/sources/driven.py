@@ -1,7 +1,7 @@
 """Driven and damped systems typed by hand, for comparison with ours.
 
 Each function takes the components of state and parameters as flat sequences, as those of
-`tests.sources.textbook`, which has them by system.
+`tests.sources.textbook`, which has them by system. Inputs and time follow the parameters.
 """
 
 from __future__ import annotations
@@ -11,11 +11,15 @@ from typing import Any
 from tests.sources.bodies import (
     heavy_top_observables,
     heavy_top_rates,
+    rigid_body_attitude_observables,
+    rigid_body_attitude_tensor,
     rigid_body_observables,
     rigid_body_tensor,
     se3_tensor,
 )
-from tests.sources.components import Vector, cross, dot
+from tests.sources.components import Vector, cross, dot, minus, over, plus, times
+from tests.sources.coupled import vehicle_tensor
+from tests.sources.points import circular
 
 
 def damped_top_rates(x: Vector, parameters: Vector) -> list[Any]:
@@ -90,7 +94,130 @@ def gilbert_observables(m: Vector, parameters: Vector) -> dict[str, Any]:
     }
 
 
+def quadrotor_rates(x: Vector, given: Vector) -> list[Any]:
+    """``J dOmega/dt + Omega x J Omega = M``, ``m dv/dt = m g e3 - f R e3`` (Lee and others 2010).
+
+    In body axes: v = R P/m, and the vertical e3, down, is R Gamma.
+    """
+    Pi, P, down = x[:3], x[3:6], x[6:9]
+    inertia, (m, g, f), M = given[:3], given[3:6], given[6:]
+    omega = over(Pi, inertia)
+    force = [*times(m * g, down[:2]), m * g * down[2] - f]
+    return [
+        *plus(cross(Pi, omega), M),
+        *plus(cross(P, omega), force),
+        *cross(down, omega),
+        dot(down, P) / m,
+    ]
+
+
+def quadrotor_observables(x: Vector, given: Vector) -> dict[str, Any]:
+    """The energy with the height -x3, and the two Casimirs."""
+    Pi, P, down = x[:3], x[3:6], x[6:9]
+    inertia, (m, g) = given[:3], given[3:5]
+    omega, aside = over(Pi, inertia), cross(P, down)
+    return {
+        "energy": dot(Pi, omega) / 2 + dot(P, P) / (2 * m) - m * g * x[9],
+        "casimir1": dot(down, down),
+        "casimir2": dot(aside, aside),
+        **{f"Omega{n + 1}": value for n, value in enumerate(omega)},
+        **{f"v{n + 1}": value / m for n, value in enumerate(P)},
+    }
+
+
+def quadrotor_tensor(x: Vector) -> list[list[Any]]:
+    """As of the underwater vehicle, and ``{z, P} = Gamma`` of the depth z."""
+    down = [0, 0, 0, *x[6:9], 0, 0, 0]
+    rows = [[*row, -edge] for row, edge in zip(vehicle_tensor(x[:9]), down, strict=True)]
+    return [*rows, [*down, 0]]
+
+
+def wheels_rates(x: Vector, given: Vector) -> list[Any]:
+    """``dPi/dt = Pi x Omega`` whatever the motors do, ``dL/dt = u``, ``I Omega = Pi - L``."""
+    q0, q1, q2, q3, *momenta = x
+    Pi, inertia, u = momenta[:3], given[:3], given[6:]
+    w1, w2, w3 = omega = over(minus(Pi, momenta[3:]), inertia)
+    return [
+        -(q1 * w1 + q2 * w2 + q3 * w3) / 2,
+        (q0 * w1 + q2 * w3 - q3 * w2) / 2,
+        (q0 * w2 + q3 * w1 - q1 * w3) / 2,
+        (q0 * w3 + q1 * w2 - q2 * w1) / 2,
+        *cross(Pi, omega),
+        *u,
+    ]
+
+
+def wheels_observables(x: Vector, given: Vector) -> dict[str, Any]:
+    """Kinetic energy of body and wheels; the momentum turned by Euler and Rodrigues."""
+    Pi, L = x[4:7], x[7:]
+    inertia, J = given[:3], given[3:6]
+    omega, whole = over(minus(Pi, L), inertia), over(L, J)
+    seen = rigid_body_attitude_observables(x[:7], inertia)
+    return {
+        "energy": dot(minus(Pi, L), omega) / 2 + dot(L, whole) / 2,
+        "casimir1": seen["casimir1"],
+        **{f"casimir2_{n + 1}": value for n, value in enumerate(L)},
+        **{f"Omega{n + 1}": value for n, value in enumerate(omega)},
+        **{f"w{n + 1}": value for n, value in enumerate(minus(whole, omega))},
+        **{name: value for name, value in seen.items() if name.startswith("Pi_spatial")},
+    }
+
+
+def wheels_tensor(x: Vector) -> list[list[Any]]:
+    """As of a body with its attitude; the momenta of the wheels commute with everything."""
+    rows = [[*row, 0, 0, 0] for row in rigid_body_attitude_tensor(x[:7])]
+    return [*rows, *([0] * 10 for _ in range(3))]
+
+
+def satellite_rates(x: Vector, given: Vector) -> list[Any]:
+    """``dPi/dt = Pi x Omega + 3 n^2 gamma x I gamma``, ``Pi = I Omega`` (Hughes 1986).
+
+    Normal and radius turn with the orbit: ``omega = Omega - n beta``.
+    """
+    Pi, beta, gamma = x[:3], x[3:6], x[6:]
+    inertia, n = given[:3], given[3]
+    omega = over(Pi, inertia)
+    torque = cross(gamma, [i * a for i, a in zip(inertia, gamma, strict=True)])
+    turning = minus(omega, times(n, beta))
+    return [
+        *plus(cross(Pi, omega), times(3 * n**2, torque)),
+        *cross(beta, turning),
+        *cross(gamma, turning),
+    ]
+
+
+def satellite_observables(x: Vector, given: Vector) -> dict[str, Any]:
+    """The energy, which is Jacobi's integral, three Casimirs, and the velocity."""
+    Pi, beta, gamma = x[:3], x[3:6], x[6:]
+    inertia, n = given[:3], given[3]
+    omega = minus(over(Pi, inertia), times(n, beta))
+
+    def moment(a: Vector) -> Any:
+        return sum(i * each**2 for i, each in zip(inertia, a, strict=True))
+
+    jacobi = moment(omega) / 2 + 3 * n**2 * moment(gamma) / 2 - n**2 * moment(beta) / 2
+    return {
+        "energy": jacobi,
+        "casimir1": dot(beta, beta),
+        "casimir2": dot(gamma, gamma),
+        "casimir3": dot(beta, gamma),
+        **{f"omega{n + 1}": value for n, value in enumerate(omega)},
+        "jacobi": jacobi,
+    }
+
+
+def shaken(given: Vector) -> list[Any]:
+    """Parameters of a heavy top that feels gravity and the acceleration of its pivot."""
+    *top, a, w, t = given
+    top[4] -= a * w**2 * circular("cos", w * t)
+    return top
+
+
 RATES = {
+    "quadrotor": quadrotor_rates,
+    "spacecraft_wheels": wheels_rates,
+    "gravity_gradient_satellite": satellite_rates,
+    "kapitza_top": lambda x, p: heavy_top_rates(x, shaken(p)),
     "double_bracket_body": falling_body_rates,
     "landau_lifshitz_gilbert": gilbert_rates,
     "heavy_top_damped": damped_top_rates,
@@ -98,6 +225,10 @@ RATES = {
     "lorenz_gyrostat": lorenz_rates,
 }
 OBSERVABLES = {
+    "quadrotor": quadrotor_observables,
+    "spacecraft_wheels": wheels_observables,
+    "gravity_gradient_satellite": satellite_observables,
+    "kapitza_top": lambda x, p: heavy_top_observables(x, shaken(p)),
     "double_bracket_body": lambda x, p: rigid_body_observables(x, p[:3]),
     "landau_lifshitz_gilbert": gilbert_observables,
     "heavy_top_damped": lambda x, p: heavy_top_observables(x, p[:8]),
@@ -105,6 +236,10 @@ OBSERVABLES = {
     "lorenz_gyrostat": lorenz_observables,
 }
 TENSORS = {
+    "quadrotor": lambda x, p: quadrotor_tensor(x),
+    "spacecraft_wheels": lambda x, p: wheels_tensor(x),
+    "gravity_gradient_satellite": lambda x, p: vehicle_tensor(x),
+    "kapitza_top": lambda x, p: se3_tensor(x),
     "double_bracket_body": lambda x, p: rigid_body_tensor(x),
     "landau_lifshitz_gilbert": lambda x, p: rigid_body_tensor(x),
     "heavy_top_damped": lambda x, p: se3_tensor(x),
@@ -112,6 +247,16 @@ TENSORS = {
     "lorenz_gyrostat": lorenz_tensor,
 }
 STATES = {
+    "quadrotor": (
+        *("Pi1", "Pi2", "Pi3", "P1", "P2", "P3"),
+        *("Gamma1", "Gamma2", "Gamma3", "Gamma4"),
+    ),
+    "spacecraft_wheels": ("q0", "q1", "q2", "q3", "Pi1", "Pi2", "Pi3", "L1", "L2", "L3"),
+    "gravity_gradient_satellite": (
+        *("Pi1", "Pi2", "Pi3", "beta1", "beta2", "beta3"),
+        *("gamma1", "gamma2", "gamma3"),
+    ),
+    "kapitza_top": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
     "double_bracket_body": ("Pi1", "Pi2", "Pi3"),
     "landau_lifshitz_gilbert": ("m1", "m2", "m3"),
     "heavy_top_damped": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
@@ -119,6 +264,10 @@ STATES = {
     "lorenz_gyrostat": ("x", "y", "z"),
 }
 PARAMETERS = {
+    "quadrotor": ("J1", "J2", "J3", "m", "g"),
+    "spacecraft_wheels": ("I1", "I2", "I3", "J1", "J2", "J3"),
+    "gravity_gradient_satellite": ("I1", "I2", "I3", "n"),
+    "kapitza_top": ("I1", "I2", "I3", "m", "g", "chi1", "chi2", "chi3", "a", "w"),
     "double_bracket_body": ("I1", "I2", "I3", "alpha"),
     "landau_lifshitz_gilbert": ("gamma", "alpha", "B1", "B2", "B3", "K"),
     "heavy_top_damped": (
@@ -127,4 +276,10 @@ PARAMETERS = {
     ),
     "bloch": ("omega1", "omega2", "omega3", "T1", "T2", "M0"),
     "lorenz_gyrostat": ("sigma", "r", "b"),
+}
+#: Inputs, and time.
+DRIVING = {
+    "quadrotor": ("f", "M1", "M2", "M3"),
+    "spacecraft_wheels": ("u1", "u2", "u3"),
+    "kapitza_top": ("t",),
 }

@@ -7,6 +7,7 @@ wrong sign into the formula (``s`` in place of 1) and demands that it is noticed
 
 import pytest
 
+from coadjoint.exact.dense import product
 from coadjoint.groups import matrix_group, trace_pairing
 from coadjoint.groups.actions import (
     element_rates,
@@ -14,7 +15,6 @@ from coadjoint.groups.actions import (
     rate,
     space_velocity,
 )
-from coadjoint.groups.matrix import product
 from tests.groups.exactly import (
     block,
     check_agrees,

@@ -6,8 +6,9 @@ from functools import cache
 import pytest
 import sympy
 
-from coadjoint.derive import ROUTES, derive, make_setting
+from coadjoint.derive import derive, make_setting
 from coadjoint.prove.ideals import Ideal
+from coadjoint.spec.routes import ROUTES
 from tests.conftest import SYSTEMS, rational_points
 from tests.sources import textbook
 from tests.sources.points import DIGITS
@@ -57,8 +58,8 @@ def digits(value):
 
 
 def points(name, count):
-    """Exact random points, each with its values of state and parameters."""
-    state, parameters = textbook.STATES[name], textbook.PARAMETERS[name]
+    """Exact random points, each with its values of the state, and of what else is given."""
+    state, parameters = textbook.STATES[name], textbook.GIVEN[name]
     for free in rational_points((*state, *parameters), count):
         point = textbook.rational(name, free)
         yield point, [point[n] for n in state], [point[n] for n in parameters]
@@ -92,7 +93,7 @@ def carried(equations):
 def in_chart(equations, name, count):
     """Exact random points of a chart where its relations hold, each with its state."""
     setting, chart = equations.setting, equations.chart
-    field, parameters = setting.field, textbook.PARAMETERS[name]
+    field, parameters = setting.field, textbook.GIVEN[name]
     relations = [relation.element for relation in chart.relations]
     domain = Ideal(field, relations, variables=chart.variables)
     for free in rational_points((*chart.variables, *parameters), count):
@@ -123,6 +124,7 @@ def test_names_and_order_are_the_contract(name):
     setting = emitted(name).setting
     assert setting.state == textbook.STATES[name]
     assert setting.parameters == textbook.PARAMETERS[name]
+    assert (*setting.inputs, *setting.time) == textbook.DRIVING.get(name, ())
 
 
 @pytest.mark.parametrize(("name", "route"), BY_ROUTE)

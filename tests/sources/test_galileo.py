@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from coadjoint.errors import ClaimError
+from coadjoint.exact.dense import add, cross, dot, scale, subtract
 from coadjoint.groups.galilean import (
     Galilean,
     check_galilean,
@@ -21,7 +22,6 @@ from coadjoint.groups.galilean import (
 )
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.groups.rotations import euler_rodrigues
-from coadjoint.groups.vectors import add, cross, dot, scale, subtract
 
 EVERY_SYMMETRY = {"rotation", "boost", "translation", "time shift"}
 EVERY_QUANTITY = {"E", "P", "J", "K"}

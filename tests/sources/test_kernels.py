@@ -33,17 +33,26 @@ def built(request, tmp_path_factory):
 
 
 def inputs(name, shared):
-    """Dyadic random states and parameters: exact as doubles and as fractions."""
+    """Dyadic random states, and parameters with inputs and time: exact as doubles and fractions."""
     source = np.random.default_rng(11)
-    sizes = len(textbook.STATES[name]), len(textbook.PARAMETERS[name])
+    sizes = len(textbook.STATES[name]), len(textbook.GIVEN[name])
     state, parameters = (
         source.integers(1, 64, (n, MEMBERS)) / 8 * source.choice([-1, 1], (n, MEMBERS))
         for n in sizes
     )
     parameters = np.abs(parameters) + np.arange(1, sizes[1] + 1)[:, None] / 16
-    named = dict(zip(textbook.PARAMETERS[name], parameters, strict=True))
+    named = dict(zip(textbook.GIVEN[name], parameters, strict=True))
     parameters = np.array(list(textbook.within(name, named).values())).reshape(parameters.shape)
     return state, parameters[:, 0].copy() if shared else parameters
+
+
+def call(built, function, state, given, target="c"):
+    """A function of a kernel, with inputs and time where it takes them."""
+    count = len(textbook.PARAMETERS[built.name])
+    parameters, driving = given[:count], given[count:]
+    time = {"time": driving[-1]} if built.TIME else {}
+    inputs = [driving[: len(driving) - len(time)]] if built.INPUTS else []
+    return getattr(built, function)(state, parameters, *inputs, **time, target=target)
 
 
 def members(state, parameters):
@@ -66,7 +75,7 @@ def check(found, expected):
 def test_rates_are_those_of_the_book(built, target, shared):
     """The rhs of every member equals the textbook's rates."""
     state, parameters = inputs(built.name, shared)
-    found = built.rhs(state, parameters, target=target)
+    found = call(built, "rhs", state, parameters, target)
     # of all members at once: some of them may rest
     rates = [r for _, x, p in members(state, parameters) for r in textbook.RATES[built.name](x, p)]
     check(found.T.ravel(), rates)
@@ -80,7 +89,7 @@ def test_jacobian_is_the_derivative_of_the_book_formula(built, target):
     """
     size = Fraction(1, 10**20) if built.name in textbook.QUOTIENTS else Fraction(1)
     state, parameters = inputs(built.name, shared=False)
-    found = built.jacobian(state, parameters, target=target)
+    found = call(built, "jacobian", state, parameters, target)
     for n, x, p in members(state, parameters):
         slopes = []
         for j in range(len(x)):
@@ -96,8 +105,8 @@ def test_jacobian_is_the_derivative_of_the_book_formula(built, target):
 def test_observables_are_those_of_the_book(built, target):
     """Every observable under its name; energy alone, too."""
     state, parameters = inputs(built.name, shared=False)
-    found = built.observables(state, parameters, target=target)
-    energy = built.energy(state, parameters, target=target)
+    found = call(built, "observables", state, parameters, target)
+    energy = call(built, "energy", state, parameters, target)
     for n, x, p in members(state, parameters):
         expected = textbook.OBSERVABLES[built.name](x, p)
         names = built.OBSERVABLES.components
@@ -114,7 +123,7 @@ def test_poisson_tensor_is_that_of_the_book(built, target):
             built.poisson_tensor(*inputs(built.name, shared=True), target=target)
         return
     state, parameters = inputs(built.name, shared=True)
-    found = built.poisson_tensor(state, parameters, target=target)
+    found = call(built, "poisson_tensor", state, parameters, target)
     for n, x, p in members(state, parameters):
         expected = [value for row in textbook.TENSORS[built.name](x, p) for value in row]
         check(found[:, :, n].ravel(), expected)
@@ -123,7 +132,7 @@ def test_poisson_tensor_is_that_of_the_book(built, target):
 def test_the_comparison_sees_a_wrong_member(built):
     """One member's rates moved to another are noticed."""
     state, parameters = inputs(built.name, shared=False)
-    found = built.rhs(state, parameters)
+    found = call(built, "rhs", state, parameters)
     _, x, p = next(members(state, parameters))
     expected = textbook.RATES[built.name](x, p)
     check(found[:, 0], expected)

@@ -13,6 +13,19 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from coadjoint.exact import Field
+from coadjoint.exact.dense import (
+    add,
+    apply,
+    combine,
+    commutator,
+    cross,
+    dot,
+    identity,
+    scale,
+    subtract,
+    transpose,
+)
+from coadjoint.exact.dense import product as matmul
 from coadjoint.groups.central_forces import (
     alignment,
     alignment_defect,
@@ -61,19 +74,6 @@ from coadjoint.groups.rotations import (
     unit_quaternion,
 )
 from coadjoint.groups.vector_fields import VectorField, curl, hamiltonian_vector_field
-from coadjoint.groups.vectors import (
-    add,
-    apply,
-    combine,
-    commutator,
-    cross,
-    dot,
-    identity,
-    matmul,
-    scale,
-    subtract,
-    transpose,
-)
 
 NAMES = [f"{letter}{n}" for letter in "qruv" for n in range(4)]
 
@@ -152,12 +152,12 @@ def test_3_1_1_pauli_isomorphism(field):
     for a, b in product(range(3), repeat=2):
         expected = scaled_matrix(int(a == b), identity(2))
         for c in range(3):
-            expected = combine(expected, PAULI[c], epsilon(a, b, c) * I)
+            expected = add(expected, scale(epsilon(a, b, c) * I, PAULI[c]))
         assert matmul(PAULI[a], PAULI[b]) == expected
     q, r = symbols(field, "q"), symbols(field, "r")
     by_hand = scaled_matrix(q.w, identity(2))
     for component, sigma in zip(q.vector, PAULI, strict=True):
-        by_hand = combine(by_hand, sigma, -I * component)
+        by_hand = add(by_hand, scale(-I * component, sigma))
     assert q.pauli() == by_hand
     assert (q * r).pauli() == matmul(q.pauli(), r.pauli())
     mirrored = [x.conjugate.pauli() for x in (q, r, q * r)]
@@ -331,7 +331,7 @@ def test_3_2_euler_rodrigues(field):
     q, v = unit_quaternion(p), vector(field, "v")
     assert q.norm == 1
     Q = hat(q.vector)
-    R = combine(combine(identity(3), Q, 2 * q.w), matmul(Q, Q), 2)
+    R = combine((1, identity(3)), (2 * q.w, Q), (2, matmul(Q, Q)))
     assert euler_rodrigues(q) == R
     assert (q * Quaternion.pure(v) * q.conjugate).components == (0, *apply(R, v))
     assert euler_rodrigues(-q) == R
@@ -384,7 +384,7 @@ def test_3_2_2_3_tilde_map(field):
     """p~ q~ = -p.q + (p x q)~, [p~, q~] = 2 (p x q)~, and -(i/2) sigma is an isomorphism."""
     p, q = vector(field, "q"), vector(field, "r")
     assert tilde(p) == Quaternion.pure(p).pauli()
-    by_hand = combine(tilde(cross(p, q)), identity(2), -dot(p, q))
+    by_hand = combine((1, tilde(cross(p, q))), (-dot(p, q), identity(2)))
     assert matmul(tilde(p), tilde(q)) == by_hand
     bracket = commutator(tilde(p), tilde(q))
     assert untilde(bracket) == scale(2, cross(p, q))

@@ -6,6 +6,7 @@ that must be noticed.
 
 import pytest
 
+from coadjoint.exact.dense import product
 from coadjoint.groups import matrix_group, trace_pairing
 from coadjoint.groups.actions import (
     body_velocity,
@@ -14,7 +15,6 @@ from coadjoint.groups.actions import (
     rate,
     space_velocity,
 )
-from coadjoint.groups.matrix import product
 from tests.groups.exactly import (
     block,
     check_agrees,

@@ -169,8 +169,9 @@ def square(name: str, size: int) -> tuple[str, ...]:
 
 #: Positive symmetric matrices, by their size.
 SPD = {"spd_motion": 2, "spd_motion_3": 3}
-#: Systems with roots, sines and cosines of the state, which are typed to 80 digits.
+#: Systems with roots, sines and cosines of what moves, which are typed to 80 digits.
 CONFIGURATIONS = (
+    "kapitza_top",
     "kepler",
     "monopole_kepler",
     "n_particles",
@@ -393,3 +394,6 @@ PARAMETERS = {
     "rolling_ellipsoid": (*kept("I", 3), "m", "g", *numbered("axes", 3)),
     "body_of_revolution": ("I1", "I3", "m", "g", "A", "C", "l"),
 }
+DRIVING = driven.DRIVING
+#: What the formulas take beside the state: parameters, inputs and time.
+GIVEN = {name: (*own, *DRIVING.get(name, ())) for name, own in PARAMETERS.items()}

@@ -154,9 +154,9 @@ FAULTS = [
     ),
     (
         (CLAIMS, '[observables]\nblade_reaction = "u"\n[claims]'),
-        "constraints.blade",
+        "observables.blade_reaction",
         "blade_reaction",
-        "observables.blade_reaction has that name too",
+        "The multiplier of the constraint blade is blade_reaction: rename one of them.",
     ),
     ((BLADE, BLADE + '\nu = "v == 0"'), "constraints.u", "u", "variables.u has that name too"),
     ((BLADE, '1blade = "v == 0"'), "constraints.1blade", "1blade", "'1blade' is not a name"),

@@ -5,9 +5,10 @@ import pytest
 from coadjoint import limits
 from coadjoint.derive import derive
 from coadjoint.errors import LimitError, SpecError
+from coadjoint.spec.core.definitions import expand
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.tree import walk
-from coadjoint.spec.sections.definitions import expand, signature
+from coadjoint.spec.sections.definitions import signature
 from tests.specs import RIGID_BODY, spec
 
 TOP = RIGID_BODY.replace(
@@ -130,7 +131,7 @@ h = "T - cos(q)"
         (("unused =", "Pi2 ="), "definitions.Pi2", "Pi2", "'Pi2' is doubled"),
         (("unused =", '"u(x)" ='), "definitions.u(x)", "u", "'u' is doubled: definitions.u"),
         (("unused =", "lever ="), "observables.lever", "lever", "'lever' is doubled"),
-        (("unused =", "lever2 ="), "definitions.lever2", "lever2", "'lever2' is doubled"),
+        (("unused =", "lever2 ="), "observables.lever", "lever2", "'lever2' is doubled"),
         (("Omega*m", "Omgea*m"), "definitions.unused", "Omgea", "Did you mean 'Omega'?"),
         (("Omega*m", "energy"), "definitions.unused", "energy", "'energy' is not declared"),
         (("Omega*m", "unused + 1"), "definitions.unused", "unused", "is defined no earlier"),

@@ -22,7 +22,7 @@ def test_laws_are_read_in_the_order_of_the_coordinates():
     [
         (('y = { force = "k*(x - y)" }\n', ""), "newton", "y", "'y' has no law"),
         (("y = { force", "z = { force"), "newton.z", "z", "no coordinate 'z'"),
-        (('"k*(x - y)"', '"k"'), "newton.y.force", "a scalar", "expected a 3-vector, as y is"),
+        (('"k*(x - y)"', '"k"'), "newton.y.force", "a scalar", "expected a 3-vector, as 'y' is"),
         (('"m"', '"x"'), "newton.x.mass", "a 3-vector", "diag"),
         (('"k*(x - y)"', '"k*x*t"'), "newton.y.force", "t", "'t'"),
         (

@@ -1,18 +1,22 @@
 """Routes: one list of names in the schema, the table of starts, the engine and the docs."""
 
+import os
 import re
+import shutil
+import subprocess
+import sys
 from pathlib import Path
-from typing import get_args
 
 import pytest
 
-from coadjoint.derive import ROUTES
+import coadjoint
+from coadjoint.derive.registry import load_route
 from coadjoint.errors import SpecError
-from coadjoint.spec.routes import STARTS, energies_of
-from coadjoint.spec.schema import RouteName
+from coadjoint.spec.routes import ROUTES, energies_of
 from tests.specs import RIGID_BODY, spec
 
 DOCS = Path(__file__).parents[2] / "docs" / "routes.md"
+PACKAGE = Path(coadjoint.__file__).parent
 
 OSCILLATOR = """
 title = "x"
@@ -25,13 +29,59 @@ h = "dot(p, p)/2 + dot(q, q)/2"
 """
 
 
-def test_schema_engine_and_docs_know_the_same_routes():
-    """A route that one of them lacks cannot be asked for, followed or looked up."""
-    names = set(STARTS)
-    assert set(get_args(RouteName)) == names
-    assert set(ROUTES) == names
+def test_engine_and_docs_know_the_registered_routes():
+    """Every registered route has a module and a row of the docs; every module is registered."""
+    names = set(ROUTES)
+    assert all(callable(load_route(name)) for name in names)
+    modules = {path.stem for path in PACKAGE.glob("derive/routes/*.py")} - {"__init__"}
+    assert modules == {route.module for route in ROUTES.values()}
     rows = [line for line in DOCS.read_text().splitlines() if line.startswith("| `")]
     assert {name for row in rows for name in re.findall("`([a-z-]+)`", row.split("|")[1])} == names
+
+
+#: A route as a person would add it: it differs from Euler-Poincare in the sign of what it is given.
+NEW = """
+from dataclasses import replace
+from coadjoint.derive.routes import euler_poincare
+
+def symbols(spec):
+    return ("sigma",)
+
+def derive(setting):
+    found = euler_poincare.derive(setting)
+    assert setting.field["sigma"] != 0
+    rates = tuple(SIGN * rate for rate in found.exact.rates)
+    return replace(found, route="new-route", exact=replace(found.exact, rates=rates))
+"""
+#: What it takes to prove it equal to another.
+PROVE = """
+import sys
+from coadjoint.prove import prove
+from coadjoint.spec import read_spec
+claims = [c for c in prove(read_spec(sys.argv[1])).claims if "new-route give" in c.statement]
+print(*[claim.verdict.value for claim in claims])
+"""
+
+
+@pytest.mark.parametrize(("sign", "verdict"), [("1", "proved"), ("-1", "refuted")])
+def test_new_route_is_one_file_and_one_line(tmp_path, sign, verdict):
+    """A module and a line make a route that specs can list, proved equal or refuted."""
+    copy = shutil.copytree(PACKAGE, tmp_path / "coadjoint", ignore=shutil.ignore_patterns("*.pyc"))
+    (copy / "derive/routes/new_route.py").write_text(NEW.replace("SIGN", sign))
+    table = copy / "spec/routes.py"
+    last = '    _in_frame("hamel", emitted=False),\n'
+    assert table.read_text().count(last) == 1
+    table.write_text(table.read_text().replace(last, last + '    _on_algebra("new-route"),\n'))
+    sample = tmp_path / "sample.toml"
+    sample.write_text(RIGID_BODY.replace('"lie-poisson"', '"new-route"'))
+    found = subprocess.run(
+        [sys.executable, "-c", PROVE, str(sample)],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert found.stdout.split() == [verdict]
 
 
 def test_bracket_that_pairs_nothing_takes_no_lagrangian():

@@ -21,9 +21,9 @@ from coadjoint.algebra.lie_algebra import (
     from_matrices,
     same_constants,
 )
-from coadjoint.algebra.linear import Span, nullspace, rank
 from coadjoint.algebra.products import direct_sum, semidirect_product, semidirect_sum
 from coadjoint.algebra.representation import Representation
+from coadjoint.exact.linear import Span, nullspace, rank
 
 __all__ = [
     "CATALOGUE",

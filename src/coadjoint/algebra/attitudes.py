@@ -72,27 +72,35 @@ def turning_places(algebra: LieAlgebra) -> tuple[int, int, int] | None:
 def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:
     """A unit quaternion: ``dq/dt = q [0, xi]/2``, right-invariant ``dq/dt = [0, xi] q/2``.
 
+    Here xi is the part along the rotations; whatever else the algebra has leaves q alone.
+
     Raises:
-        AlgebraError: The algebra is not that of the rotations.
+        AlgebraError: The algebra has no rotations, or another bracket reaches them.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> list(map(str, quaternion(algebra_by_name("so(3)")).act([0, 0, 2], [1, 0, 0, 0])))  # -q k
     ['0', '0', '0', '-1']
     """
-    constants = {pair: dict(row) for pair, row in algebra.constants.items()}
-    if algebra.dimension != 3 or constants != _ROTATIONS:
+    places = turning_places(algebra)
+    if places is None or any(
+        k in places
+        for pair, row in algebra.constants.items()
+        if not set(pair) <= set(places)
+        for k in row
+    ):
         raise AlgebraError(
-            f"{algebra.name} has no unit quaternions; expected so(3) or su(2), or a basis with "
-            "[e1, e2] = e3 and cyclic. Take the representation 'attitude'.",
+            f"{algebra.name} has no unit quaternions; expected so(3) or su(2), a basis with "
+            "[e1, e2] = e3 and cyclic, or a block 'rotation' of this kind that no other bracket "
+            "reaches. Take the representation 'attitude'.",
             found=algebra.name,
         )
     half = Fraction(1, 2) if invariance == "right" else Fraction(-1, 2)
     side = 1 if invariance == "right" else -1
-    acting: list[SparseMatrix] = []
-    for axis in range(3):  # multiplication by i, j or k from one side, in the basis 1, i, j, k
+    acting: list[SparseMatrix] = [{} for _ in algebra.basis]
+    for axis, place in enumerate(places):  # times i, j or k from one side, in the basis 1, i, j, k
         j, k = 1 + (axis + 1) % 3, 1 + (axis + 2) % 3
         unit = {(1 + axis, 0): 1, (0, 1 + axis): -1, (k, j): side, (j, k): -side}
-        acting.append({place: half * x for place, x in unit.items()})
+        acting[place] = {entry: half * x for entry, x in unit.items()}
     return Representation(algebra, "quaternion", 4, tuple(acting))
 
 

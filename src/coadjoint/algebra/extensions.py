@@ -13,10 +13,10 @@ from itertools import combinations
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, check_size, from_brackets
-from coadjoint.algebra.linear import Span, exact, nullspace
 from coadjoint.algebra.matrices import Matrix, SparseMatrix, combination, kronecker, size
 from coadjoint.algebra.products import Brackets, with_matrices
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.linear import Span, exact, nullspace
 
 
 def central_extension(

@@ -14,8 +14,8 @@ from fractions import Fraction
 from itertools import combinations, islice
 from typing import Any
 
-from coadjoint.algebra.linear import Span, primes, quotient, rank_modulo
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.linear import Span, primes, quotient, rank_modulo
 
 #: Points at which a rank is taken.
 POINTS = 2

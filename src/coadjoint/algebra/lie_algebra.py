@@ -15,7 +15,6 @@ from types import MappingProxyType
 from typing import Any
 
 from coadjoint.algebra.invariants import Invariants
-from coadjoint.algebra.linear import Span, exact
 from coadjoint.algebra.matrices import (
     SparseMatrix,
     combination,
@@ -24,6 +23,7 @@ from coadjoint.algebra.matrices import (
     entries_text,
 )
 from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.exact.linear import Span, exact
 from coadjoint.limits import GENERATORS
 
 __all__ = [

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from coadjoint.algebra.linear import add_multiple, exact
+from coadjoint.exact.linear import add_multiple, exact
 
 #: A matrix as nonzero entries {(row, column): value}.
 SparseMatrix = Mapping[tuple[int, int], Any]

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, check_size, from_brackets
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import Matrix, SparseMatrix, block_diagonal, unit
 from coadjoint.algebra.representation import Representation, adjoint
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.linear import Span
 
 Blocks = dict[str, tuple[int, ...]]
 Brackets = dict[tuple[int, int], dict[int, Any]]

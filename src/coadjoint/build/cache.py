@@ -60,14 +60,14 @@ def _usable(folder: Path | None) -> Path:
     try:
         if folder is None:
             raise OutputError(
-                "there is no home folder for the cache. Set HOME, or set COADJOINT_CACHE to a "
-                "folder of your own."
+                "no home folder is set, so there is no place for the cache. Set HOME, or set "
+                "COADJOINT_CACHE to a folder that you own."
             )
         check_private(folder)
     except OutputError as error:
         temporary = _temporary(error)
         warnings.warn(
-            f"{error} Kernels are compiled anew in this process.", CacheWarning, stacklevel=3
+            f"{error} Kernels are compiled again in this process.", CacheWarning, stacklevel=3
         )
         return temporary
     sweep(folder / WORK)
@@ -119,7 +119,7 @@ def _entered(stack: ExitStack) -> Path:
     except OSError as error:
         raise OutputError(
             f"no temporary folder can be written: {error.strerror or error}. Free some space, or "
-            "set TMPDIR to a folder of your own."
+            "set TMPDIR to a folder that you can write to."
         ) from error
 
 
@@ -135,7 +135,7 @@ def check_private(folder: Path) -> None:
     except OSError as error:
         raise OutputError(
             f"the cache folder {folder} cannot be used: {error.strerror}. "
-            "Set COADJOINT_CACHE to a folder of your own.",
+            "Set COADJOINT_CACHE to a folder that you own.",
             path=str(folder),
         ) from error
     if problem:
@@ -160,7 +160,7 @@ def _refusal(folder: Path) -> str:
         return f"it belongs to user {found.st_uid}"
     if found.st_mode & 0o022:
         mode = f"{stat.S_IMODE(found.st_mode):o}"
-        return f"others may write to it (mode {mode}), which `chmod 700 {folder}` ends"
+        return f"other users may write to it (mode {mode}), run `chmod 700 {folder}`"
     for name in FOLDERS:
         if os.path.lexists(folder / name) and not stat.S_ISDIR((folder / name).lstat().st_mode):
             return f"no run of coadjoint made {name!r}, which stands in it"

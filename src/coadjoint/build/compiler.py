@@ -145,7 +145,8 @@ def _search(chosen: str, path: str) -> Compiler:
         command = (sys.executable, "-I", "-m", "ziglang", "cc")
         return _compiler(command)
     raise CompilerError(
-        f"no C compiler is found (looked for {', '.join(CANDIDATES)}, ziglang). {HOW_TO_GET_ONE}",
+        f"no C compiler was found (searched for {', '.join(CANDIDATES)}, ziglang). "
+        f"{HOW_TO_GET_ONE}",
         found="",
     )
 
@@ -193,13 +194,13 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
     if status != 0:
         raise CompilerError(
             f"{compiler.command[0]} failed on kernel.c with status {status}: "
-            f"{output.strip()[:600] or 'it said nothing'}. Set CC to another compiler.",
+            f"{output.strip()[:600] or 'no output'}. Set CC to another compiler.",
             found=compiler.command[0],
             status=status,
         )
     if not result.is_file() or result.read_bytes()[:4] not in _MAGIC:
         raise CompilerError(
-            f"{compiler.command[0]} ended with status 0 but made no shared object. "
+            f"{compiler.command[0]} exited with status 0 but produced no shared object. "
             "Set CC to another compiler.",
             found=compiler.command[0],
             status=0,

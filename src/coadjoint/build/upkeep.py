@@ -99,7 +99,7 @@ def find_problems(folder: Path) -> list[str]:
     Args:
         folder: The cache, which need not exist.
     """
-    problems = [f"{path} was left by a run that was killed" for path in abandoned(folder / WORK)]
+    problems = [f"{path} was left behind by a killed run" for path in abandoned(folder / WORK)]
     for name in (KERNELS, VERIFIED):
         for path in kept(folder / name):
             problems += _problem(path)

@@ -58,14 +58,14 @@ Keys of --format json:
     type=click.IntRange(1, 12),
     default=4,
     show_default=True,
-    help="Look for polynomial Casimirs up to this degree, or as far as can be searched.",
+    help="Highest degree of the polynomial Casimirs to search, as far as the limits allow.",
 )
 @click.option(
     "--generators",
     type=click.IntRange(1, limits.GENERATORS),
     default=limits.EXAMINED_GENERATORS,
     show_default=True,
-    help="Refuse an algebra of more generators.",
+    help="Largest number of generators to accept.",
 )
 @click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
 @seconds_option
@@ -97,7 +97,7 @@ def command(
         )
     except ResourceError as error:
         raise ResourceError(
-            f"{error} Or ask for fewer generators, or for a lower --degree.",
+            f"{error} Or use fewer generators, or a lower --degree.",
             **{"found": algebra, **error.parts},
         ) from error
     text = _rendered(record, form)
@@ -173,9 +173,9 @@ def _too_large(name: str, dimension: int, most: int, degree: int) -> CoadjointEr
     from coadjoint.errors import LimitError
 
     pairs, monomials = comb(dimension, 2), comb(dimension + degree, degree) - 1
-    way = f"Ask for it with --generators {dimension}"
+    way = f"To allow it, use --generators {dimension}"
     if dimension > limits.GENERATORS:
-        way = f"No more than {limits.GENERATORS} (GENERATORS) are ever built; take a smaller one"
+        way = f"At most {limits.GENERATORS} (GENERATORS) can be built; choose a smaller algebra"
     return LimitError(
         f"{name} has {plural(dimension, 'generator')}, {plural(pairs, 'bracket')} between them and "
         f"{plural(monomials, 'monomial')} up to degree {degree}; expected at most {most} "

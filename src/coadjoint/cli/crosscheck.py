@@ -1,7 +1,7 @@
 """Command ``crosscheck``: the ladder's numeric rungs on the files as they stand, with figures.
 
 Comes in: a spec and its generated files. Goes out: for each function and target the error against
-50 digits and the points at which NumPy and C have the same bits. Read next:
+50 digits and the points at which it has the same bits as NumPy. Read next:
 `coadjoint.crosscheck.ladder`.
 """
 
@@ -17,6 +17,7 @@ from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import load_system, seconds_option, spec_path, system_argument
 from coadjoint.cli.output import json_option, print_json, print_table, say
+from coadjoint.errors import OutputError
 
 
 @click.command("crosscheck")
@@ -26,7 +27,7 @@ from coadjoint.cli.output import json_option, print_json, print_table, say
     type=click.IntRange(1, 10_000_000),
     default=200_000,
     show_default=True,
-    help="Points, at the least, at which each function of NumPy and C is compared bit by bit.",
+    help="Minimum number of points at which NumPy and C are compared bit by bit.",
 )
 @seconds_option
 @json_option
@@ -54,6 +55,7 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.derive import derive
     from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
+    from coadjoint.render.targets import TARGETS
     from coadjoint.sandbox import report_progress
     from coadjoint.solve.system import load_folder
     from coadjoint.spec import read_spec
@@ -61,7 +63,7 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     folder = Path(argument["folder"])
     report_progress("derive", 0, 2)
     equations = derive(read_spec(Path(argument["path"])))
-    texts = {name: (folder / name).read_text("utf-8") for name in ("kernel.py", "kernel.c")}
+    texts = {target.kernel: _text(folder / target.kernel) for target in TARGETS.values()}
     report_progress("compile and cross-check", 1, 2)
     report = crosscheck(
         lower(equations),
@@ -71,6 +73,20 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
         bit_points=argument["points"],
     )
     return report.as_record()
+
+
+def _text(path: Path) -> str:
+    """A generated file.
+
+    Raises:
+        OutputError: It cannot be read.
+    """
+    try:
+        return path.read_text("utf-8")
+    except OSError as error:
+        raise OutputError(
+            f"{path} cannot be read: {error.strerror}. Run `coadjoint regenerate`.", path=str(path)
+        ) from error
 
 
 def _print(report: Mapping[str, Any]) -> None:
@@ -85,7 +101,7 @@ def _print(report: Mapping[str, Any]) -> None:
                     f"{figures['k']:.2f}",
                     f"{figures['ulp']:.3g}",
                     str(figures["points"]),
-                    _with_numpy(report, function) if target == "c" else "",
+                    _with_numpy(report, function, target),
                 )
             )
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
@@ -95,7 +111,8 @@ def _print(report: Mapping[str, Any]) -> None:
     say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
 
 
-def _with_numpy(report: Mapping[str, Any], function: str) -> str:
-    """Where exact C and NumPy agree: bit for bit, or within k with functions beyond sqrt."""
-    equal, together = report["equal"].get(function, 0), report["together"].get(function, 0)
-    return f"same bits at {equal}" if equal else f"within k at {together}"
+def _with_numpy(report: Mapping[str, Any], function: str, target: str) -> str:
+    """Where a target and NumPy agree: bit for bit, or within k with functions beyond sqrt."""
+    equal = report["equal"].get(function, {}).get(target, 0)
+    together = report["together"].get(function, {}).get(target, 0)
+    return f"same bits at {equal}" if equal else f"within k at {together}" if together else ""

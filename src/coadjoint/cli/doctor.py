@@ -54,7 +54,7 @@ LEAST: Final = (
 LEAST_FREE: Final = 64 * 2**20
 PROBE_BYTES: Final = 2**16
 
-_RELOAD: Final = "mended when its spec is loaded next"
+_RELOAD: Final = "repaired when its spec is next loaded"
 PROBE: Final = "int coadjoint_probe(void);\nint coadjoint_probe(void) { return 42; }\n"
 
 
@@ -146,7 +146,7 @@ def _attempt(what: str, look: Callable[[], str]) -> Finding:
     except CompilerError as error:
         # No compiler at all: the NumPy kernels do the same. One that is there and fails is a fault.
         status = "missing" if error.parts.get("found") == "" else "failed"
-        return Finding(what, status, str(error), "NumPy kernels are used meanwhile")
+        return Finding(what, status, str(error), "NumPy kernels are used instead")
     except (CoadjointError, UserWarning, OSError, AttributeError) as error:
         return Finding(what, "failed", str(error))
 
@@ -211,7 +211,7 @@ def _kernels() -> str:
         answer = library.coadjoint_probe()
     if answer != 42:
         raise CompilerError(
-            f"a compiled kernel answered {answer}; expected 42. Set CC to another compiler.",
+            f"a compiled kernel returned {answer}; expected 42. Set CC to another compiler.",
             found=str(answer),
         )
     return "compiled, loaded and called"
@@ -234,7 +234,7 @@ def _cache_state() -> Iterator[Finding]:
     from coadjoint.build.upkeep import SYSTEMS, kept
 
     for problem in cache_problems():
-        yield Finding("cache", "heals", problem, "mended when it is used next")
+        yield Finding("cache", "heals", problem, "repaired at its next use")
     folder = chosen_folder()
     for path in kept(folder / SYSTEMS) if folder is not None else ():
         for found in _tree("own system", path, is_shipped=False):
@@ -249,7 +249,7 @@ def _tree_state() -> Iterator[Finding]:
     problems = list(_tree("generated", folder, is_shipped=not here))
     yield from problems
     if not problems:
-        yield Finding("generated", "ok", f"{folder}: as a run left it")
+        yield Finding("generated", "ok", f"{folder}: unchanged since it was written")
 
 
 def _tree(what: str, folder: Path, *, is_shipped: bool) -> Iterator[Finding]:

@@ -68,13 +68,14 @@ def command(name: str) -> None:
             file.write(STARTER.format(name=name))
     except FileExistsError:
         raise SpecError(
-            f"{path}: the file is there already and stays as it is. Choose another name.",
+            f"{path}: the file already exists and was not changed. Choose another name.",
             path=str(path),
             found=name,
         ) from None
     except OSError as error:
         raise OutputError(
-            f"{path}: cannot be written: {error.strerror}. Go to a folder of your own.",
+            f"{path}: cannot be written: {error.strerror}. "
+            "Change to a folder that you can write to.",
             path=str(path),
         ) from error
     say(f"{path} written; try `coadjoint prove {path}`")

@@ -56,8 +56,8 @@ def unwritten(error: OSError) -> OutputError:
         os.dup2(handle, sys.stdout.fileno())
         os.close(handle)
     return OutputError(
-        f"standard output cannot be written: {error.strerror or error}. Let it go to a place with "
-        "free space.",
+        f"standard output cannot be written: {error.strerror or error}. Redirect it to a place "
+        "with free space.",
         path="standard output",
         found=error.strerror or str(error),
     )
@@ -143,7 +143,8 @@ def write_text(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise OutputError(
-            f"{path}: cannot be written: {error.strerror}. Choose another file or free the place.",
+            f"{path}: cannot be written: {error.strerror}. "
+            "Choose another file, or free some space.",
             path=str(path),
         ) from error
 

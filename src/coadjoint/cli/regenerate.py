@@ -27,7 +27,7 @@ folder_options = (
     click.option(
         "--derivations",
         type=click.Path(path_type=Path),
-        help="Folder of specs. Default: ./derivations if it is there, else the shipped ones.",
+        help="Folder of specs. Default: ./derivations if it exists, else the shipped specs.",
     ),
     click.option(
         "--output",
@@ -52,7 +52,7 @@ def with_folders(function: Any) -> Any:
     type=click.IntRange(1),
     default=lambda: os.cpu_count() or 1,
     show_default="processors",
-    help="Systems worked on at a time.",
+    help="Number of systems processed in parallel.",
 )
 @seconds_option
 @with_folders
@@ -127,8 +127,8 @@ def refuse_elsewhere(is_named: bool, target: Path) -> None:
     if not is_named and not Path("derivations").is_dir():
         raise SpecError(
             f"{Path.cwd()}: there is no folder `derivations` here, so there is nothing to "
-            "regenerate; the shipped systems are generated already. Go to the folder of your "
-            "project, or name its specs with --derivations FOLDER. A single spec needs no project: "
+            "regenerate; the shipped systems are generated already. Change to your project "
+            "folder, or name its specs with --derivations FOLDER. A single spec needs no project: "
             "coadjoint simulate ./my.toml.",
             path=str(Path.cwd()),
             found="",
@@ -145,7 +145,7 @@ def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
     found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
     if not found:
         raise SpecError(
-            f"{folder}: no spec is there; expected files ending in .toml. "
+            f"{folder}: no specs found; expected files ending in .toml. "
             "Write one with `coadjoint new`, or name the folder with --derivations.",
             path=str(folder),
         )

@@ -4,8 +4,8 @@ Comes in: Programs, the texts printed from them, the equations, and the loaded s
 `Report`, or a `CrossCheckError` that names function, output, target, point and values.
 
     rung 3   emitted text, parsed back, equals the Program
-    rung 4   NumPy, exact C and fast C against 50 digits: k <= 4, or 16 with functions beyond sqrt
-    rung 5   NumPy equals exact C bit for bit; what calls functions beyond sqrt, within k
+    rung 4   every target against 50 digits: k <= 4, or 16 with functions beyond sqrt
+    rung 5   NumPy equals every exact target bit for bit; with functions beyond sqrt, within k
 
 Every rung runs on what was loaded from these very texts, counts what it compared, and fails where
 that is nothing: no kernel stands in for another.
@@ -22,19 +22,15 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from coadjoint.build.compiler import compiler_version, compilers
-from coadjoint.crosscheck.compare import (
-    Figures,
-    Subject,
-    against_oracle,
-    equal_bits,
-    exact_points,
-)
+from coadjoint.crosscheck.bits import equal_bits
+from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
-from coadjoint.crosscheck.parse_back import check_c, check_python
+from coadjoint.crosscheck.parse_back import check_text
+from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import LEVELS, Program
+from coadjoint.lower.program import Program
+from coadjoint.render.targets import BUILDS, TARGETS
 
-TARGETS: Final = ("numpy", "c", "c-fast")
 NO_COMPILER: Final = "not run: no compiler"
 #: Points against 50 digits for a whole system: about a second of a processor for a small one.
 ORACLE_POINTS: Final = 2000
@@ -55,11 +51,11 @@ class Report:
         system: Name of the system.
         rungs: Status by number of the rung: ``"passed"`` or why it was not run.
         threshold: The k that was allowed.
-        lines: Lines of Python and C that were read back, by function.
+        lines: Lines of the texts of all targets that were read back, by function.
         figures: By function and target, with the points that were compared.
-        equal: Points at which NumPy and exact C have the same bits, by function; none of what calls
-            functions beyond sqrt, where NumPy and C libraries may differ in the last bits.
-        together: Points at which these were compared within k instead, by function.
+        equal: Points at which a target has the same bits as NumPy, by function and target; none of
+            what calls functions beyond sqrt, where libraries may differ in the last bits.
+        together: Points at which these were compared within k instead, by function and target.
     """
 
     system: str
@@ -67,8 +63,8 @@ class Report:
     threshold: float
     lines: Mapping[str, int]
     figures: Mapping[str, Mapping[str, Figures]]
-    equal: Mapping[str, int]
-    together: Mapping[str, int]
+    equal: Mapping[str, Mapping[str, int]]
+    together: Mapping[str, Mapping[str, int]]
 
     @property
     def points(self) -> int:
@@ -112,7 +108,7 @@ def crosscheck(
         reference: The equations.
         system: The loaded system: ``name``, ``PARAMETERS``, ``load_kernels`` and one method per
             function, called with ``state``, ``parameters``, ``target`` and ``out``.
-        targets: What to compare; by default all, or NumPy alone without a compiler.
+        targets: What to compare; by default all, or those that need no compiler without one.
         oracle_points: Points against 50 digits, shared out among the functions.
         bit_points: Points of bitwise comparison for each function.
 
@@ -127,8 +123,10 @@ def crosscheck(
     with compilers() as pool:  # compilers work at the same time
         loading = pool.submit(system.load_kernels, chosen)
         lines = {
-            name: check_python(program, texts["kernel.py"])
-            + check_c(program, texts["kernel.c"], system.name)
+            name: sum(
+                check_text(program, target, texts[target.kernel], system.name)
+                for target in TARGETS.values()
+            )
             for name, program in programs.items()
         }
         exact = [exact_points(subject, name, _share(share, p)) for name, p in programs.items()]
@@ -138,14 +136,15 @@ def crosscheck(
     together = {name: agreement.together for name, agreement in agreements.items()}
     largest = max(len(program.outputs) for program in programs.values())
     points = max(1, min(bit_points, BIT_OUTPUTS // largest))
-    bits = {"numpy", "c"} <= set(chosen)
-    equal = equal_bits(subject, points) if bits else dict.fromkeys(programs, 0)
-    rungs = {3: "passed", 4: "passed", 5: "passed" if bits else NO_COMPILER}
-    if not set(TARGETS) <= set(chosen):
-        rungs[4] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
+    equal = equal_bits(subject, points)
+    rungs = {3: "passed", 4: "passed", 5: "passed"}
+    if not set(BUILDS) <= set(chosen):
+        rungs[4] = rungs[5] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
+    if not subject.exact:
+        rungs[5] = "not run: nothing to compare with NumPy"
     report = Report(system.name, rungs, subject.threshold, lines, figures, equal, together)
     for name in programs:
-        _check_counts(report, name, bits=bits, exactly=subject.has_equal_bits(name))
+        _check_counts(report, name, subject)
     return report
 
 
@@ -154,20 +153,26 @@ def _check_texts(
 ) -> None:
     """The kernel of each target was loaded from the text that is checked."""
     for target in targets:
-        file = "kernel.py" if target == "numpy" else "kernel.c"
+        file = BUILDS[target].kernel
         same = loaded.get(target) == hashlib.sha256(texts[file].encode()).hexdigest()
         _require(same, system, f"the target {target} was not loaded from this {file}", 3)
 
 
-def _check_counts(report: Report, function: str, *, bits: bool, exactly: bool) -> None:
+def _check_counts(report: Report, function: str, subject: Subject) -> None:
     """Each rung compared something of a function; passing on nothing is failing."""
+    compared = report.equal if subject.has_equal_bits(function) else report.together
     counts = {
         3: [report.lines[function]],
         4: [figures.points for figures in report.figures[function].values()],
-        5: [report.equal[function] if exactly else report.together[function]] if bits else [1],
+        5: [compared[function].get(target, 0) for target in subject.exact],
     }
     for rung, found in counts.items():
-        _require(found and all(found), report.system, f"nothing of {function} was compared", rung)
+        _require(
+            (found or rung == 5) and all(found),
+            report.system,
+            f"nothing of {function} was compared",
+            rung,
+        )
 
 
 def _require(held: object, system: str, message: str, rung: int) -> None:
@@ -182,16 +187,14 @@ def _require(held: object, system: str, message: str, rung: int) -> None:
 
 def _share(share: int, program: Program) -> int:
     """Points for one function."""
-    size = len(program.outputs) + sum(
-        count for level in LEVELS for count in program.operation_counts(level).values()
-    )
-    return min(share, max(FEWEST_POINTS, ORACLE_OPERATIONS // size))
+    return min(share, max(FEWEST_POINTS, ORACLE_OPERATIONS // work(program)))
 
 
 def available_targets() -> tuple[str, ...]:
-    """All targets, or NumPy alone where there is no compiler.
+    """All targets, or those that need no compiler where there is none.
 
     Raises:
         CompilerError: One was asked for that does not work.
     """
-    return ("numpy",) if compiler_version() == "none" else TARGETS
+    without = compiler_version() == "none"
+    return tuple(build for build, each in BUILDS.items() if not (without and each.needs_compiler))

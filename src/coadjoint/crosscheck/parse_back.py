@@ -1,6 +1,6 @@
 """Cross-check, reading: emitted text, parsed back, equals the Program it was printed from.
 
-Comes in: a Program and the texts of ``kernel.py`` and ``kernel.c``. Goes out: nothing, or a
+Comes in: a Program and the text of a kernel of any target. Goes out: nothing, or a
 `CrossCheckError` that names the function and the line. Numbers are compared as doubles.
 Read next: `coadjoint.crosscheck.oracle`.
 """
@@ -11,36 +11,29 @@ from fractions import Fraction
 from itertools import zip_longest
 from operator import itemgetter
 
-from coadjoint.crosscheck.body import Body, failure
-from coadjoint.crosscheck.read_c import read_c
-from coadjoint.crosscheck.read_python import read_python
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Add, Call, Divide, Multiply, Negate, Node, Number, Program
+from coadjoint.render.targets.body import Body, failure
+from coadjoint.render.targets.protocol import Target
 
 
-def check_python(program: Program, text: str) -> int:
-    """The function of ``program`` in a ``kernel.py`` reads back as the Program.
+def check_text(program: Program, target: Target, text: str, system: str) -> int:
+    """Each branch of the function of a Program in the text of a kernel reads back as the Program.
 
-    Returns:
-        How many lines were compared.
-
-    Raises:
-        CrossCheckError: It does not; the message names the first difference.
-    """
-    return _check_same(program, read_python(text, program.name, tuple(program.arrays)), "kernel.py")
-
-
-def check_c(program: Program, text: str, system: str) -> int:
-    """Both branches of the function of ``program`` in a ``kernel.c`` read back as the Program.
+    Args:
+        program: The function.
+        target: The language of the text.
+        text: Of the kernel.
+        system: Name of the system.
 
     Returns:
         How many lines were compared, in all branches together.
 
     Raises:
-        CrossCheckError: One does not; the message names the first difference.
+        CrossCheckError: It does not; the message names the first difference.
     """
-    bodies = read_c(text, f"{system}_{program.name}")
-    return sum(_check_same(program, body, "kernel.c") for body in bodies)
+    bodies = target.read(text, program, system)
+    return sum(_check_same(program, body, target.kernel) for body in bodies)
 
 
 def as_printed(node: Node) -> Node:

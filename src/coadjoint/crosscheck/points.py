@@ -80,6 +80,15 @@ class Batch:
             array[:, members] = new[name]
         return Batch(merged.pop("state"), merged.pop("parameters"), merged)
 
+    def first(self, count: int) -> Batch:
+        """The first members; what is shared stays so."""
+        driving = {
+            name: array[..., :count] if array.ndim > 1 else array
+            for name, array in self.driving.items()
+        }
+        parameters = self.parameters[:, :count] if self.parameters.ndim > 1 else self.parameters
+        return Batch(self.state[:, :count], parameters, driving)
+
     def members(self, chosen: NDArray[np.intp]) -> Batch:
         """Some of the members."""
         driving = {name: array[:, chosen] for name, array in self.driving.items()}

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import sympy
 from sympy.printing.mathml import mathml
 
-from coadjoint.derive.equations import Equations, Left, Step, is_of_kernel, symbol
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.records import Left, Step, is_of_kernel, symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.spec.model import Definition
 

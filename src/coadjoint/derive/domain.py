@@ -12,47 +12,27 @@ Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what bec
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
 
+from coadjoint.declared import Bound
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.kinematics import multiplier_name
 from coadjoint.derive.mechanics.solver import pivot_name
 from coadjoint.exact import Condition, Element, Region
 
 
-@dataclass(frozen=True)
-class Bound:
-    """A value that is positive, or not negative, where a system is defined.
+def bounds(equations: Equations) -> tuple[tuple[Bound, Element], ...]:
+    """All bounds of a system with what is positive there.
 
-    Attributes:
-        name: Of the condition, of the acceleration or of the reaction.
-        kind: ``condition``, ``acceleration`` or ``reaction``.
-        element: The value.
-        strict: Whether it may not be zero.
-        inputs: Components of state, parameters, inputs and time that it depends on.
+    None where nothing is declared and nothing is constrained.
     """
-
-    name: str
-    kind: str
-    element: Element
-    strict: bool
-    inputs: tuple[str, ...]
-
-    @property
-    def label(self) -> str:
-        """What the row is, for comments and messages."""
-        return self.name if self.kind == "condition" else f"pivot of {self.name}"
-
-
-def bounds(equations: Equations) -> tuple[Bound, ...]:
-    """All bounds of a system; none where nothing is declared and nothing is constrained."""
-    setting, found = equations.setting, list[Bound]()
+    setting, found = equations.setting, list[tuple[Bound, Element]]()
     for condition in equations.spec.domain:
         value = setting.excess(condition, setting.reactions)
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)
-        found.append(Bound(condition.name, "condition", value, strict, inputs))
+        found.append((Bound(condition.name, "condition", strict, inputs), value))
     return (*found, *_pivots(equations))
 
 
@@ -64,7 +44,7 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
         momenta: The momenta in terms of velocities, for what is written in these.
     """
     known = equations.setting.field.region
-    found = [Condition(each.element, each.strict) for each in bounds(equations)]
+    found = [Condition(value, bound.strict) for bound, value in bounds(equations)]
     found += _arguments(equations)
     return replace(
         known,
@@ -92,7 +72,7 @@ def _arguments(equations: Equations) -> list[Condition]:
     ]
 
 
-def _pivots(equations: Equations) -> list[Bound]:
+def _pivots(equations: Equations) -> list[tuple[Bound, Element]]:
     """A bound for each pivot of the solves of a constrained motion.
 
     A free motion may have a kinetic energy of either sign, which is regular all the same.
@@ -101,14 +81,14 @@ def _pivots(equations: Equations) -> list[Bound]:
         return []
     kept = enumerate(equations.distribution.kept)
     reactions = {multiplier_name(n): equation.reaction for n, (equation, _) in kept}
-    found = []
+    found = list[tuple[Bound, Element]]()
     for solve in equations.exact.solves:
         for place, name in zip(solve.block, solve.names, strict=True):
             pivot = equations.setting.field[pivot_name(place)]
             kind = "reaction" if name in reactions else "acceleration"
             value = -pivot if name in reactions else pivot
             inputs = _inputs(equations, pivot)
-            found.append(Bound(reactions.get(name, name), kind, value, True, inputs))
+            found.append((Bound(reactions.get(name, name), kind, True, inputs), value))
     return found
 
 

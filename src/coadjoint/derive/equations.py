@@ -8,174 +8,22 @@ Read next: `coadjoint.prove.claims` and `coadjoint.lower.lowering`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache, cached_property
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import sympy
-from sympy.printing.mathml import mathml
 
-from coadjoint.derive.mechanics.solver import Solve, solver_names
+from coadjoint.derive.mechanics.distribution import Distribution
+from coadjoint.derive.mechanics.followed import rates_followed
+from coadjoint.derive.mechanics.projection import nearest_state
+from coadjoint.derive.mechanics.solver import definitions_under, solver_names
 from coadjoint.derive.pairs import LaxPair
+from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
-
-if TYPE_CHECKING:
-    from coadjoint.derive.mechanics.distribution import Distribution
-
-
-@dataclass(frozen=True)
-class Left:
-    """The left side of a line of a derivation: plain text, LaTeX and presentation MathML."""
-
-    text: str
-    latex: str
-    mathml: str
-
-
-#: How kernels call a time derivative.
-_RATE = re.compile(r"d(?P<of>.+)_dt")
-
-
-def is_of_kernel(name: str) -> bool:
-    """Whether a name is one that kernels give: of an intermediate, or of a rate."""
-    return name.startswith("_") or _RATE.fullmatch(name) is not None
-
-
-@cache  # every route writes the same names
-def symbol(name: str) -> Left:
-    """The symbol itself: ``Pi1``; names of kernels as a book would write them."""
-    moving = _RATE.fullmatch(name)
-    if moving:
-        return replace(rate(moving["of"]), text=name)
-    plain = sympy.Symbol(name.removeprefix("_"))
-    return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
-
-
-def signed(sign: int, text: str) -> str:
-    """A sum, or minus it in brackets.
-
-    >>> signed(1, "a + b"), signed(-1, "a + b")
-    ('a + b', '-(a + b)')
-    """
-    return text if sign == 1 else f"-({text})"
-
-
-def rate(name: str) -> Left:
-    """Its time derivative: ``dPi1/dt``."""
-    of = symbol(name)
-    fraction = f"<mfrac><mrow><mi>d</mi>{of.mathml}</mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>"
-    return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", fraction)
-
-
-def partial(function: str, name: str) -> Left:
-    """A partial derivative: ``dl/dOmega1``."""
-    by = symbol(name)
-    fraction = (
-        f"<mfrac><mrow><mo>&#x2202;</mo><mi>{function}</mi></mrow>"
-        f"<mrow><mo>&#x2202;</mo>{by.mathml}</mrow></mfrac>"
-    )
-    return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {by.latex}", fraction)
-
-
-def component(text: str, latex: str, n: int) -> Left:
-    """A component of a vector that is written out: ``(M eta')_1``."""
-    inner = f"<mo>(</mo><mtext>{text}</mtext><mo>)</mo>"
-    return Left(
-        f"({text})_{n}", f"({latex})_{{{n}}}", f"<msub><mrow>{inner}</mrow><mn>{n}</mn></msub>"
-    )
-
-
-def bracket(a: str, b: str) -> Left:
-    """A Poisson bracket: ``{Pi1, Pi2}``."""
-    x, y = symbol(a), symbol(b)
-    braced = f"<mo>{{</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>}}</mo>"
-    return Left(f"{{{a}, {b}}}", rf"\{{{x.latex}, {y.latex}\}}", braced)
-
-
-def algebra_bracket(a: str, b: str) -> Left:
-    """A bracket of a Lie algebra: ``[J1, J2]``."""
-    x, y = symbol(a), symbol(b)
-    braced = f"<mo>[</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>]</mo>"
-    return Left(f"[{a}, {b}]", rf"[{x.latex}, {y.latex}]", braced)
-
-
-@dataclass(frozen=True)
-class Step:
-    """One step of a derivation, for the document.
-
-    Attributes:
-        title: What is done.
-        text: The general law as plain text, from the theorem and not from the spec.
-        latex: The same law as LaTeX.
-        lines: Left and right sides of what it gives for this system.
-    """
-
-    title: str
-    text: str
-    latex: str
-    lines: tuple[tuple[Left, Element], ...] = ()
-
-
-@dataclass(frozen=True)
-class Exact:
-    """The equations as field elements.
-
-    Attributes:
-        definitions: Velocities by name, each in terms of the state; rates and observables may use
-            these names. In the order in which they can be computed. Names with a leading underscore
-            are intermediates of a solve in the kernel (`coadjoint.derive.mechanics.solver`).
-        rates: Time derivative of each state component.
-        energy: The Hamiltonian, in terms of the state; None for forces without a potential.
-        observables: Name and value of each scalar emitted beside the dynamics, energy included.
-        poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
-        solves: Linear equations that definitions solve in the kernel, in that order.
-        residuals: What vanishes on the constraints, by the names of these.
-        forces: What external forces add to each rate; empty where none act, and with constraints.
-    """
-
-    definitions: tuple[tuple[str, Element], ...]
-    rates: tuple[Element, ...]
-    energy: Element | None
-    observables: tuple[tuple[str, Element], ...]
-    poisson_tensor: tuple[tuple[Element, ...], ...] | None
-    solves: tuple[Solve, ...] = ()
-    residuals: tuple[tuple[str, Element], ...] = ()
-    forces: tuple[Element, ...] = ()
-
-
-@dataclass(frozen=True)
-class Relation:
-    """A function that vanishes where variables live, such as ``chi . r`` or ``q . q - 1``.
-
-    Attributes:
-        text: The relation for people: ``dot(chi, r) = 0``.
-        element: What vanishes.
-    """
-
-    text: str
-    element: Element
-
-
-@dataclass(frozen=True)
-class Chart:
-    """The variables in which a route moves, where they are not the declared state.
-
-    Attributes:
-        variables: Their names, in the order of the route's rates.
-        state: Each component of the declared state as a function of them.
-        through: The map in words for certificates: ``Pi = P x Q``.
-        relations: What vanishes where the variables live; the motion must keep it so.
-    """
-
-    variables: tuple[str, ...]
-    state: tuple[Element, ...]
-    through: str
-    relations: tuple[Relation, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -249,16 +97,6 @@ class Equations:
             return None
         return sympy.ImmutableMatrix([[self._sympy(entry) for entry in row] for row in tensor])
 
-    @cached_property
-    def derivatives(self) -> dict[str, tuple[str, ...]]:
-        """The functions that are derivatives of the rates: by which names each of them is.
-
-        By inputs and parameters only where there are some.
-        """
-        setting = self.setting
-        by = {"input_jacobian": setting.inputs, "parameter_jacobian": setting.parameters}
-        return {"jacobian": setting.state} | {name: names for name, names in by.items() if names}
-
     def closed(self, element: Element) -> Element:
         """An element with the definitions substituted: in state and parameters alone.
 
@@ -276,13 +114,7 @@ class Equations:
 
     def definitions_of(self, elements: Iterable[Element]) -> list[tuple[str, Element]]:
         """The definitions on which elements rest, in their order."""
-        wanted = frozenset[str]().union(*map(self.setting.field.reach, elements))
-        found = []
-        for name, value in reversed(self.exact.definitions):
-            if name in wanted:
-                wanted |= self.setting.field.reach(value)
-                found.append((name, value))
-        return found[::-1]
+        return definitions_under(self.setting.field, self.exact.definitions, elements)
 
     @cached_property
     def numbers(self) -> dict[str, Fraction]:
@@ -307,8 +139,6 @@ class Equations:
     @cached_property
     def followed(self) -> tuple[tuple[str, Element], ...]:
         """What follows from the motion without acting on it: each variable with its rate."""
-        from coadjoint.derive.mechanics.followed import rates_followed  # which needs distributions
-
         return rates_followed(self.setting, self.distribution)
 
     @property
@@ -327,9 +157,8 @@ class Equations:
     @cached_property
     def projection(self) -> Equations | None:
         """The nearest state on the constraints that are kept, in place of the rates."""
-        from coadjoint.derive.mechanics.projection import projected  # which makes Equations
-
-        return projected(self)
+        nearest = nearest_state(self.setting, self.distribution, self.exact)
+        return None if nearest is None else replace(self, exact=nearest, steps=())
 
     @cached_property
     def intermediates(self) -> frozenset[str]:

@@ -17,12 +17,13 @@ from fractions import Fraction
 from functools import cache
 from math import gcd, lcm
 
-from coadjoint.derive.pairs import LaxPair, Matrix, declared_pair, diagonal, multiplied
-from coadjoint.derive.routes.lie_poisson import hamiltonian
-from coadjoint.derive.routes.manakov import find_pair
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.mechanics.legendre import hamiltonian
+from coadjoint.derive.mechanics.planes import find_pair
+from coadjoint.derive.pairs import LaxPair, declared_pair
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element, Field
-from coadjoint.poisson.ranks import independent_rows
+from coadjoint.exact.dense import Matrix, diagonal, product
+from coadjoint.exact.ranks import independent_rows
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,7 @@ class Integrals:
         return tuple((f"integral{n}", each.value) for n, each in enumerate(self.emitted, 1))
 
 
+@once
 def pair_of(setting: Setting) -> LaxPair | None:
     """The declared pair of a system, or else the one that the route manakov finds."""
     if setting.spec.lax is not None:
@@ -69,6 +71,7 @@ def pair_of(setting: Setting) -> LaxPair | None:
     return find_pair(setting) if "manakov" in setting.spec.routes else None
 
 
+@once
 def lax_integrals(setting: Setting) -> Integrals | None:
     """The integrals that a system has by its Lax pair; None without one."""
     pair = pair_of(setting)
@@ -95,8 +98,8 @@ def traces(field: Field, L: Matrix) -> Iterator[Element]:
     @cache
     def raised(k: int) -> Matrix:
         if k == 0:
-            return diagonal(field, [field.one] * len(L))
-        return L if k == 1 else multiplied(field, raised(k // 2), raised(k - k // 2))
+            return diagonal([field.one] * len(L))
+        return L if k == 1 else product(raised(k // 2), raised(k - k // 2))
 
     for k in range(1, len(L) + 1):
         a, b = raised(k // 2), zip(*raised(k - k // 2), strict=True)

@@ -14,12 +14,26 @@ from typing import Any
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import (
+    Matrix,
+    add,
+    apply,
+    commutator,
+    determinant,
+    diagonal,
+    dot,
+    inverse,
+    product,
+    scale,
+    subtract,
+    trace,
+    transpose,
+)
 from coadjoint.exact.witness import is_nonzero
 from coadjoint.spec.core import tree
 
 #: An element, a tuple of elements or a tuple of tuples of elements.
 Quantity = Any
-Matrix = tuple[tuple[Element, ...], ...]
 
 SINGULAR = "the inverse of a singular matrix is asked for; expected det != 0."
 
@@ -44,7 +58,7 @@ def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> 
                 value, divisor = below[0], found[id(base)]
                 check_divisor(divisor, field)
                 for _ in range(n):
-                    value = _scale(1 / divisor, value)
+                    value = scale(1 / divisor, value)
             case _:
                 value = _value(part, below, values, field)
         found[id(part)] = value
@@ -65,16 +79,16 @@ def _value(
         case tree.Component(indices=indices):
             return _component(below[0], indices)
         case tree.Negate():
-            return _scale(-field.one, below[0])
+            return scale(-field.one, below[0])
         case tree.Power(exponent=exponent):
             return _power(below[0], exponent, field)
         case tree.Binary(operator="/"):
             check_divisor(below[1], field)
-            return _scale(1 / below[1], below[0])
+            return scale(1 / below[1], below[0])
         case tree.Binary(operator=operator):
             return _BINARY[operator](*below)
         case tree.Call(function="norm"):
-            return field.call("sqrt", _dot(below[0], below[0]))
+            return field.call("sqrt", dot(below[0], below[0]))
         case tree.Call(function="inverse"):
             return _checked_inverse(below[0], field)
         case tree.Call(function="log") if field.is_zero(below[0]):
@@ -102,34 +116,13 @@ def entries(value: Quantity) -> tuple[Element, ...]:
     return (value,)
 
 
-def _scale(factor: Element, value: Quantity) -> Quantity:
-    """``factor * value`` for a value of any shape."""
-    if isinstance(value, tuple):
-        return tuple(_scale(factor, part) for part in value)
-    return factor * value
-
-
-def _add(a: Quantity, b: Quantity) -> Quantity:
-    if isinstance(a, tuple):
-        return tuple(map(_add, a, b))
-    return a + b
-
-
-def _subtract(a: Quantity, b: Quantity) -> Quantity:
-    if isinstance(a, tuple):
-        return tuple(map(_subtract, a, b))
-    return a - b
-
-
 def _multiply(a: Quantity, b: Quantity) -> Quantity:
     """Scalar times anything, matrix times vector, matrix times matrix."""
     if not isinstance(a, tuple):
-        return _scale(a, b)
+        return scale(a, b)
     if not isinstance(b, tuple):
-        return _scale(b, a)
-    if isinstance(b[0], tuple):
-        return tuple(tuple(_dot(row, column) for column in zip(*b, strict=True)) for row in a)
-    return tuple(_dot(row, b) for row in a)
+        return scale(b, a)
+    return product(a, b) if isinstance(b[0], tuple) else apply(a, b)
 
 
 def check_divisor(divisor: Element, field: Field) -> None:
@@ -149,56 +142,11 @@ def check_divisor(divisor: Element, field: Field) -> None:
     )
 
 
-def _dot(a: tuple[Element, ...], b: tuple[Element, ...]) -> Element:
-    products = [x * y for x, y in zip(a, b, strict=True)]
-    return sum(products[1:], products[0])
-
-
-def _transpose(a: Matrix) -> Matrix:
-    return tuple(zip(*a, strict=True))
-
-
-def _trace(a: Matrix) -> Element:
-    diagonal = [row[i] for i, row in enumerate(a)]
-    return sum(diagonal[1:], diagonal[0])
-
-
 def _diag(a: Quantity) -> Quantity:
     """A vector as a diagonal matrix; the diagonal of a matrix as a vector."""
     if isinstance(a[0], tuple):
         return tuple(row[i] for i, row in enumerate(a))
-    return tuple(tuple(x if i == j else 0 * x for j in range(len(a))) for i, x in enumerate(a))
-
-
-def _minor(a: Matrix, row: int, column: int) -> Matrix:
-    rows = [line for i, line in enumerate(a) if i != row]
-    return tuple(line[:column] + line[column + 1 :] for line in rows)
-
-
-def determinant(a: Matrix) -> Element:
-    """Determinant by expansion along the first row; matrices here are at most 3 x 3."""
-    if len(a) == 1:
-        return a[0][0]
-    terms = [(-1) ** j * x * determinant(_minor(a, 0, j)) for j, x in enumerate(a[0]) if x != 0]
-    return sum(terms, 0 * a[0][0])
-
-
-def inverse(a: Matrix) -> Matrix:
-    """Inverse by cofactors.
-
-    Raises:
-        DerivationError: The determinant is zero identically.
-    """
-    det = determinant(a)
-    if det == 0:
-        raise DerivationError(SINGULAR)
-    share = 1 / det
-    if len(a) == 1:
-        return ((share,),)
-    size = range(len(a))
-    return tuple(
-        tuple((-1) ** (i + j) * determinant(_minor(a, j, i)) * share for j in size) for i in size
-    )
+    return diagonal(a)
 
 
 def _checked_inverse(a: Matrix, field: Field) -> Matrix:
@@ -234,20 +182,20 @@ def _hat(a: Quantity) -> Matrix:
 
 
 _BINARY: dict[str, Callable[..., Quantity]] = {
-    "+": _add,
-    "-": _subtract,
+    "+": add,
+    "-": subtract,
     "*": _multiply,
 }
 _TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
-    "dot": _dot,
+    "dot": dot,
     "cross": _cross,
     "hat": _hat,
-    "trace": _trace,
-    "transpose": _transpose,
+    "trace": trace,
+    "transpose": transpose,
     "det": determinant,
     "diag": _diag,
     "outer": lambda a, b: tuple(tuple(x * y for y in b) for x in a),
     "rows": lambda *rows: rows,
     "vector": lambda *components: components,
-    "commutator": lambda a, b: _subtract(_multiply(a, b), _multiply(b, a)),
+    "commutator": commutator,
 }

@@ -9,17 +9,16 @@ Read next: `coadjoint.derive.routes.lax` and `coadjoint.derive.routes.manakov`, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from coadjoint.algebra.linear import Span
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting
-from coadjoint.exact import Element, Field
+from coadjoint.derive.setting import Setting, once
+from coadjoint.exact import Element
+from coadjoint.exact.dense import Matrix, commutator
+from coadjoint.exact.linear import Span
 from coadjoint.spec.core.faults import listed
-
-Matrix = tuple[tuple[Element, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -56,6 +55,7 @@ class LaxEquation:
     right: Element
 
 
+@once
 def declared_pair(setting: Setting) -> LaxPair:
     """The pair of the table [lax].
 
@@ -76,27 +76,10 @@ def declared_pair(setting: Setting) -> LaxPair:
     return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
 
 
-def multiplied(field: Field, a: Matrix, b: Matrix) -> Matrix:
-    """``a b``, zeros passed over."""
-    columns = list(zip(*b, strict=True))
-    return tuple(
-        tuple(field.sum(x * y for x, y in zip(row, c, strict=True) if x and y) for c in columns)
-        for row in a
-    )
-
-
-def bracket(field: Field, a: Matrix, b: Matrix) -> Matrix:
-    """``a b - b a``."""
-    ab, ba = multiplied(field, a, b), multiplied(field, b, a)
-    return tuple(
-        tuple(x - y for x, y in zip(p, q, strict=True)) for p, q in zip(ab, ba, strict=True)
-    )
-
-
 def lax_equations(setting: Setting, pair: LaxPair) -> Iterator[LaxEquation]:
     """Every equation that ``dL/dt = [L, M]`` stands for, the powers ascending in each entry."""
     field = setting.field
-    turned = bracket(field, pair.L, pair.M)
+    turned = commutator(pair.L, pair.M)
     for i, row in enumerate(pair.L):
         for j, entry in enumerate(row):
             moving = [name for name in setting.state if name in field.reach(entry)]
@@ -162,19 +145,3 @@ def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:
 def text_of_entry(entry: tuple[int, int], power: int, spectral: str) -> str:
     """``the entry (1, 2) at lambda^2``."""
     return f"the entry ({entry[0]}, {entry[1]}) at {spectral}^{power}"
-
-
-def diagonal(field: Field, values: Sequence[Element]) -> Matrix:
-    """The diagonal matrix of some values."""
-    return tuple(
-        tuple(x if i == j else field.zero for j in range(len(values))) for i, x in enumerate(values)
-    )
-
-
-def combined(field: Field, *terms: tuple[Element, Matrix]) -> Matrix:
-    """A sum of multiples of matrices."""
-    rows, columns = range(len(terms[0][1])), range(len(terms[0][1][0]))
-    return tuple(
-        tuple(field.sum(factor * matrix[i][j] for factor, matrix in terms) for j in columns)
-        for i in rows
-    )

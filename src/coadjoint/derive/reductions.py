@@ -2,6 +2,7 @@ r"""Restricted motions: any route on a whole system, restricted to a section tha
 
 If the motion :math:`\dot x = X(x, y), \dot y = Y(x, y)` keeps the submanifold :math:`y = s(x)`,
 that is :math:`Ds(x)\, X(x, s(x)) = Y(x, s(x))`, then on it :math:`\dot x = X(x, s(x))`.
+Forces and dissipation act on the whole system, and must keep it on the section as well.
 Comes in: a Setting of what is left, and a route. Goes out: Equations of what is left, derived by
 that route for the whole system in a field of its own. What must hold for it is proved in
 `coadjoint.prove.reductions`.
@@ -9,18 +10,17 @@ that route for the whole system in a field of its own. What must hold for it is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
 
-from coadjoint.derive.equations import Equations, Exact, Step, rate, symbol
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.observables import observables
+from coadjoint.derive.mechanics import external
+from coadjoint.derive.records import Exact, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
+from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
-
-Route = Callable[[Spec | Setting], Equations]
 
 
 class Restriction:
@@ -53,7 +53,7 @@ class Restriction:
         return {name: self(value) for name, value in pairs}
 
 
-def restricted(setting: Setting, route: Route) -> Equations:
+def restricted(setting: Setting, route: str) -> Equations:
     """The equations of what is left, by a route for the whole system.
 
     Raises:
@@ -66,7 +66,7 @@ def restricted(setting: Setting, route: Route) -> Equations:
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
     section = tuple(restriction.section.items())
-    exact = Exact(section, kept, energy, observables(setting, energy), None)
+    exact = Exact(section, kept, energy, emitted(setting, energy), None)
     return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
 
 
@@ -88,11 +88,11 @@ def _check_regular(restriction: Restriction, energy: Element) -> None:
             ) from error
 
 
-def whole_equations(setting: Setting, route: Route) -> Equations:
+def whole_equations(setting: Setting, route: str) -> Equations:
     """The equations of the system before the restriction, in a field of its own."""
     reduction = setting.spec.reduction
     assert reduction is not None, f"{setting.spec.name} is not restricted"
-    whole = route(reduction.whole)
+    whole = external.forced(load_route(route)(make_setting(reduction.whole)))
     if whole.chart is not None:
         raise refusal(
             setting,

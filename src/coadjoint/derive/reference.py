@@ -13,17 +13,18 @@ Read next: `coadjoint.lower.check` and `coadjoint.crosscheck.oracle`, which supp
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cached_property
 from operator import truediv
 from typing import Any, TypeVar
 
-from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
 from coadjoint.derive.sloped import Sloped, negative, scaled
 from coadjoint.exact import Element
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
 Value = TypeVar("Value")
 Number = Callable[[Fraction], Value]
@@ -45,7 +46,7 @@ class Reference:
         self.equations, self.implicit = equations, implicit
         self.state = equations.setting.state
         self.parameters = equations.setting.parameters
-        self._functions: dict[str, tuple[Sequence[Element], list[tuple[str, Element]]]] = {}
+        self._functions: dict[str, tuple[Rows, list[tuple[str, Element]]]] = {}
 
     def evaluate(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
@@ -53,30 +54,30 @@ class Reference:
         """All outputs of one function, row by row.
 
         Args:
-            function: ``rhs``, ``jacobian``, ``input_jacobian``, ``parameter_jacobian``,
-                ``energy``, ``observables``,
-                ``poisson_tensor``, ``constraint_residual``, ``projection``, ``reconstruction`` or
-                ``domain``.
+            function: One of `coadjoint.kernel_functions`.
             inputs: State, parameters, inputs and time by component.
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function by name.
         """
-        if function == "projection":
-            return self._projection.evaluate("rhs", inputs, number, call)
         if function not in self._functions:
-            elements = self._elements(function)
-            inner = [e for solve in self._implied(function) for e in solve.elements]
-            needed = self.equations.definitions_of([*elements, *inner])
-            self._functions[function] = elements, needed
-        if function in self.equations.derivatives:
-            return self._jacobian(function, inputs, number, call)
+            rows = rows_of(self.equations, function)
+            assert rows is not None, function
+            self._functions[function] = rows, self._needed(function, rows)
+        rows, _ = self._functions[function]
+        if rows.by:
+            return self._slopes(function, inputs, number, call)
         return self._values(function, inputs, number, call)
+
+    def _needed(self, function: str, rows: Rows) -> list[tuple[str, Element]]:
+        """The definitions on which a function rests, in their order."""
+        inner = [e for solve in self._implied(function) for e in solve.elements]
+        return rows.of.definitions_of([*rows.elements, *inner])
 
     def _values(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
     ) -> list[Value]:
         """What the elements of a function are, definitions first."""
-        elements, definitions = self._functions[function]
+        rows, definitions = self._functions[function]
         field, factors = self.equations.setting.field, dict[int, Value]()
         known: dict[str, Any] = dict(inputs)
 
@@ -88,11 +89,11 @@ class Reference:
             known[name] = value(definition)
             if name in implied:
                 known |= implied[name].solved(known, value)
-        return [value(element) for element in elements]
+        return [value(element) for element in rows.elements]
 
     def _implied(self, function: str) -> list[ImplicitSolve]:
         """The solves whose solutions are differentiated by the rule for implicit functions."""
-        if not self.implicit or function not in ("input_jacobian", "parameter_jacobian"):
+        if not self.implicit or KERNEL_FUNCTIONS[function].by not in ("inputs", "parameters"):
             return []
         return self._solves
 
@@ -101,31 +102,11 @@ class Reference:
         """All solves, with their factors."""
         return [ImplicitSolve.of(self.equations, each) for each in self.equations.exact.solves]
 
-    def _elements(self, function: str) -> Sequence[Element]:
-        """What a function computes; of a Jacobian, what it is the derivative of."""
-        exact = self.equations.exact
-        match function:
-            case "rhs" | "jacobian" | "input_jacobian" | "parameter_jacobian":
-                return exact.rates
-            case "energy" if exact.energy is not None:
-                return (exact.energy,)
-            case "observables":
-                return [observable for _, observable in exact.observables]
-            case "poisson_tensor" if exact.poisson_tensor is not None:
-                return [entry for row in exact.poisson_tensor for entry in row]
-            case "constraint_residual":
-                return [residual for _, residual in exact.residuals]
-            case "reconstruction":
-                return [rate for _, rate in self.equations.followed]
-            case "domain":
-                return [bound.element for bound in bounds(self.equations)]
-        raise AssertionError(function)
-
-    def _jacobian(
+    def _slopes(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
     ) -> list[Value]:
         """``d rate_i / d x_j``, row by row, by state, inputs or parameters x."""
-        names = self.equations.derivatives[function]
+        names = self._functions[function][0].by
         one, zero = number(Fraction(1)), number(Fraction(0))
         known = {name: Sloped(value, {}) for name, value in inputs.items()}
         for j, name in enumerate(names):
@@ -139,11 +120,6 @@ class Reference:
 
         rates = self._values(function, known, constant, apply)
         return [rate.slopes.get(j, zero) for rate in rates for j in range(len(names))]
-
-    @cached_property
-    def _projection(self) -> Reference:
-        assert self.equations.projection is not None, "asked for only where constraints are kept"
-        return Reference(self.equations.projection)
 
 
 def _applied(

@@ -7,31 +7,30 @@ results. Read next: `coadjoint.derive.routes.euler_poincare`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import field as attribute
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, wraps
 from random import Random
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TypeVar, cast
 
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Quantity, entries, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Condition, Element, Field, Region
+from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.core.shapes import ELEMENTARY
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
-from coadjoint.spec.sections.constrained import Condition as Inequality
+from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
-from coadjoint.spec.sections.uses import formulas
+from coadjoint.spec.tables import list_formulas
 
-if TYPE_CHECKING:
-    from coadjoint.derive.integrals import Integrals
-
+Value = TypeVar("Value")
 #: What has a name in formulas.
 Declared = Variable | Parameter | Input | Time
 #: The functions for which the field needs room; the others are sums and products.
@@ -47,11 +46,15 @@ class Setting:
         field: Rational functions of state, velocities, parameters, inputs and time, with the
             elementary functions that the spec's formulas call.
         values: Every declared name, whole quantity or component, as field elements.
+        built: What functions under `once` have built of this Setting.
     """
 
     spec: Spec
     field: Field
     values: Mapping[str, Quantity]
+    built: dict[Callable[[Setting], object], object] = attribute(
+        default_factory=dict, repr=False, compare=False
+    )
 
     # -- names, in the order of the algebra ---------------------------------------------
 
@@ -170,13 +173,6 @@ class Setting:
         return tuple(places[place] for place in sorted(places))
 
     @cached_property
-    def integrals(self) -> Integrals | None:
-        """What the Lax pair of the system, declared or found, keeps; None without one."""
-        from coadjoint.derive.integrals import lax_integrals  # which starts from a Setting
-
-        return lax_integrals(self)
-
-    @cached_property
     def reactions(self) -> Mapping[str, Quantity]:
         """The multipliers of constraints, whole and by component, as symbols."""
         found: dict[str, Quantity] = {}
@@ -194,6 +190,18 @@ class Setting:
         return left - right if condition.sign.startswith(">") else right - left
 
     # -- elements -----------------------------------------------------------------------
+
+    @cached_property
+    def lagrangian(self) -> Element:
+        """The declared Lagrangian, where the reader asks for one."""
+        assert self.spec.lagrangian is not None, "the reader asks for a Lagrangian on this route"
+        return self.formula(self.spec.lagrangian)
+
+    @cached_property
+    def hamiltonian(self) -> Element:
+        """The declared Hamiltonian, where the reader asks for one."""
+        assert self.spec.hamiltonian is not None, "the reader asks for a Hamiltonian on this route"
+        return self.formula(self.spec.hamiltonian)
 
     def elements(self, names: Sequence[str]) -> tuple[Element, ...]:
         """The symbols of several names."""
@@ -245,13 +253,24 @@ class Setting:
         return self.field.vector(by_name[name] for name in self.state)
 
 
-def setting_of(given: Spec | Setting) -> Setting:
-    """What routes start from, so that each takes a Spec, too."""
-    if isinstance(given, Setting):
-        return given
-    from coadjoint.derive import make_setting as with_symbols_of_routes
+def once(build: Callable[[Setting], Value]) -> Callable[[Setting], Value]:
+    """Let a function of a Setting alone build its value once; all routes of the Setting share it.
 
-    return with_symbols_of_routes(given)
+    >>> from coadjoint.spec import read_spec
+    >>> from coadjoint.resources import derivations_folder
+    >>> setting = make_setting(read_spec(derivations_folder() / "rigid_body.toml"))
+    >>> names = once(lambda setting: list(setting.state))
+    >>> names(setting) is names(setting)
+    True
+    """
+
+    @wraps(build)
+    def look_up(setting: Setting) -> Value:
+        if build not in setting.built:
+            setting.built[build] = build(setting)
+        return cast(Value, setting.built[build])
+
+    return look_up
 
 
 def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
@@ -344,14 +363,14 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
 
 def _function_calls(spec: Spec) -> int:
     """How many elementary functions the formulas of a spec call at the most."""
-    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
 
 
 def _calls_parameters(spec: Spec) -> bool:
     """Whether an elementary function is taken of parameters, which have numbers in some proofs."""
     names = {n for each in spec.parameters for n in (each.name, *each.components)}
-    nodes = (node for formula in formulas(spec) for node in tree.walk(formula.tree))
+    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     calls = (node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED)
     inside = (part for call in calls for part in tree.walk(call))
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
@@ -368,12 +387,7 @@ def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
 
 def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
     """``sum x_i e_i`` for matrices e_i."""
-    rows = range(size(matrices))
-    entries: dict[tuple[int, int], Element] = {}
-    for x, matrix in zip(parts, matrices, strict=True):
-        for place, value in matrix.items():
-            entries[place] = entries.get(place, 0) + x * value
-    return tuple(tuple(entries.get((i, j), 0 * parts[0]) for j in rows) for i in rows)
+    return dense.weighted(parts, matrices, size(matrices), 0 * parts[0])
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

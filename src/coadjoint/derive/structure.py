@@ -11,13 +11,14 @@ from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra, semidirect_product
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import AlgebraError
-from coadjoint.groups.vectors import matmul
+from coadjoint.exact.dense import product
 from coadjoint.poisson import PoissonStructure, declared, lie_poisson, magnetic, nambu
 from coadjoint.spec.model import Poisson
 
 
+@once
 def momentum_algebra(setting: Setting) -> LieAlgebra:
     """The algebra on whose dual the state lives: ``g (s) V`` with every advected a in V*.
 
@@ -28,6 +29,7 @@ def momentum_algebra(setting: Setting) -> LieAlgebra:
     return semidirect_product(setting.algebra, actions) if actions else setting.algebra
 
 
+@once
 def poisson_structure(setting: Setting) -> PoissonStructure:
     """The bracket of the state, its components in declared order.
 
@@ -69,7 +71,7 @@ def _of_configuration(setting: Setting) -> PoissonStructure:
     known = mechanics(setting)
     W, A = known.inverse_mass, known.mixed
     turning = tuple(tuple(A[j][i] - A[i][j] for j in range(len(q))) for i in range(len(q)))
-    velocities = matmul(matmul(W, turning), W)
+    velocities = product(product(W, turning), W)
     zero = (field.zero,) * len(q)
     rows = [(*zero, *row) for row in W]
     rows += [(*(-w for w in column), *row) for column, row in zip(W, velocities, strict=True)]

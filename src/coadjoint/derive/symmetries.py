@@ -15,12 +15,13 @@ from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Quantity, entries
-from coadjoint.derive.setting import Setting, shaped
+from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.setting import Setting, once, shaped
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import scale
 from coadjoint.groups.vector_fields import VectorField
-from coadjoint.groups.vectors import scale
 from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_function, lifted
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
@@ -61,8 +62,8 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
         setting.field, setting.state, tuple(map(equations.closed, equations.exact.rates))
     )
     generators = []
-    for element in _elements(setting, symmetry):
-        resting = equations.closed(_value(setting, symmetry, element))
+    for element, value in _resting(setting)[symmetry.name]:
+        resting = equations.closed(value)
         X, is_lifted = _generator(setting, structure, symmetry, element, resting)
         if symmetry.time is not None:
             energy = equations.exact.energy
@@ -184,8 +185,7 @@ def _kept(
 def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tuple[Element, ...]:
     """J of each basis vector."""
     found = []
-    for element in _elements(setting, symmetry):
-        value = _value(setting, symmetry, element)
+    for element, value in _resting(setting)[symmetry.name]:
         if symmetry.time is not None:
             if energy is None:
                 problem = "time moves, and the motion has no energy"
@@ -193,6 +193,15 @@ def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tup
             value = value - energy * _taken(setting, symmetry.time, symmetry, element)
         found.append(value)
     return tuple(found)
+
+
+@once
+def _resting(setting: Setting) -> dict[str, list[tuple[Quantity, Element]]]:
+    """J of each basis vector without the part of time, by the names of the momentum maps."""
+    return {
+        each.name: [(x, _value(setting, each, x)) for x in _elements(setting, each)]
+        for each in setting.spec.symmetries
+    }
 
 
 def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
@@ -233,11 +242,11 @@ def _pairs(setting: Setting) -> list[Pair]:
 
 def _covector(setting: Setting) -> dict[str, Element]:
     """What pairs with the velocity of each position; empty beside magnetic terms."""
-    field, formula = setting.field, setting.spec.lagrangian
+    field = setting.field
     pairs = _pairs(setting)
-    if pairs or setting.spec.poisson is not None or formula is None:
+    if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
         return {q: field[p] / weight for q, p, weight in pairs}
-    slopes = field.gradient(setting.formula(formula), setting.velocities)
+    slopes = mechanics(setting).momenta
     return dict(zip(setting.positions, slopes, strict=True))
 
 

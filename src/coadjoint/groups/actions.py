@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Matrix, product
 from coadjoint.groups.group import MatrixGroup, Vector
-from coadjoint.groups.matrix import Matrix, product
 
 #: The rate of each symbol that moves.
 Rates = Mapping[str, Element]

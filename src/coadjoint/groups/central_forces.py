@@ -18,9 +18,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Vector, add, cross, dot, scale, subtract
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.groups.vector_fields import VectorField
-from coadjoint.groups.vectors import Vector, add, cross, dot, scale, subtract
 
 POSITION = ("r1", "r2", "r3")
 VELOCITY = ("v1", "v2", "v3")

@@ -14,9 +14,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Vector
 from coadjoint.groups.complex_numbers import Complex
 from coadjoint.groups.lifts import cotangent_lift, tangent_lift
-from coadjoint.groups.vectors import Vector
 
 Chart = Callable[[Sequence[Any]], Complex]
 

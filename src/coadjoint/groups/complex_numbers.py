@@ -8,10 +8,16 @@ Read next: `coadjoint.groups.maps`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from coadjoint.errors import AlgebraError
-from coadjoint.groups.vectors import Matrix, exact
+from coadjoint.exact.dense import Matrix
+
+
+def exact(value: Any) -> Any:
+    """The value, integers as fractions, so that a division stays exact."""
+    return Fraction(value) if isinstance(value, int) else value
 
 
 @dataclass(frozen=True)

@@ -20,20 +20,10 @@ from dataclasses import dataclass
 
 from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Matrix, Vector, add, apply, cross, dot, identity, scale, subtract
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.groups.rotations import euler_rodrigues
 from coadjoint.groups.vector_fields import VectorField
-from coadjoint.groups.vectors import (
-    Matrix,
-    Vector,
-    add,
-    apply,
-    cross,
-    dot,
-    identity,
-    scale,
-    subtract,
-)
 
 TIME = "t"
 #: Symbols of a transformation: three of the rotation, the boost, the translation, the time shift.
@@ -113,7 +103,7 @@ def pair_forces(
         for j in system.numbers:
             if j != i:
                 r, v = (subtract(of(i), of(j)) for of in (system.position, system.velocity))
-                total = add(total, law(r, v))
+                total = add(total, tuple(law(r, v)))
         forces.append(total)
     return tuple(forces)
 

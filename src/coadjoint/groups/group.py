@@ -16,16 +16,11 @@ from typing import Any
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field, element_text
+from coadjoint.exact.dense import Matrix, identity, product, subtract, transpose, weighted
 from coadjoint.groups.linear_part import LinearPart
 from coadjoint.groups.matrix import (
-    Matrix,
-    combination,
     coordinate_readers,
     exponential,
-    identity,
-    product,
-    subtract,
-    transpose,
     unipotent_inverse,
     unipotent_logarithm,
 )
@@ -103,7 +98,7 @@ class MatrixGroup:
                 found=[str(value) for value in values[:taken]],
             ) from None
         for i, value in zip(self.nilpotent, values[taken:], strict=True):
-            step = combination([value], [self.algebra.matrices[i]], self.size)
+            step = weighted([value], [self.algebra.matrices[i]], self.size)
             g = product(exponential(step), g)
         return self._in_field(g)
 
@@ -149,7 +144,7 @@ class MatrixGroup:
         """The matrix of ``Ad_g`` in the basis: its column j holds ``Ad_g e_j``."""
         inverse, columns = self.inverse(g), []
         for j in range(self.algebra.dimension):
-            unit = combination([1], [self.algebra.matrices[j]], self.size)
+            unit = weighted([1], [self.algebra.matrices[j]], self.size)
             columns.append(self.coordinates(product(g, unit, inverse)))
         return transpose(tuple(columns))
 
@@ -174,7 +169,7 @@ class MatrixGroup:
     def matrix(self, xi: Sequence[Any]) -> Matrix:
         """``xi^i e_i`` as a matrix."""
         self._check_length(xi, self.algebra.basis, "components of a vector")
-        return combination(xi, self.algebra.matrices, self.size)
+        return weighted(xi, self.algebra.matrices, self.size)
 
     def coordinates(self, matrix: Matrix) -> Vector:
         """The ``xi^i`` of a matrix of the algebra.
@@ -188,7 +183,7 @@ class MatrixGroup:
             self.field.zero + sum(matrix[r][c] * weight for (r, c), weight in reader.items())
             for reader in self._readers
         ]
-        left = subtract(matrix, combination(xi, self.algebra.matrices, self.size))
+        left = subtract(matrix, weighted(xi, self.algebra.matrices, self.size))
         self._check_zero(f"is not in {self.algebra.name}", "X - xi^i e_i", left)
         return tuple(xi)
 

@@ -19,10 +19,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Matrix, Vector, add, cross, identity, scale
 from coadjoint.groups.complex_numbers import Complex
 from coadjoint.groups.maps import HALF, PAULI
 from coadjoint.groups.vector_fields import hamiltonian_vector_field
-from coadjoint.groups.vectors import Matrix, Vector, combine, cross, identity, scale
 
 POSITIONS = ("q1", "q2")
 MOMENTA = ("p1", "p2")
@@ -53,7 +53,7 @@ def from_sphere(n: Sequence[Any]) -> Matrix:
     """``(n0 + n . sigma) / 2``, which is the coherence matrix where n is the Hopf map of a."""
     total = tuple(scale(n[0], row) for row in identity(2))
     for component, pauli in zip(n[1:], PAULI, strict=True):
-        total = combine(total, pauli, component)
+        total = add(total, scale(component, pauli))
     return tuple(scale(HALF, row) for row in total)
 
 

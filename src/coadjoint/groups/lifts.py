@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from coadjoint.exact import Element, Field
-from coadjoint.groups.vectors import Matrix, Vector, apply, transpose
+from coadjoint.exact.dense import Matrix, Vector, apply, transpose
 
 
 def jacobian(field: Field, components: Sequence[Element], names: Sequence[str]) -> Matrix:

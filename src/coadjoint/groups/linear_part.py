@@ -13,20 +13,18 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from coadjoint.algebra.matrices import SparseMatrix
-from coadjoint.groups.matrix import (
+from coadjoint.exact.dense import (
     Matrix,
     add,
-    combination,
     commutator,
-    determinant,
     identity,
-    inverse,
-    multiple,
     product,
-    resolvent,
+    scale,
     subtract,
     transpose,
+    weighted,
 )
+from coadjoint.groups.matrix import determinant, inverse, resolvent
 
 #: What a matrix of the group must be, as ``(statement, matrix that must be zero)``.
 Condition = tuple[str, Matrix]
@@ -98,15 +96,15 @@ class Isometries:
             ZeroDivisionError: ``1 - X`` is singular.
         """
         one, J = identity(self.size), self.structure
-        X = combination(values, self.generators, self.size)
+        X = weighted(values, self.generators, self.size)
         adjugate, (a, b) = resolvent(X, J)
         numerator = product(adjugate, add(one, X))
         if J is None or not b:
-            return multiple(1 / a, numerator)
+            return scale(1 / a, numerator)
         # 1 / d = conj(d) / |d|^2, and for the column of SU(n) d / |d|^2; divided once, at the end
-        sign = subtract(one, multiple(2, self.column)) if self.column else one
-        whole = add(multiple(a, one), multiple(-b, product(J, sign)))
-        return multiple(1 / (a * a + b * b), product(numerator, whole))
+        sign = subtract(one, scale(2, self.column)) if self.column else one
+        whole = add(scale(a, one), scale(-b, product(J, sign)))
+        return scale(1 / (a * a + b * b), product(numerator, whole))
 
     def inverse(self, g: Matrix) -> Matrix:
         """``K^-1 g^T K``."""

@@ -17,8 +17,8 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.dense import Matrix, Vector, product, trace, transpose
 from coadjoint.groups.complex_numbers import Complex, I
-from coadjoint.groups.vectors import Matrix, Vector, matmul, trace, transpose
 
 HALF = Fraction(1, 2)
 
@@ -68,7 +68,7 @@ def unhat(matrix: Matrix) -> Vector:
 
 def pairing_so3(mu: Matrix, xi: Matrix) -> Any:
     """``<mu, xi> = tr(mu^T xi) / 2``, so that ``<hat a, hat b> = a . b``."""
-    return HALF * trace(matmul(transpose(mu), xi))
+    return HALF * trace(product(transpose(mu), xi))
 
 
 def breve(mu: Matrix) -> Vector:
@@ -126,7 +126,7 @@ def su2(q: Sequence[Any]) -> Matrix:
 
 def pairing_su2(mu: Matrix, xi: Matrix) -> Any:
     """``<mu, xi> = -tr(mu xi) / 2`` (real part), so that ``<p~, q~> = p . q``."""
-    return -HALF * trace(matmul(mu, xi)).re
+    return -HALF * trace(product(mu, xi)).re
 
 
 def dual_tilde(mu: Matrix) -> Vector:

@@ -12,91 +12,12 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any
 
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
+from coadjoint.exact.dense import Matrix, add, identity, product, scale, subtract, trace
+from coadjoint.exact.linear import Span
 
-#: A square matrix as a tuple of rows.
-Matrix = tuple[tuple[Any, ...], ...]
 #: A number ``a + b J``, J being a complex structure that commutes with the matrices at hand.
 Complex = tuple[Any, Any]
-
-
-def identity(size: int) -> Matrix:
-    """The unit matrix."""
-    return tuple(tuple(int(r == c) for c in range(size)) for r in range(size))
-
-
-def combination(coefficients: Sequence[Any], matrices: Sequence[SparseMatrix], size: int) -> Matrix:
-    """``sum of coefficient_i matrix_i``, from sparse matrices to a dense one.
-
-    >>> combination([2, 3], [{(0, 1): 1}, {(1, 0): -1}], 2)
-    ((0, 2), (-3, 0))
-    """
-    rows: list[list[Any]] = [[0] * size for _ in range(size)]
-    for coefficient, matrix in zip(coefficients, matrices, strict=True):
-        for (r, c), value in matrix.items():
-            rows[r][c] = rows[r][c] + coefficient * value
-    return tuple(map(tuple, rows))
-
-
-def product(*factors: Matrix) -> Matrix:
-    """The product of matrices, skipping entries that are zero.
-
-    >>> product(((1, 2), (0, 1)), ((1, 3), (0, 1)))
-    ((1, 5), (0, 1))
-    """
-    return reduce(_product, factors)
-
-
-def _product(a: Matrix, b: Matrix) -> Matrix:
-    result = []
-    for left in a:
-        row: list[Any] = [0] * len(b[0])
-        for x, right in zip(left, b, strict=True):
-            if x:
-                for c, y in enumerate(right):
-                    if y:
-                        row[c] = row[c] + x * y
-        result.append(tuple(row))
-    return tuple(result)
-
-
-def add(a: Matrix, b: Matrix) -> Matrix:
-    """``a + b``."""
-    return tuple(
-        tuple(x + y for x, y in zip(left, right, strict=True))
-        for left, right in zip(a, b, strict=True)
-    )
-
-
-def multiple(factor: Any, a: Matrix) -> Matrix:
-    """``factor a``."""
-    return tuple(tuple(factor * x if x else 0 for x in row) for row in a)
-
-
-def subtract(a: Matrix, b: Matrix) -> Matrix:
-    """``a - b``."""
-    return add(a, multiple(-1, b))
-
-
-def commutator(a: Matrix, b: Matrix) -> Matrix:
-    """``a b - b a``."""
-    return subtract(_product(a, b), _product(b, a))
-
-
-def transpose(a: Matrix) -> Matrix:
-    """The transpose."""
-    return tuple(zip(*a, strict=True))
-
-
-def trace(a: Matrix) -> Any:
-    """The sum of the diagonal."""
-    return sum(row[n] for n, row in enumerate(a))
-
-
-def apply(a: Matrix, vector: Sequence[Any]) -> tuple[Any, ...]:
-    """``a v``."""
-    return tuple(sum(x * y for x, y in zip(row, vector, strict=True)) for row in a)
 
 
 # -- adjugates by traces ----------------------------------------------------------------------
@@ -122,7 +43,7 @@ def inverse(a: Matrix) -> Matrix:
         ZeroDivisionError: The determinant is zero.
     """
     *_, (M, (c, _)) = _faddeev_leverrier(a, None)
-    return multiple(-1 / c, M)
+    return scale(-1 / c, M)
 
 
 def determinant(a: Matrix, J: Matrix | None = None) -> Complex:
@@ -145,11 +66,11 @@ def _faddeev_leverrier(a: Matrix, J: Matrix | None) -> Iterator[tuple[Matrix, Co
     size = len(a)
     one, M = identity(size), identity(size)
     for k in range(1, (size if J is None else size // 2) + 1):
-        aM = _product(a, M)
+        aM = product(a, M)
         c: Complex = (trace(aM) * Fraction(-1, k), 0)
-        shift = multiple(c[0], one)
+        shift = scale(c[0], one)
         if J is not None:  # the complex trace is half of tr(aM) - J tr(J aM)
-            c = (c[0] * Fraction(1, 2), trace(_product(J, aM)) * Fraction(1, 2 * k))
+            c = (c[0] * Fraction(1, 2), trace(product(J, aM)) * Fraction(1, 2 * k))
             shift = complex_multiple(c, J)
         yield M, c
         M = add(aM, shift)
@@ -157,7 +78,7 @@ def _faddeev_leverrier(a: Matrix, J: Matrix | None) -> Iterator[tuple[Matrix, Co
 
 def complex_multiple(c: Complex, J: Matrix) -> Matrix:
     """The matrix ``a + b J`` of the number ``c = (a, b)``."""
-    return add(multiple(c[0], identity(len(J))), multiple(c[1], J))
+    return add(scale(c[0], identity(len(J))), scale(c[1], J))
 
 
 # -- nilpotent matrices -----------------------------------------------------------------------
@@ -165,7 +86,7 @@ def complex_multiple(c: Complex, J: Matrix) -> Matrix:
 
 def exponential(nilpotent: Matrix) -> Matrix:
     """``exp`` of a nilpotent matrix, a polynomial in it."""
-    return _series(nilpotent, lambda k, term: multiple(Fraction(1, k), term))
+    return _series(nilpotent, lambda k, term: scale(Fraction(1, k), term))
 
 
 def unipotent_inverse(u: Matrix) -> Matrix:
@@ -176,10 +97,10 @@ def unipotent_inverse(u: Matrix) -> Matrix:
 def unipotent_logarithm(u: Matrix) -> Matrix:
     """``log u = sum -(1 - u)^k / k``, which ends because ``1 - u`` is nilpotent."""
     rest = power = subtract(identity(len(u)), u)
-    total = multiple(-1, rest)
+    total = scale(-1, rest)
     for k in range(2, len(u)):
-        power = _product(power, rest)
-        total = add(total, multiple(Fraction(-1, k), power))
+        power = product(power, rest)
+        total = add(total, scale(Fraction(-1, k), power))
     return total
 
 
@@ -187,7 +108,7 @@ def _series(nilpotent: Matrix, scale: Any) -> Matrix:
     """``1 + n + ...``, each term the scaled product of the one before with the nilpotent n."""
     total = term = identity(len(nilpotent))
     for k in range(1, len(nilpotent)):
-        term = scale(k, _product(term, nilpotent))
+        term = scale(k, product(term, nilpotent))
         total = add(total, term)
     return total
 

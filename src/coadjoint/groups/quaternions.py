@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from coadjoint.errors import AlgebraError
-from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.vectors import Matrix, Vector, exact, transpose
+from coadjoint.exact.dense import Matrix, Vector, transpose
+from coadjoint.groups.complex_numbers import Complex, exact
 
 
 @dataclass(frozen=True)

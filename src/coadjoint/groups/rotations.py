@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Matrix, Vector, add, identity, product, scale
+from coadjoint.groups.complex_numbers import exact
 from coadjoint.groups.maps import HALF, hat
 from coadjoint.groups.quaternions import Hypercomplex, Quaternion
-from coadjoint.groups.vectors import Matrix, Vector, combine, exact, identity, matmul, scale
 
 Either = TypeVar("Either", bound=Hypercomplex)
 
@@ -40,8 +41,8 @@ def euler_rodrigues(q: Quaternion) -> Matrix:
         Holm (2011), Geometric Mechanics II, section 3.2, there for norm 1.
     """
     cross_q = hat(q.vector)
-    turn = combine(matmul(cross_q, cross_q), cross_q, q.w)
-    return combine(identity(3), turn, 2 / exact(q.norm))
+    turn = add(product(cross_q, cross_q), scale(q.w, cross_q))
+    return add(identity(3), scale(2 / exact(q.norm), turn))
 
 
 def parallel_and_perpendicular(v: Sequence[Any], axis: Sequence[Any]) -> tuple[Vector, Vector]:

@@ -22,8 +22,8 @@ from typing import Any
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import Vector, add, apply, dot, scale, subtract
 from coadjoint.groups.lifts import compose, cotangent_lift, jacobian
-from coadjoint.groups.vectors import Vector, add, apply, dot, scale, subtract
 
 
 @dataclass(frozen=True)

@@ -65,20 +65,25 @@ def factors_of_solves(equations: Equations) -> list[dict[tuple[int, int], Elemen
 
 
 def jacobian(
-    name: str, rhs: Program, equations: Equations, residuals: Sequence[ResidualSlope]
+    name: str,
+    rhs: Program,
+    equations: Equations,
+    variables: Sequence[str],
+    residuals: Sequence[ResidualSlope],
 ) -> Program:
     """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program.
 
     Definitions keep their names; temporaries are found anew where they are still shared.
 
     Args:
-        name: One of `Equations.derivatives`, which has the variables x.
+        name: Of the function.
         rhs: Its outputs are the rates, behind them the slopes of the residuals, and then the
             factors of the solves.
         equations: What it was lowered from.
+        variables: The x that the derivatives are by.
         residuals: What these are the slopes of.
     """
-    graph, n, variables = Graph(), len(rhs.state), equations.derivatives[name]
+    graph, n = Graph(), len(rhs.state)
     definitions, values = _inserted(graph, rhs, {name for name, _ in equations.exact.definitions})
     slopes: dict[int, Slopes] = {graph.symbol(x): {} for x in rhs.names}
     slopes |= {graph.symbol(x): {x: graph.number(1)} for x in variables}

@@ -1,10 +1,9 @@
 """Lowering: Equations become Programs, one for each function of the kernels.
 
-Comes in: Equations. Goes out: the Programs ``rhs``, ``jacobian`` and, where the equations have
-them, ``input_jacobian``, ``parameter_jacobian``, ``energy``, ``observables``, ``poisson_tensor``,
-``constraint_residual``, ``projection``, ``reconstruction`` and ``domain``. An element is a sum of
-products in the order of the field; what depends on parameters alone is gathered into the
-coefficients, equal coefficients are factored out, and pairs of factors that recur are shared.
+Comes in: Equations. Goes out: a Program for each of the `coadjoint.kernel_functions` that the
+equations have. An element is a sum of products in the order of the field; what depends on
+parameters alone is gathered into the coefficients, equal coefficients are factored out, and pairs
+of factors that recur are shared.
 Definitions keep their names: a kernel reads like the book.
 Read next: `coadjoint.lower.check`, which undoes all this exactly.
 """
@@ -18,10 +17,11 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.derive import Equations
-from coadjoint.derive.domain import bounds
+from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.mechanics.solver import forward_name, scaled_name
 from coadjoint.exact import Element, Field
 from coadjoint.exact.written import Written
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.naming import Naming
@@ -35,7 +35,8 @@ class Ratio:
     """A quotient of sums.
 
     Attributes:
-        groups: Coefficients (numbers, or forms to be added) with the signed products they multiply.
+        groups: Coefficients with the signed products they multiply: numbers, or forms to be added,
+            each with its level.
         divisors: Factors of the denominator, each with its exponent.
     """
 
@@ -43,6 +44,10 @@ class Ratio:
     divisors: tuple[tuple[Form, int], ...]
 
 
+#: What the factors of products are: whatever occurs, so that coefficients are numbers; what moves,
+#: beside coefficients of parameters; what depends on the state, beside coefficients that inputs
+#: and time may drive.
+_FIXED, _DRIVEN, _MEMBER = range(3)
 #: An element as a sum of quotients, one for each denominator that moves with the member.
 Form = tuple[Ratio, ...]
 #: Names with their values: definitions or outputs.
@@ -63,47 +68,48 @@ class Lowering:
         self.field: Field = equations.setting.field
         self.graph = Graph()
         self._members = equations.moving
-        self._forms: dict[tuple[int, bool], Form] = {}
+        setting = equations.setting
+        self._state = self._members.difference(setting.inputs, setting.time)
+        self._forms: dict[tuple[int, int], Form] = {}
         self._marks: set[Any] = set()
         self._numbers = equations.numbers
         self._kept: list[Element] = []
-        self._products: dict[bool, list[Product]] = {True: [], False: []}
+        self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
         for element in elements:
-            self._form(element, fixed=False)
-        self._shared: dict[bool, dict[Product, Product]] = {}
+            self._form(element, _MEMBER)
+        self._shared: dict[int, dict[Product, Product]] = {}
         self._pairs: dict[str, Pair] = {}
-        for fixed, products in self._products.items():
-            names = "_q{}" if fixed else "_m{}"
-            found, pairs = share_pairs(products, names.format)
-            self._shared[fixed] = dict(zip(products, found, strict=True))
+        for level, products in self._products.items():
+            found, pairs = share_pairs(products, f"_m{level}_{{}}".format)
+            self._shared[level] = dict(zip(products, found, strict=True))
             self._pairs |= pairs
 
     # -- collecting ---------------------------------------------------------------------
 
-    def _form(self, element: Element, *, fixed: bool) -> Form:
+    def _form(self, element: Element, level: int) -> Form:
         """The form of an element, whose products are noted for sharing.
 
         Args:
             element: What to write as a sum of quotients of sums.
-            fixed: Whether only numbers are coefficients, as for what depends on parameters alone.
+            level: Which factors its products have; the others go into their coefficients.
         """
-        key = (id(element), fixed)
+        key = (id(element), level)
         if key not in self._forms:
             self._kept.append(element)  # so that its id stays its own
             self._forms[key] = tuple(
-                self._ratio(coefficients, divisors, fixed=fixed)
-                for divisors, coefficients in self._sums(element, fixed).values()
+                self._ratio(coefficients, divisors, level)
+                for divisors, coefficients in self._sums(element, level).values()
             )
         return self._forms[key]
 
-    def _sums(self, element: Element, fixed: bool) -> _Sums:
+    def _sums(self, element: Element, level: int) -> _Sums:
         """The products of an element with their coefficients, by denominator."""
         sums: _Sums = {}
         for written in self.field.quotients(element):
-            inner, outer = self._split_denominator(written, fixed)
+            inner, outer = self._split_denominator(written, level)
             key = tuple((_mark(divisor), power) for divisor, power in outer)
             _, coefficients = sums.setdefault(key, (outer, {}))
-            for product, part in self._collect(written, fixed).items():
+            for product, part in self._collect(written, level).items():
                 known = coefficients.get(product, self.field.zero)
                 coefficients[product] = known + part * inner
         return sums
@@ -112,8 +118,7 @@ class Lowering:
         self,
         coefficients: dict[Product, Element],
         divisors: list[tuple[Element, int]],
-        *,
-        fixed: bool,
+        level: int,
     ) -> Ratio:
         """One quotient, equal coefficients factored out."""
         groups: dict[Any, list[tuple[int, Product]]] = {}
@@ -124,11 +129,11 @@ class Lowering:
             sign, coefficient, mark = self._signed_coefficient(part)
             found.setdefault(mark, coefficient)
             groups.setdefault(mark, []).append((sign, product))
-            self._products[fixed].append(product)
+            self._products[level].append(product)
             self._note_functions(product)
         return Ratio(
             tuple((self._coefficient(found[mark]), tuple(g)) for mark, g in groups.items()),
-            tuple((self._form(divisor, fixed=fixed), power) for divisor, power in divisors),
+            tuple((self._form(divisor, level), power) for divisor, power in divisors),
         )
 
     def _signed_coefficient(self, coefficient: Element) -> tuple[int, Element, Any]:
@@ -146,8 +151,8 @@ class Lowering:
         self._marks.add(_mark(value))
         return sign, value, _mark(value)
 
-    def _coefficient(self, element: Element) -> Fraction | tuple[Form, ...]:
-        """A coefficient: a number, or the addends of what depends on parameters alone.
+    def _coefficient(self, element: Element) -> Fraction | tuple[tuple[int, Form], ...]:
+        """A coefficient: a number, or its addends, each with its level.
 
         ``(I2 - I3)/(I2*I3)`` is computed as ``1/I3 - 1/I2``: fewer roundings, and reciprocals that
         other statements share.
@@ -155,33 +160,38 @@ class Lowering:
         number = self.field.as_number(element)
         if number is not None:
             return number
-        return tuple(self._form(part, fixed=True) for part in self.field.partial_fractions(element))
+        if self._moves(element):
+            return ((_DRIVEN, self._form(element, _DRIVEN)),)
+        parts = self.field.partial_fractions(element)
+        return tuple((_FIXED, self._form(part, _FIXED)) for part in parts)
 
     def _note_functions(self, product: Product) -> None:
         """Collect the arguments of the elementary functions in a product, too."""
         for name in product:
             if name in self.field.adjoined:
                 argument = self.field.adjoined[name].argument
-                self._form(argument, fixed=not self._moves(argument))
+                self._form(argument, self._level(argument))
 
     def _moves(self, element: Element) -> bool:
         """Whether an element depends on the member, not on parameters alone."""
         return bool(self.field.reach(element) & self._members)
 
-    def _is_factor(self, name: str, fixed: bool) -> bool:
-        """Whether a generator belongs into products rather than into coefficients."""
-        if fixed:
-            return True
-        return self._moves(self.field[name])
+    def _level(self, argument: Element) -> int:
+        return _MEMBER if self._moves(argument) else _FIXED
 
-    def _collect(self, written: Written, fixed: bool) -> dict[Product, Element]:
+    def _is_factor(self, name: str, level: int) -> bool:
+        """Whether a generator belongs into products rather than into coefficients."""
+        moving = {_DRIVEN: self._members, _MEMBER: self._state}
+        return level == _FIXED or bool(self.field.reach(self.field[name]) & moving[level])
+
+    def _collect(self, written: Written, level: int) -> dict[Product, Element]:
         """Numerator terms by their product, with the coefficient polynomial of each."""
         parts: dict[Product, Element] = {}
         for term in written.monomials:
             product: list[str] = []
             coefficient = self.field.number(term.number)
             for name, power in term.powers:
-                if self._is_factor(name, fixed):
+                if self._is_factor(name, level):
                     product += [name] * power
                 else:
                     coefficient = coefficient * self.field[name] ** power
@@ -190,12 +200,12 @@ class Lowering:
         return parts
 
     def _split_denominator(
-        self, written: Written, fixed: bool
+        self, written: Written, level: int
     ) -> tuple[Element, list[tuple[Element, int]]]:
         """The reciprocal of the factors that go into the coefficients, and the other factors."""
         inner, outer = self.field.one, []
         for divisor, power in written.divisors:
-            if fixed or self._moves(divisor):
+            if level == _FIXED or self._moves(divisor):
                 outer.append((divisor, power))
             else:
                 inner = inner / divisor**power
@@ -205,31 +215,29 @@ class Lowering:
 
     def node(self, element: Element) -> int:
         """The graph node of an element given to the constructor."""
-        return self._build(self._form(element, fixed=False), fixed=False)
+        return self._build(self._form(element, _MEMBER), _MEMBER)
 
-    def _build(self, form: Form, *, fixed: bool) -> int:
+    def _build(self, form: Form, level: int) -> int:
         addends: list[int] = []
         for ratio in form:
-            terms = self._terms(ratio, fixed=fixed)
+            terms = self._terms(ratio, level)
             divisor = self.graph.product(
-                self._build(inner, fixed=fixed)
-                for inner, power in ratio.divisors
-                for _ in range(power)
+                self._build(inner, level) for inner, power in ratio.divisors for _ in range(power)
             )
             whole = not ratio.divisors
             addends += terms if whole else [self.graph.divide(self.graph.sum(terms), divisor)]
         return self.graph.sum(addends)
 
-    def _terms(self, ratio: Ratio, *, fixed: bool) -> list[int]:
+    def _terms(self, ratio: Ratio, level: int) -> list[int]:
         """The addends of a numerator."""
         graph, terms = self.graph, list[int]()
         for coefficient, members in ratio.groups:
             factor = (
                 graph.number(coefficient)
                 if isinstance(coefficient, Fraction)
-                else graph.sum(self._build(addend, fixed=True) for addend in coefficient)
+                else graph.sum(self._build(addend, inner) for inner, addend in coefficient)
             )
-            products = [(sign, self._shared[fixed][product]) for sign, product in members]
+            products = [(sign, self._shared[level][product]) for sign, product in members]
             if len(products) == 1 or coefficient == 1:
                 terms += [self._signed(sign, [factor], product) for sign, product in products]
             else:
@@ -248,8 +256,8 @@ class Lowering:
         known = self.field.adjoined.get(name)
         if known is None:
             return self.graph.named(name, self._numbers)
-        fixed = not self._moves(known.argument)
-        argument = self._build(self._form(known.argument, fixed=fixed), fixed=fixed)
+        level = self._level(known.argument)
+        argument = self._build(self._form(known.argument, level), level)
         return self.graph.call(known.function, argument)
 
 
@@ -264,47 +272,34 @@ def lower(equations: Equations) -> dict[str, Program]:
     Jacobians are derivatives of the ``rhs`` Program by forward accumulation, so they share the
     definitions and are as cheap as these make them.
     """
-    setting, exact = equations.setting, equations.exact
-    n = len(setting.state)
-    rates = [(f"d{x}/dt", rate) for x, rate in zip(setting.state, exact.rates, strict=True)]
-    rhs = _program(equations, "rhs", rates)
-    programs = {"rhs": rhs}
-    programs |= {name: _jacobian(name, equations, rates, rhs) for name in equations.derivatives}
-    if exact.energy is not None:
-        programs["energy"] = _program(equations, "energy", [("energy", exact.energy)], ())
-    if exact.observables:
-        programs["observables"] = _program(equations, "observables", exact.observables)
-    if exact.poisson_tensor is not None:
-        brackets = [
-            (f"{{{a}, {b}}}", entry)
-            for a, row in zip(setting.state, exact.poisson_tensor, strict=True)
-            for b, entry in zip(setting.state, row, strict=True)
-        ]
-        programs["poisson_tensor"] = _program(equations, "poisson_tensor", brackets, (n, n))
-    if exact.residuals:
-        programs["constraint_residual"] = _program(
-            equations, "constraint_residual", exact.residuals
-        )
-    if equations.projection is not None:
-        nearest = list(zip(setting.state, equations.projection.exact.rates, strict=True))
-        program = _program(equations.projection, "projection", nearest)
-        for place in hidden_zeros(program, equations):
-            nearest[place] = nearest[place][0], setting.field.zero
-        programs["projection"] = _program(equations.projection, "projection", nearest)
-    if equations.followed:
-        followed = [(f"d{name}/dt", rate) for name, rate in equations.followed]
-        names = (*setting.state, *(name for name, _ in equations.followed))
-        programs["reconstruction"] = _program(equations, "reconstruction", followed, inputs=names)
-    rows = [(bound.label, bound.element) for bound in bounds(equations)]
-    if rows:
-        programs["domain"] = _program(equations, "domain", rows)
+    programs: dict[str, Program] = {}
+    for name in KERNEL_FUNCTIONS:
+        rows = rows_of(equations, name)
+        if rows is not None:
+            programs[name] = (
+                _jacobian(name, rows, programs["rhs"])
+                if rows.by
+                else _without_hidden_zeros(equations, name, rows)
+            )
     return programs
 
 
-def _jacobian(name: str, equations: Equations, rates: _Lines, rhs: Program) -> Program:
+def _without_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
+    """A Program in which what vanishes everywhere is written as zero, where a row may hide it."""
+    program = _program(rows.of, name, rows.lines, rows.shape, rows.state)
+    zeros = hidden_zeros(program, equations) if rows.may_hide_zeros else []
+    if not zeros:
+        return program
+    lines = list(rows.lines)
+    for place in zeros:
+        lines[place] = lines[place][0], equations.setting.field.zero
+    return _program(rows.of, name, lines, rows.shape, rows.state)
+
+
+def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
     """A derivative of the rates: by the state, the inputs or the parameters."""
-    variables, field = equations.derivatives[name], equations.setting.field
-    slopes = residual_slopes(equations, variables)
+    equations, field = rows.of, rows.of.setting.field
+    slopes = residual_slopes(equations, rows.by)
     labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
     labelled += [
         (f"factor {i} {k}", value)
@@ -312,20 +307,21 @@ def _jacobian(name: str, equations: Equations, rates: _Lines, rhs: Program) -> P
         for (i, k), value in found.items()
     ]
     # what the residuals name has a derivative, whether or not the rates need it
-    inner = dict.fromkeys(each.by for each in slopes if each.by not in variables)
+    inner = dict.fromkeys(each.by for each in slopes if each.by not in rows.by)
     labelled += [(by, field[by]) for by in inner]
-    wide = _program(equations, "rhs", [*rates, *labelled]) if labelled else rhs
-    return jacobian(name, wide, equations, slopes)
+    lines = [*rows.lines, *labelled]
+    wide = _program(equations, "rhs", lines, (len(lines),), rows.state) if labelled else rhs
+    return jacobian(name, wide, equations, rows.by, slopes)
 
 
 def _program(
     equations: Equations,
     name: str,
     outputs: Sequence[tuple[str, Element]],
-    shape: tuple[int, ...] | None = None,
-    inputs: tuple[str, ...] | None = None,
+    shape: tuple[int, ...],
+    state: tuple[str, ...],
 ) -> Program:
-    """One Program from labelled elements, of the state or of other inputs."""
+    """One Program from labelled elements of names, the state being the first of them."""
     setting = equations.setting
     shorter = [(label, _shorter(equations, element)) for label, element in outputs]
     definitions, outputs = _without_single_uses(equations, shorter)
@@ -333,9 +329,7 @@ def _program(
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
     naming = Naming(lowering.graph, named, results, setting.parameters)
-    size = (len(outputs),) if shape is None else shape
-    read = setting.state if inputs is None else inputs
-    program = naming.program(name, read, setting.parameters, size)
+    program = naming.program(name, state, setting.parameters, shape)
     return replace(program, inputs=setting.inputs, time=setting.time)
 
 

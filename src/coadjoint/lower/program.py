@@ -114,9 +114,7 @@ class Program:
     """One function of a kernel.
 
     Attributes:
-        name: ``rhs``, ``jacobian``, ``input_jacobian``, ``parameter_jacobian``, ``energy``,
-            ``observables``, ``poisson_tensor``, ``constraint_residual``, ``projection``,
-            ``reconstruction`` or ``domain``.
+        name: One of `coadjoint.kernel_functions`.
         state: Component names of the state, in order, and of what else it takes beside it.
         parameters: Component names of the parameters, in order.
         statements: In the order of evaluation, those of level ``parameters`` first.

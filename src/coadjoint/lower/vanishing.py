@@ -1,9 +1,9 @@
 """Lowering, outputs that are zero everywhere although the kernel would compute them.
 
-Comes in: Programs of derivatives, and ``projection``. Goes out: the places of these outputs. They
-rest on definitions, and on functions with relations between them, so that an output may vanish only
-once everything is put in. What is not zero at a random point modulo a prime is not zero; of the
-others closed forms decide, exactly.
+Comes in: Programs of functions that may hide zeros: derivatives, and ``projection``. Goes out: the
+places of these outputs. They rest on definitions, and on functions with relations between them, so
+that an output may vanish only once everything is put in. What is not zero at a random point modulo
+a prime is not zero; of the others closed forms decide, exactly.
 Read next: `coadjoint.derive.mechanics.decided`, which decides the definitions.
 """
 
@@ -13,11 +13,12 @@ import random
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 
-from coadjoint.algebra.linear import PRIME
 from coadjoint.derive import Equations
+from coadjoint.derive.formulas import rows_of
 from coadjoint.derive.mechanics.decided import TRIES, Decided, call_modulo
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.lower.program import ZERO, Program, run
-from coadjoint.poisson.ranks import Residue, residue
 
 
 def hidden_zeros(program: Program, equations: Equations) -> list[int]:
@@ -26,18 +27,19 @@ def hidden_zeros(program: Program, equations: Equations) -> list[int]:
 
 
 def vanishing(function: str, places: Iterable[int], equations: Equations) -> Iterator[int]:
-    """Those of some outputs of a Jacobian or projection whose closed forms are zero."""
-    own = equations.projection if function == "projection" else equations
-    assert own is not None, "projected only where constraints are kept"
+    """Those of some outputs of a function that may hide zeros whose closed forms are zero."""
+    rows = rows_of(equations, function)
+    if rows is None or not rows.may_hide_zeros:
+        return
+    own, values, variables = rows.of, rows.elements, rows.by
     field, known = own.setting.field, None
-    variables = own.derivatives.get(function, ())
     for place in places:
         if known is None:
             known = Decided(field, own.setting.state)
             for name, value in own.exact.definitions:
                 known.define(name, value)
         i, j = divmod(place, len(variables)) if variables else (place, None)
-        closed = known.closed(own.exact.rates[i])
+        closed = known.closed(values[i])
         if closed is None:
             continue
         if field.is_zero(closed if j is None else field.derivative(closed, variables[j])):

@@ -14,6 +14,7 @@ from itertools import combinations
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.dense import minor
 from coadjoint.exact.witness import is_nonzero
 from coadjoint.poisson.structure import PoissonStructure, antisymmetric, places
 
@@ -202,22 +203,10 @@ def nambu_tensor(
     entries = {}
     for i, j in combinations(range(n), 2):
         columns = tuple(k for k in range(n) if k not in (i, j))
-        minor = determinant(gradients, columns) if columns else field.one
+        value = minor(gradients, range(n - 2), columns) if columns else field.one
         # i + (j - 1) exchanges bring columns i and j to the front
-        entries[i, j] = density * minor * (-1) ** (i + j)
+        entries[i, j] = density * value * (-1) ** (i + j)
     return antisymmetric(field, n, entries)
-
-
-def determinant(rows: Sequence[Sequence[Element]], columns: tuple[int, ...]) -> Element:
-    """Determinant of some columns, by expansion along the first row."""
-    if len(columns) == 1:
-        return rows[0][columns[0]]
-    total = 0 * rows[0][columns[0]]
-    for place, k in enumerate(columns):
-        if rows[0][k]:
-            rest = columns[:place] + columns[place + 1 :]
-            total = total + (-1) ** place * rows[0][k] * determinant(rows[1:], rest)
-    return total
 
 
 def declared(

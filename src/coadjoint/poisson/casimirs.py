@@ -16,12 +16,12 @@ from math import comb
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.ranks import independent_rows
 from coadjoint.limits import INVARIANT_TERMS, MONOMIALS
 from coadjoint.poisson.brackets import lie_poisson
 from coadjoint.poisson.invariants import has_trace_form, matrix_invariants
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Polynomial
-from coadjoint.poisson.ranks import generic_rank
 from coadjoint.poisson.search import independent_polynomials, polynomial_casimirs, quotients
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.poisson.summands import restricted_algebra, restricted_structure, summands
@@ -184,14 +184,8 @@ def search_summands(
 
 def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
     """Those functions whose gradients are independent of all before them at a generic point."""
-    kept: list[Element] = []
-    slopes: list[dict[int, Element]] = []
-    for function in functions:
-        slope = structure.gradient(function)
-        if generic_rank(structure.field, [*slopes, slope]) == len(slopes) + 1:
-            slopes.append(slope)
-            kept.append(function)
-    return kept
+    slopes = [structure.gradient(function) for function in functions]
+    return [functions[place] for place in independent_rows(structure.field, slopes)]
 
 
 def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:

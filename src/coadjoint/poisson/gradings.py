@@ -11,9 +11,10 @@ Read next: `coadjoint.poisson.casimirs`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import lcm
+from operator import mul
 
-from coadjoint.algebra.linear import nullspace
+from coadjoint.exact.ansatz import Exponents
+from coadjoint.exact.linear import nullspace, whole_numbers
 from coadjoint.poisson.polynomials import Polynomial
 
 #: The nonzero entries ``{x_i, x_j}``, both orders of i and j.
@@ -32,19 +33,20 @@ class Gradings:
 
     def __init__(self, entries: Entries, size: int) -> None:
         relations = _relations(entries, size)
-        integral = [_integers(vector, size) for vector in nullspace(relations, size + 1)]
+        integral = [whole_numbers(vector) for vector in nullspace(relations, size + 1)]
         parities = _parities(relations, size + 1)
-        self._integral = [tuple(vector[i] for vector in integral) for i in range(size)]
+        self._integral = [[vector.get(i, 0) for i in range(size)] for vector in integral]
         self._parity = [
             sum(1 << n for n, vector in enumerate(parities) if vector >> i & 1) for i in range(size)
         ]
 
-    def weight(self, factors: Sequence[int]) -> Weight:
-        """The weight of a product of coordinates, given by their places."""
+    def weight(self, exponents: Exponents) -> Weight:
+        """The weight of a monomial."""
         parity = 0
-        for i in factors:
-            parity ^= self._parity[i]
-        return tuple(map(sum, zip(*(self._integral[i] for i in factors), strict=True))), parity
+        for place, exponent in enumerate(exponents):
+            parity ^= self._parity[place] * (exponent % 2)
+        weights = (sum(map(mul, exponents, along)) for along in self._integral)
+        return tuple(weights), parity
 
 
 def _relations(entries: Entries, size: int) -> list[dict[int, int]]:
@@ -57,12 +59,6 @@ def _relations(entries: Entries, size: int) -> list[dict[int, int]]:
             row[j] += 1
             found.add(tuple(row))
     return [{k: value for k, value in enumerate(row) if value} for row in sorted(found)]
-
-
-def _integers(vector: Mapping[int, object], size: int) -> list[int]:
-    """A rational grading scaled to integers, without its shift."""
-    scale = lcm(*(value.denominator for value in vector.values()))  # type: ignore[attr-defined]
-    return [int(vector.get(i, 0) * scale) for i in range(size)]  # type: ignore[operator]
 
 
 def _parities(relations: Sequence[Mapping[int, int]], unknowns: int) -> list[int]:

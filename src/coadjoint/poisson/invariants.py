@@ -17,8 +17,8 @@ from itertools import combinations
 from math import comb, prod
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.algebra.linear import Span, nullspace
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.linear import Span, nullspace
 from coadjoint.limits import INVARIANT_TERMS
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Polynomial, constant, coordinate

@@ -23,9 +23,9 @@ from functools import cached_property
 from itertools import combinations
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.algebra.linear import Span
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.linear import Span
 from coadjoint.groups.lifts import cotangent_lift
 from coadjoint.groups.vector_fields import VectorField, exterior_derivative, lie_derivative
 from coadjoint.poisson.structure import PoissonStructure

@@ -10,9 +10,9 @@ from __future__ import annotations
 from functools import cached_property
 
 from coadjoint.errors import AlgebraError
+from coadjoint.exact.ansatz import Exponents
 from coadjoint.poisson.generating import generating
 from coadjoint.poisson.polynomials import (
-    Exponents,
     Number,
     Polynomial,
     coordinate,

@@ -10,13 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd, lcm
 
-from coadjoint.algebra.linear import exact
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.ansatz import Exponents
+from coadjoint.exact.linear import exact, whole_numbers
 
-Exponents = tuple[int, ...]
 Number = int | Fraction
 
 
@@ -79,11 +78,9 @@ class Polynomial:
 
         The leading term is the last by degree, then by exponents, as `monomial_order` sorts.
         """
-        bottom = lcm(*(Fraction(value).denominator for value in self.terms.values()))
-        top = gcd(*(int(value * bottom) for value in self.terms.values()))
-        sign = -1 if self.terms[max(self.terms, key=monomial_order)] < 0 else 1
-        scale = Fraction(sign * bottom, top)
-        return Polynomial({e: exact(value * scale) for e, value in self.terms.items()})
+        leads = self.terms[max(self.terms, key=monomial_order)]
+        whole = whole_numbers(self.terms)
+        return Polynomial({e: value if leads > 0 else -value for e, value in whole.items()})
 
     def element(self, field: Field, names: Sequence[str]) -> Element:
         """The polynomial in named symbols of a field."""

@@ -1,6 +1,6 @@
 r"""The search for Casimirs among polynomials: an exact linear solve, split by gradings.
 
-The unknowns are the coefficients of the monomials, the equations are ``{x_i, C} = 0``. The
+The family are the monomials, the conditions are ``{x_i, C} = 0`` (`coadjoint.exact.ansatz`). The
 gradings of the bracket split the monomials into classes that are solved one by one, those of low
 degree first, until as many independent Casimirs are found as there can be.
 Comes in: a polynomial bracket and a degree. Goes out: polynomials and quotients of polynomials.
@@ -11,17 +11,16 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from functools import reduce
-from itertools import combinations_with_replacement, islice
-from math import lcm
+from itertools import islice
 from operator import mul
 
-from coadjoint.algebra.linear import nullspace, primes, rank_modulo
 from coadjoint.exact import Element
+from coadjoint.exact.ansatz import Exponents, conditions_on, monomials, solve_exactly
+from coadjoint.exact.linear import SpanModulo, primes, whole_numbers
 from coadjoint.poisson.gradings import Gradings, Weight
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.polynomials import Exponents, Number, Polynomial, monomial_order
+from coadjoint.poisson.polynomials import Number, Polynomial, monomial_order
 from coadjoint.poisson.structure import PoissonStructure
 
 #: Primes modulo which independence is looked for.
@@ -41,9 +40,9 @@ def polynomial_casimirs(bracket: PolynomialBracket, degree: int, expected: int) 
     """
     solutions = (
         solution
-        for character, monomials in monomial_classes(bracket, degree)
+        for character, members in monomial_classes(bracket, degree)
         if not any(character)
-        for solution in _solutions(bracket, monomials, bracket.generating)
+        for solution in _solutions(bracket, members, bracket.generating)
     )
     return independent_polynomials(solutions, bracket.size, expected)
 
@@ -61,19 +60,16 @@ def quotients(
     others = [i for i in range(bracket.size) if i not in bracket.scalings]
     found = [
         (character, solution)
-        for character, monomials in monomial_classes(bracket, degree)
-        for solution in _solutions(bracket, monomials, others)
+        for character, members in monomial_classes(bracket, degree)
+        for solution in _solutions(bracket, members, others)
     ]
     kept = independent_polynomials((solution for _, solution in found), bracket.size, bracket.size)
     characters = [next(c for c, solution in found if solution is p) for p in kept]
-    balance = [
-        {place: c[n] for place, c in enumerate(characters) if c[n]}
-        for n in range(len(bracket.scalings))
-    ]
+    balance = conditions_on(dict(enumerate(character)) for character in characters)
     bases = [p.element(structure.field, structure.names) for p in kept]
     return [
-        reduce(mul, (bases[place] ** power for place, power in _whole(powers).items()))
-        for powers in nullspace(balance, len(bases))
+        reduce(mul, (bases[place] ** power for place, power in whole_numbers(powers).items()))
+        for powers in solve_exactly(range(len(bases)), balance)
     ]
 
 
@@ -81,34 +77,26 @@ def monomial_classes(bracket: PolynomialBracket, degree: int) -> list[MonomialCl
     """Monomials up to a degree by their weight, classes of low degree first."""
     gradings = Gradings(bracket.entries, bracket.size)
     classes: dict[Weight, list[Exponents]] = {}
-    for d in range(1, degree + 1):
-        for factors in combinations_with_replacement(range(bracket.size), d):
-            exponents = [0] * bracket.size
-            for i in factors:
-                exponents[i] += 1
-            classes.setdefault(gradings.weight(factors), []).append(tuple(exponents))
-    by_degree = sorted(classes.values(), key=lambda monomials: sum(monomials[-1]))
-    return [(bracket.character(monomials[0]), monomials) for monomials in by_degree]
+    for exponents in monomials(bracket.size, degree, least=1):
+        classes.setdefault(gradings.weight(exponents), []).append(exponents)
+    by_degree = sorted(classes.values(), key=lambda members: sum(members[-1]))
+    return [(bracket.character(members[0]), members) for members in by_degree]
 
 
 def _solutions(
-    bracket: PolynomialBracket, monomials: Sequence[Exponents], asked: Sequence[int]
+    bracket: PolynomialBracket, members: Sequence[Exponents], asked: Sequence[int]
 ) -> list[Polynomial]:
     """A basis of the polynomials in some monomials that commute with some coordinates.
 
     It is the reduced echelon form with the largest monomials first, so that what has a low degree
     has no terms of a high one; short ones come first.
     """
-    order = sorted(monomials, key=monomial_order, reverse=True)
-    rows: dict[tuple[int, Exponents], dict[int, Number]] = {}
-    for column, monomial in enumerate(order):
-        for i in asked:
-            for product, value in bracket.along(i, monomial).items():
-                rows.setdefault((i, product), {})[column] = value
-    found = [
-        Polynomial({order[column]: value for column, value in vector.items()}).primitive()
-        for vector in nullspace(rows.values(), len(order))
-    ]
+    order = sorted(members, key=monomial_order, reverse=True)
+    conditions = conditions_on(
+        {(i, product): x for i in asked for product, x in bracket.along(i, monomial).items()}
+        for monomial in order
+    )
+    found = [Polynomial(terms).primitive() for terms in solve_exactly(order, conditions)]
     return sorted(found, key=lambda p: (p.degree, len(p.terms)))
 
 
@@ -122,24 +110,12 @@ def independent_polynomials(
     """
     source = random.Random(1)  # noqa: S311 (not for secrets)
     points = {p: [source.randrange(1, p) for _ in range(size)] for p in islice(primes(), PRIMES)}
-    slopes: dict[int, list[dict[int, int]]] = {prime: [] for prime in points}
-    kept: list[Polynomial] = []
+    spans, kept = [SpanModulo(prime) for prime in points], list[Polynomial]()
     for solution in solutions if most else ():
-        for prime, point in points.items():
-            rows = [*slopes[prime], solution.slopes_modulo(point, prime)]
-            if rank_modulo(rows, prime) == len(rows):
-                break
-        else:
+        raised = [s for s in spans if s.add(solution.slopes_modulo(points[s.prime], s.prime))]
+        if not raised:
             continue
-        kept.append(solution)
-        for other, point in points.items():
-            slopes[other].append(solution.slopes_modulo(point, other))
+        kept, spans = [*kept, solution], raised
         if len(kept) == most:
             break
     return kept
-
-
-def _whole(vector: dict[int, Fraction]) -> dict[int, int]:
-    """A rational vector scaled to integers."""
-    scale = lcm(*(value.denominator for value in vector.values()))
-    return {place: int(value * scale) for place, value in vector.items()}

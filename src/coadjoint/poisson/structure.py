@@ -3,7 +3,7 @@ r"""The Poisson structure: a bracket of functions given by an exact tensor.
 .. math:: \{f, h\} = \partial_i f \, J_{ij} \, \partial_j h, \qquad J_{ij} = \{x_i, x_j\}
 
 Comes in: a field and a tensor, mostly from `coadjoint.poisson.brackets`. Goes out: an immutable
-`PoissonStructure` that brackets, moves, proves its Jacobi identity and finds its Casimirs.
+`PoissonStructure` that brackets functions and proves its Jacobi identity.
 Read next: `coadjoint.poisson.casimirs`.
 """
 
@@ -13,18 +13,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.witness import is_nonzero
 from coadjoint.poisson.generating import generating
 from coadjoint.poisson.jacobi import Triple, schouten_bracket, slopes_by
-from coadjoint.poisson.ranks import generic_rank
-
-if TYPE_CHECKING:
-    from coadjoint.poisson.casimirs import CasimirSearch
 
 
 @dataclass(frozen=True)
@@ -164,12 +160,6 @@ class PoissonStructure:
     def generic_rank(self) -> int:
         """Rank of the tensor at almost every point: even, and the dimension of the leaves."""
         return generic_rank(self.field, [dict(row) for row in self._rows])
-
-    def casimirs(self, degree: int = 4) -> CasimirSearch:
-        """All polynomial Casimirs up to a degree, as independent generators."""
-        from coadjoint.poisson.casimirs import casimirs  # it needs this class
-
-        return casimirs(self, degree)
 
     # -- the algebra behind an affine tensor --------------------------------------------
 

@@ -26,13 +26,13 @@ from typing import Any
 import mpmath
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import inverse
 from coadjoint.derive.mechanics.almost_poisson import Tensor, brackets, momenta_along
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
-from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.exact import Element
+from coadjoint.exact.dense import dot, inverse
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson.jacobi import Triple, schouten_bracket
 from coadjoint.prove.certificate import Verdict
@@ -73,15 +73,10 @@ class ReducedBracket:
         self.names = tuple(n for n in equations.setting.state if n not in self.basis.eliminated)
 
     @cached_property
-    def lagrangian(self) -> Element:
-        """The Lagrangian in all velocities."""
-        return lagrangian_of(self.equations.setting)
-
-    @cached_property
     def momenta(self) -> dict[str, Element]:
         """``M_k`` in velocities of the basis and positions, by the velocities that they are of."""
         fields = self.basis.fields
-        along = momenta_along(self.found, self.lagrangian, list(fields.values()))
+        along = momenta_along(self.found.setting, list(fields.values()))
         return dict(zip(fields, map(self.basis.closed, along), strict=True))
 
     @cached_property
@@ -89,13 +84,13 @@ class ReducedBracket:
         """The brackets: as emitted, or along the basis if constraints are kept."""
         emitted = self.equations.exact.poisson_tensor
         if emitted is None:
-            emitted = brackets(self.found, self.lagrangian, self.basis.fields, self.names)
+            emitted = brackets(self.found, self.basis.fields, self.names)
         return tuple(tuple(map(self.basis.closed, row)) for row in emitted)
 
     @cached_property
     def slopes(self) -> Row:
         """``(dH/dM, dH/dz)`` as the theorem has them: ``(eta, -dl_c/dz)``, in state order."""
-        constrained = self.basis.closed(self.lagrangian)
+        constrained = self.basis.closed(self.equations.setting.lagrangian)
         return tuple(
             self.field[n] if n in self.momenta else -self.field.derivative(constrained, n)
             for n in self.names
@@ -122,8 +117,7 @@ class ReducedBracket:
         """
         setting, velocities = self.found.setting, self.found.frame.velocities
         forces = [self.basis.closed(f) for f in external_forces(setting, velocities)]
-        slopes = self.field.gradient(self.lagrangian, velocities)
-        p = [self.basis.closed(slope) for slope in slopes]
+        p = [self.basis.closed(slope) for slope in mechanics(setting).momenta]
         driven = {
             name: self.field.sum(
                 [
@@ -160,7 +154,7 @@ class ReducedBracket:
 
         def slopes(element: Element) -> list[tuple[int, Element]]:
             parts = self.field.gradient(element, self.names)
-            turned = [_dot(parts, column) for column in zip(*back, strict=True)]
+            turned = [dot(parts, column) for column in zip(*back, strict=True)]
             return [(m, slope) for m, slope in enumerate(turned) if slope]
 
         return list(schouten_bracket(self.tensor, slopes).values())
@@ -195,7 +189,7 @@ class ReducedBracket:
         tensor, back = at(self.tensor), _inverse_of_numbers(at(self.turn))
         slopes = dict(zip(self.entry_slopes, at(self.entry_slopes.values()), strict=True))
         turned = {
-            pair: [_dot(row, column) for column in zip(*back, strict=True)]
+            pair: [dot(row, column) for column in zip(*back, strict=True)]
             for pair, row in slopes.items()
         }
         found = {}
@@ -290,12 +284,6 @@ def _inverse_of_numbers(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:
             if i != n and row[n] != 0:
                 rows[i] = [x - row[n] * y for x, y in zip(row, rows[n], strict=True)]
     return [row[size:] for row in rows]
-
-
-def _dot(a: Iterable[Any], b: Iterable[Any]) -> Any:
-    """The sum of products."""
-    first, *others = (x * y for x, y in zip(a, b, strict=True))
-    return sum(others, first)
 
 
 def _bounds(value: Fraction) -> Any:

@@ -32,14 +32,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import combinations_with_replacement, islice
-from math import gcd, lcm, prod
+from itertools import islice, product
+from math import prod
 from operator import add, mul
 
-from coadjoint.algebra.linear import Row, echelon_modulo, nullspace_modulo, rational_vector
 from coadjoint.derive.interpret import Quantity
 from coadjoint.exact import Element, element_text
-from coadjoint.poisson.ranks import residue
+from coadjoint.exact.ansatz import Exponents, Solution, monomials, solve
+from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
+from coadjoint.exact.residues import residue
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
 from coadjoint.prove.constrained import ConstrainedRates
@@ -65,8 +66,6 @@ LUCK = "an error has a chance below 1e-9"
 #: Degrees in the order in which new integrals are looked for, so that generators come first.
 STEPS = ((1, 0), (1, 1), (2, 1), (2, 2))
 
-#: Exponents of the generators.
-Exponents = tuple[int, ...]
 #: A polynomial in the generators modulo the prime.
 Terms = dict[Exponents, int]
 #: The largest sums of exponents of velocities and of positions in a term.
@@ -135,20 +134,19 @@ class CandidateSearch:
 
     def monomials(self, degrees: Degrees) -> list[Exponents]:
         """Those up to two degrees, the low ones first."""
-        parts = [
-            [
-                tuple(factors.count(i) for i in range(len(names)))
-                for d in range(degree + 1)
-                for factors in combinations_with_replacement(range(len(names)), d)
-            ]
-            for names, degree in zip((self.velocities, self.positions), degrees, strict=True)
-        ]
-        return sorted(((*a, *b) for a in parts[0] for b in parts[1]), key=lambda e: (sum(e), e))
+        names = self.velocities, self.positions
+        parts = (monomials(len(each), degree) for each, degree in zip(names, degrees, strict=True))
+        return sorted((a + b for a, b in product(*parts)), key=lambda e: (sum(e), e))
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The generators, of which monomials are products."""
+        return (*self.velocities, *self.positions)
 
     @cached_property
     def generators(self) -> tuple[Element, ...]:
         """What monomials are products of."""
-        return tuple(self.field[name] for name in (*self.velocities, *self.positions))
+        return tuple(map(self.field.__getitem__, self.names))
 
     @cached_property
     def reversible(self) -> bool:
@@ -177,53 +175,45 @@ class CandidateSearch:
     def _slopes(self) -> list[Slopes]:
         return [self.samples.slopes(generator) for generator in self.generators]
 
-    def integrals(self, monomials: Sequence[Exponents]) -> list[Row]:
-        """A basis of the integrals among combinations of monomials, by their places."""
-        basis = self._basis(monomials)
-        tables = self._tables(monomials)
-        rows = [{n: rates[place] for n, place in enumerate(basis)} for _, rates in tables]
-        return [
-            {basis[n]: value for n, value in vector.items()}
-            for vector in nullspace_modulo(rows, len(basis), self.samples.prime)
-        ]
+    def integrals(self, members: Sequence[Exponents]) -> list[Solution[Exponents]]:
+        """A basis of the integrals among combinations of monomials."""
+        basis, tables = self._basis(members), self._tables(members)
+        conditions = (dict(enumerate(rates[n] for n in basis)) for _, rates in tables)
+        return solve([members[n] for n in basis], conditions, self.samples.prime)
 
-    def _tables(self, monomials: Sequence[Exponents]) -> list[tuple[list[int], list[int]]]:
+    def _tables(self, members: Sequence[Exponents]) -> list[tuple[list[int], list[int]]]:
         """Values of monomials, and their rates, at more points than there are monomials."""
-        count, prime = len(self.points(len(monomials) + SPARE)), self.samples.prime
-        return [_table(*values, monomials, prime) for values in self.values_at[:count]]
+        count, prime = len(self.points(len(members) + SPARE)), self.samples.prime
+        return [_table(*values, members, prime) for values in self.values_at[:count]]
 
-    def _basis(self, monomials: Sequence[Exponents]) -> list[int]:
+    def _basis(self, members: Sequence[Exponents]) -> list[int]:
         """Places of monomials that are independent as functions; of all others, points say no."""
-        rows = (dict(enumerate(values)) for values, _ in self._tables(monomials))
-        return sorted(echelon_modulo(rows, self.samples.prime))
+        rows = (dict(enumerate(values)) for values, _ in self._tables(members))
+        return sorted(SpanModulo(self.samples.prime, rows).pivots)
 
-    def found(self, degrees: Degrees) -> list[tuple[Sequence[Exponents], Row]]:
-        """A basis of the integrals up to some degrees, each as monomials and coefficients."""
-        return [
-            (monomials, vector)
-            for monomials in self.sectors(degrees)
-            for vector in self.integrals(monomials)
-        ]
+    def found(self, degrees: Degrees) -> list[Solution[Exponents]]:
+        """A basis of the integrals up to some degrees."""
+        return [each for members in self.sectors(degrees) for each in self.integrals(members)]
 
     # -- what is certain ------------------------------------------------------------------
 
     def bounded(self, degrees: Degrees) -> bool:
         """Whether there are certainly no more integrals than `found`: all relations are known."""
         return all(
-            len(self._basis(monomials)) + self._related(monomials, degrees) == len(monomials)
-            for monomials in self.sectors(degrees)
+            len(self._basis(members)) + self._related(members, degrees) == len(members)
+            for members in self.sectors(degrees)
         )
 
-    def _related(self, monomials: Sequence[Exponents], degrees: Degrees) -> int:
+    def _related(self, members: Sequence[Exponents], degrees: Degrees) -> int:
         """How many independent relations between monomials are multiples of known ones."""
-        place = {exponents: n for n, exponents in enumerate(monomials)}
+        place = {exponents: n for n, exponents in enumerate(members)}
         rows = list[Row]()
         for terms in self._relations:
             for shift in self.monomials(degrees):
                 moved = {tuple(map(add, e, shift)): x for e, x in terms.items()}
                 if moved.keys() <= place.keys():
                     rows.append({place[e]: x for e, x in moved.items()})
-        return len(echelon_modulo(rows, self.samples.prime))
+        return SpanModulo(self.samples.prime, rows).rank
 
     @cached_property
     def _relations(self) -> list[Terms]:
@@ -250,7 +240,7 @@ class CandidateSearch:
 
     def _terms(self, element: Element) -> Terms | None:
         """The numerator as a polynomial in the generators; None where it is none."""
-        names, state = (*self.velocities, *self.positions), set(self.samples.state)
+        names, state = self.names, set(self.samples.state)
         (point,), prime = self.points(1), self.samples.prime
         terms = Terms()
         for quotient in self.field.quotients(element.combined()):
@@ -301,17 +291,11 @@ class CandidateSearch:
         """The number of independent products, that of constants among them, and their factors."""
         count, prime = len(self.points(len(self.monomials(degrees)) + SPARE)), self.samples.prime
         values = [[p.value(part) for p in self._points[:count]] for _, part, _ in known]
-        pivots, used = dict[int, list[int]](), set[int]()
+        span, used = SpanModulo(prime), set[int]()
         for factors in islice(_factors([d for *_, d in known], degrees), PRODUCTS):
-            row = [prod(values[n][p] for n in factors) % prime for p in range(count)]
-            for pivot, other in pivots.items():
-                row = [(x - row[pivot] * y) % prime for x, y in zip(row, other, strict=True)]
-            first = next((p for p, x in enumerate(row) if x), None)
-            if first is not None:
-                scale = pow(row[first], -1, prime)
-                pivots[first] = [x * scale % prime for x in row]
+            if span.add({p: prod(values[n][p] for n in factors) for p in range(count)}):
                 used |= {*factors}
-        return len(pivots), sorted(used)
+        return span.rank, sorted(used)
 
     def drift(self, part: Element) -> Decision:
         """Whether a function is conserved where the points lie."""
@@ -325,40 +309,27 @@ class CandidateSearch:
 
     # -- what is new ----------------------------------------------------------------------
 
-    def independent(self, found: Sequence[tuple[Sequence[Exponents], Row]]) -> list[int]:
+    def independent(self, found: Sequence[Solution[Exponents]]) -> list[int]:
         """Places of the integrals that are no functions of those before them and of known ones.
 
         Slopes at a random point tell, together with those of the relations that hold there.
         """
         (point,), state = self.points(1), self.samples.state
-        parts = [part for known in self.known for part in known.parts]
-        span = [
-            [point.value(slope) for slope in self.field.gradient(part, state)]
-            for part in (*self.samples.where.relations, *parts)
-        ]
-        rank, places = self._rank(span), []
-        for place, (monomials, vector) in enumerate(found):
-            slopes = self._gradient(point, monomials, vector)
-            if self._rank([*span, slopes]) > rank:
-                span, rank = [*span, slopes], rank + 1
-                places.append(place)
-        return places
+        parts = (*self.samples.where.relations, *(p for known in self.known for p in known.parts))
+        slopes = (map(point.value, self.field.gradient(part, state)) for part in parts)
+        span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
+        return span.independent(self._gradient(point, each) for each in found)
 
-    def _gradient(self, point: Point, monomials: Sequence[Exponents], vector: Row) -> list[int]:
+    def _gradient(self, point: Point, function: Solution[Exponents]) -> Row:
         """Slopes by the state of a combination of monomials."""
-        x, used = self.values_at[0][0], [monomials[n] for n in vector]
+        x, used, numbers = self.values_at[0][0], [*function.numbers], function.numbers.values()
         slopes = dict.fromkeys(self.samples.state, 0)
         for place, outer in enumerate(self._slopes):
             along = [int(n == place) for n in range(len(x))]
-            rate = sum(map(mul, vector.values(), _table(x, along, used, self.samples.prime)[1]))
+            rate = sum(map(mul, numbers, _table(x, along, used, self.samples.prime)[1]))
             for name, inner in outer:
                 slopes[name] += rate * point.value(inner)
-        return [value % self.samples.prime for value in slopes.values()]
-
-    def _rank(self, rows: Sequence[Sequence[int]]) -> int:
-        """The rank of lists of residues."""
-        sparse = ({n: x for n, x in enumerate(row) if x} for row in rows)
-        return len(echelon_modulo(sparse, self.samples.prime))
+        return dict(enumerate(slopes.values()))
 
     def new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
@@ -369,26 +340,17 @@ class CandidateSearch:
         for lower in (d for d in STEPS if d[0] <= degrees[0] and d[1] <= degrees[1]):
             found = self.found(lower)
             for place in self.independent(found):
-                monomials, vector = found[place]
-                numbers = rational_vector(vector, self.samples.prime)
+                numbers = found[place].lift()
                 if numbers is None:
                     continue
-                element = self._function(monomials, numbers)
+                element = self._function(numbers)
                 if self._is_proved(element):
                     self.known = (*self.known, Known(FOUND, (element,)))
                     yield element
 
-    def _function(self, monomials: Sequence[Exponents], numbers: Mapping[int, Fraction]) -> Element:
+    def _function(self, numbers: Mapping[Exponents, Fraction]) -> Element:
         """A combination of monomials, scaled to whole coefficients without common factor."""
-        common = lcm(*(x.denominator for x in numbers.values()))
-        shared = gcd(*(int(x * common) for x in numbers.values()))
-        powers = (
-            (x * common / shared, zip(self.generators, monomials[n], strict=True))
-            for n, x in numbers.items()
-        )
-        whole = self.field.sum(
-            prod((g**e for g, e in pairs if e), start=self.field.number(x)) for x, pairs in powers
-        )
+        whole = self.field.polynomial(self.names, whole_numbers(numbers))
         return -whole if leading(whole) < 0 else whole
 
 

@@ -16,17 +16,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from functools import cached_property, reduce
-from itertools import combinations, combinations_with_replacement, islice, product
-from operator import mul
-from typing import Any
+from functools import cached_property
+from itertools import combinations, islice, product
+from math import prod
 
-from coadjoint.algebra.linear import nullspace, rank_modulo
 from coadjoint.derive import Equations, Relation
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
-from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
+from coadjoint.exact.ansatz import monomials, solve_exactly
+from coadjoint.exact.linear import rank_modulo
+from coadjoint.exact.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Discovery, decide_zero, random_points
@@ -36,6 +36,8 @@ RANK = "rank of the map's derivative"
 ON_QUADRIC = "at rational points of the relation"
 #: Points of a relation of degree two at which ranks are taken, and how often they are looked for.
 POINTS, TRIES = 2, 20
+#: Points beyond as many as there are monomials, at which polynomials that vanish are looked for.
+SPARE = 5
 
 
 class ChartMap:
@@ -279,18 +281,12 @@ class ChartMap:
     def _polynomials(self) -> list[Element]:
         """Polynomials of degree two or less that vanish at many points of the image."""
         state = self.first.setting.state
-        monomials = [
-            exponents
-            for degree in (1, 2)
-            for exponents in combinations_with_replacement(range(len(state)), degree)
-        ]
-        points = islice(self._image_points(), len(monomials) + 5)
-        rows = [dict(enumerate(_products(values, monomials))) for values in points]
-        written = _products(self.first.setting.elements(state), monomials)
-        return [
-            self.field.sum(self.field.number(w) * written[n] for n, w in vector.items())
-            for vector in nullspace(rows, len(monomials))
-        ]
+        family = list(monomials(len(state), 2, least=1))
+        conditions = (
+            {n: prod(map(pow, values, exponents)) for n, exponents in enumerate(family)}
+            for values in islice(self._image_points(), len(family) + SPARE)
+        )
+        return [self.field.polynomial(state, terms) for terms in solve_exactly(family, conditions)]
 
     def _image_points(self) -> Iterator[list[Fraction]]:
         """The state at random points of the chart; none where a function is called."""
@@ -299,11 +295,6 @@ class ChartMap:
             return
         for point in random_points(self.field.names, self.field.positive):
             yield [self.field.evaluate(value, point, Fraction, _no_call) for value in values]
-
-
-def _products(values: Sequence[Any], monomials: Sequence[tuple[int, ...]]) -> list[Any]:
-    """The products of values at several places."""
-    return [reduce(mul, (values[n] for n in places)) for places in monomials]
 
 
 def _no_call(function: str, argument: Fraction) -> Fraction:

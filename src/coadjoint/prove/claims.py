@@ -19,9 +19,7 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.domain import region
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.mechanics.reconstruction import fixed_row
-from coadjoint.derive.setting import shaped
 from coadjoint.derive.structure import momentum_algebra
-from coadjoint.derive.symmetries import in_formulas
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
@@ -50,7 +48,7 @@ from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
-from coadjoint.prove.reductions import about_reduction
+from coadjoint.prove.reductions import about_reduction, on_section, restriction_of
 from coadjoint.prove.relaxation import about_relaxation, lost
 from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
@@ -68,7 +66,8 @@ from coadjoint.prove.zero import (
     proved_by_normal_form,
 )
 from coadjoint.spec import Formula, Spec
-from coadjoint.spec.model import Integral, SpatialMomentum
+from coadjoint.spec.model import Integral
+from coadjoint.spec.spatial import SpatialMomentum
 
 
 def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
@@ -380,11 +379,22 @@ def _bracket_defects(first: Equations, energy: Element, tensor: Tensor) -> list[
 
 
 def _energy_defects(first: Equations, energy: Element) -> list[Element]:
-    """The rate of the energy minus what its balance says."""
-    balance = Balance(first)
-    slopes = dict(zip(first.setting.state, gradient(first, energy), strict=True))
-    power = balance.power + balance.work_along_state(slopes) + lost(first, energy)
+    """The rate of the energy minus what its balance says, which may hold on a section alone."""
+    if first.spec.reduction is None:
+        power = _power(first, energy)
+    else:
+        restriction = restriction_of(first)
+        of_whole = restriction.whole.exact.energy
+        assert of_whole is not None, "the reader asks for a Hamiltonian"
+        power = on_section(restriction, _power(restriction.whole, of_whole))
     return [rate - gain for rate in drift(first, energy) for gain in in_velocities(first, [power])]
+
+
+def _power(equations: Equations, energy: Element) -> Element:
+    """What changes the energy, and by how much."""
+    balance = Balance(equations)
+    slopes = dict(zip(equations.setting.state, gradient(equations, energy), strict=True))
+    return balance.power + balance.work_along_state(slopes) + lost(equations, energy)
 
 
 def _about_survival(first: Equations, casimir: Formula) -> Iterator[Examined]:
@@ -500,9 +510,4 @@ def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator
 def _emitted(first: Equations) -> dict[str, Quantity]:
     """The energy and the observables, by the names that claims use."""
     known: dict[str, Quantity] = dict(first.exact.observables)
-    for entry in first.spec.observables:
-        known[entry.name] = shaped([known[name] for name in entry.components], entry.shape)
-    for symmetry in first.spec.symmetries:
-        parts = [known[name] for name in symmetry.components]
-        known[symmetry.name] = in_formulas(symmetry, parts)
-    return known
+    return known | {each.name: each.whole for each in first.exact.emitted}

@@ -16,11 +16,11 @@ from coadjoint.derive import Equations
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, independent, search_summands
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.poisson.summands import restricted_algebra
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import casimir_defects

@@ -17,16 +17,16 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import determinant
+from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
 from coadjoint.derive.mechanics.constrained import section_components
 from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
-from coadjoint.derive.mechanics.legendre import LARGEST_BLOCK
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
-from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact import Element, element_text
+from coadjoint.exact.dense import determinant, dot
+from coadjoint.exact.ranks import generic_rank, source_of_ranks
 from coadjoint.exact.witness import is_entire
-from coadjoint.poisson.ranks import generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
@@ -106,9 +106,9 @@ class ConstrainedRates:
         """
         field = self.field
         for weights in self._weights(block):
-            turned = (_dot(field, weights, column) for column in zip(*block.matrix, strict=True))
+            turned = (dot(weights, column) for column in zip(*block.matrix, strict=True))
             if all(field.is_zero(x - y) for x, y in zip(turned, c, strict=True)):
-                return _dot(field, weights, block.known)
+                return dot(weights, block.known)
         bordered = (
             *((*row, k) for row, k in zip(block.matrix, block.known, strict=True)),
             (*c, field.zero),
@@ -163,10 +163,6 @@ class ConstrainedRates:
         energy = self.equations.exact.energy
         assert energy is not None, "a Lagrangian has an energy"
         return self.value(self._carried(self.closed(energy)) - Balance(self.equations).power)
-
-
-def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
-    return field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)
 
 
 def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> Iterator[Examined]:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.driving import explicit, names_inputs
 from coadjoint.exact import Element
 
@@ -26,7 +27,7 @@ def own_change(equations: Equations) -> Element:
     assert energy is not None, "only an energy changes"
     if setting.momenta or setting.spec.lagrangian is None:
         return explicit(setting, equations.closed(energy))
-    return -equations.closed(explicit(setting, setting.formula(setting.spec.lagrangian)))
+    return -equations.closed(explicit(setting, setting.lagrangian))
 
 
 def changes_by_time(equations: Equations) -> bool:
@@ -68,7 +69,7 @@ def _momenta(equations: Equations) -> Sequence[Element]:
     setting = equations.setting
     if setting.spec.lagrangian is None:
         return ()
-    return setting.field.gradient(setting.formula(setting.spec.lagrangian), setting.velocities)
+    return mechanics(setting).momenta
 
 
 def law_of_change(equations: Equations) -> str:

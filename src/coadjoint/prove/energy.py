@@ -17,6 +17,7 @@ from functools import cached_property
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.distribution import Distribution
+from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element, Field
 from coadjoint.prove.driven import (
     OWN_CHANGE,
@@ -30,6 +31,15 @@ from coadjoint.prove.driven import (
 def keeps_energy(equations: Equations) -> bool:
     """Whether nothing changes the energy: no force, no moving constraint, and not time."""
     return equations.keeps_energy and not changes_by_time(equations)
+
+
+def is_conserved(equations: Equations, each: Emitted) -> bool:
+    """Whether the motion conserves what is emitted, by claims that are proved."""
+    if each.kept is Kept.AS_ENERGY:
+        return keeps_energy(equations)
+    if each.kept is Kept.UNLESS_WORKED_ON:
+        return all(equations.setting.field.is_zero(equations.work(x)) for x in each.values)
+    return each.kept is Kept.ALWAYS
 
 
 class Balance:

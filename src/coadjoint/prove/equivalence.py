@@ -13,16 +13,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import determinant
-from coadjoint.derive.mechanics.legendre import (
+from coadjoint.derive.mechanics.configuration import (
     LARGEST_BLOCK,
     Matrix,
     coupled_blocks,
-    known_side,
-    mass_matrix,
+    mechanics,
 )
+from coadjoint.derive.mechanics.legendre import known_side
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import determinant
 from coadjoint.exact.regular import witness_regular
 from coadjoint.exact.signs import sign
 from coadjoint.exact.witness import is_entire, point_text
@@ -46,11 +46,8 @@ class LegendreMap:
 
     def __init__(self, equations: Equations) -> None:
         setting = equations.setting
-        formula = setting.spec.lagrangian
-        assert formula is not None, "only a Lagrangian has a Legendre transform"
-        self.setting = setting
-        self.lagrangian = setting.formula(formula)
-        self.slopes = setting.field.gradient(self.lagrangian, setting.velocities)
+        self.setting, self.lagrangian = setting, setting.lagrangian
+        self.slopes = mechanics(setting).momenta
         # where velocities are themselves the state there is nothing to pull back
         scaled = zip(self.slopes, setting.weights or (1,) * len(self.slopes), strict=True)
         given = [slope * w for slope, w in scaled] if setting.momenta else []
@@ -77,7 +74,7 @@ class LegendreMap:
     @cached_property
     def blocks(self) -> list[tuple[tuple[int, ...], Matrix]]:
         """The blocks of ``d2l/dxi2`` with their places."""
-        mass = mass_matrix(self.setting, self.lagrangian)
+        mass = mechanics(self.setting).mass
         return [
             (block, tuple(tuple(mass[i][j] for j in block) for i in block))
             for block in coupled_blocks(mass)

@@ -16,11 +16,11 @@ from typing import Any
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive.document import Document, Line, Section, formula, formula_line
-from coadjoint.derive.equations import algebra_bracket, symbol
+from coadjoint.derive.records import algebra_bracket, symbol
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.ranks import CHANCE
 from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import search_summands
-from coadjoint.poisson.ranks import CHANCE
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.completeness import DEGREE, Completeness, described, scope_of
 from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero, make_entry, proved_by_normal_form

@@ -27,8 +27,8 @@ from typing import Any
 from sympy import factorint
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.exact.written import Adjoined
-from coadjoint.poisson.ranks import Residue, residue
 
 #: Numbers under square roots up to which prime factors are looked for.
 LARGEST = 10**18

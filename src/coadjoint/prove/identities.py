@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element
+from coadjoint.exact.dense import dot
 from coadjoint.prove.equivalence import in_velocities, kept_velocities
 
 Tensor = Sequence[Sequence[Element]]
@@ -32,18 +33,17 @@ def casimir_defects(
         coordinates: Places of components whose brackets give all others; by default all. By the
             Jacobi identity C commutes with ``{x_i, x_j}`` where it commutes with both.
     """
-    field = equations.setting.field
     tensor = equations.exact.poisson_tensor
     assert tensor is not None, "only a bracket has Casimirs"
     places = range(len(tensor)) if coordinates is None else coordinates
     slopes = gradient(equations, function)
-    return [_dot(field, in_velocities(equations, tensor[i]), slopes) for i in places]
+    return [dot(in_velocities(equations, tensor[i]), slopes) for i in places]
 
 
 def drift(equations: Equations, function: Element) -> list[Element]:
     """Time derivative of a function of state and time along the motion, inputs held constant."""
     rates = in_velocities(equations, equations.exact.rates)
-    carried = _dot(equations.setting.field, gradient(equations, function), rates)
+    carried = dot(gradient(equations, function), rates)
     return [carried + own_rate(equations, function)]
 
 
@@ -60,7 +60,7 @@ def hamiltonian_defects(equations: Equations, energy: Element, tensor: Tensor) -
     free = [x - f for x, f in zip(equations.exact.rates, forces, strict=True)]
     rates = in_velocities(equations, free)
     return [
-        rate - _dot(field, in_velocities(equations, row), slopes)
+        rate - dot(in_velocities(equations, row), slopes)
         for rate, row in zip(rates, tensor, strict=True)
     ]
 
@@ -87,7 +87,3 @@ def gradient(equations: Equations, function: Element) -> list[Element]:
             found=named[0],
         )
     return in_velocities(equations, field.gradient(closed, equations.setting.state))
-
-
-def _dot(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
-    return field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)

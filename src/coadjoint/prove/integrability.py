@@ -18,11 +18,11 @@ from functools import cached_property
 from itertools import combinations
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import determinant
 from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import minor
+from coadjoint.exact.ranks import independent_rows
 from coadjoint.exact.witness import is_entire, is_nonzero
-from coadjoint.poisson.ranks import independent_rows
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST, IN_PART
 from coadjoint.prove.findings import (
@@ -174,9 +174,9 @@ class Growth:
         if not chosen:
             self._zeros += [e for row in rows for e in row]
             return []
-        self._minors.append(_minor(rows, chosen, columns))
+        self._minors.append(minor(rows, chosen, columns))
         self._zeros += [
-            _minor(rows, [*chosen, n], [*columns, j])
+            minor(rows, [*chosen, n], [*columns, j])
             for n in range(len(rows))
             if n not in chosen
             for j in range(len(turned))
@@ -214,15 +214,11 @@ class Growth:
     @cached_property
     def decision(self) -> Decision | Discovery:
         """Ranks from below by minors that are not zero, from above by bordered ones that are."""
-        for minor in self._minors:
-            lower = decide_zero([minor], self._field)
+        for value in self._minors:
+            lower = decide_zero([value], self._field)
             if lower.verdict is not Verdict.REFUTED:
                 return guess(lower)
         found = decide_zero(self._zeros, self._field)
         if found.verdict is Verdict.PROVED:
             return Decision(Verdict.PROVED, "exact minors of the matrix of brackets")
         return found if found.verdict is Verdict.REFUTED else guess(found)
-
-
-def _minor(rows: Sequence[Row], places: Sequence[int], columns: Sequence[int]) -> Element:
-    return determinant(tuple(tuple(rows[i][j] for j in columns) for i in places))

@@ -23,8 +23,8 @@ from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
-from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import determinant
 from coadjoint.exact.element import remove_factor
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.samples import leading

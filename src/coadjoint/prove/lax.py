@@ -19,11 +19,12 @@ from coadjoint.derive.integrals import (
     Integrals,
     expanded_traces,
     known_integrals,
+    lax_integrals,
     slope_row,
 )
 from coadjoint.derive.pairs import LaxPair, lax_equations, text_of_entry
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import error_of_ranks, generic_rank, source_of_ranks
+from coadjoint.exact.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST
 from coadjoint.prove.equivalence import LegendreMap
@@ -55,7 +56,7 @@ def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
             "lax",
             decide,
         )
-    found = first.setting.integrals
+    found = lax_integrals(first.setting)
     if found is not None:
         of_pair = decisions[" ".join(found.pair.texts)]
         yield from _about_integrals(first, found, of_pair)

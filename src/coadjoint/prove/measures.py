@@ -32,10 +32,11 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
-from coadjoint.algebra.linear import echelon_modulo, rational_vector
-from coadjoint.derive.interpret import determinant
 from coadjoint.exact import Element, element_text
-from coadjoint.poisson.ranks import CHANCE
+from coadjoint.exact.ansatz import solve_with_right_side
+from coadjoint.exact.dense import determinant
+from coadjoint.exact.linear import SpanModulo
+from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
 from coadjoint.prove.constrained import ConstrainedRates
@@ -191,17 +192,18 @@ class Measure:
 
         None if none do, nor any of their brackets.
         """
-        kept, rows, waiting = list[Condition](), list[list[int]](), self.conditions
+        prime, kept, waiting = point.samples.prime, list[Condition](), self.conditions
+        fields, whole = SpanModulo(prime), SpanModulo(prime)  # without and with the right sides
         while waiting:
             grown = False
             for condition in waiting:
-                row = [point.value(part) for part in condition.parts]
-                if _rank([*rows, row], point.samples.prime) == len(rows):
+                row = dict(enumerate(map(point.value, condition.parts)))
+                if not whole.add(row):
                     continue
-                rows, kept, grown = [*rows, row], [*kept, condition], True
-                rank = _rank([known[:-1] for known in rows], point.samples.prime)
-                if rank < len(rows):
-                    return (kept, rank) if any(row[:-1]) else (kept[-1:], 0)
+                grown, kept, right = True, [*kept, condition], len(row) - 1
+                along = {n: x for n, x in row.items() if x and n < right}
+                if not fields.add(along):
+                    return (kept, fields.rank) if along else (kept[-1:], 0)
             waiting = [self.bracket(a, b) for a, b in combinations(kept, 2)] if grown else []
         return None
 
@@ -248,16 +250,11 @@ class Measure:
 
 def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]], prime: int) -> Powers | None:
     """Exponents with ``sum of row[n] exponent_n = row[-1]`` in each row; None if there are none."""
-    last = len(factors)
-    reduced = ([x % prime for x in row] for row in rows)
-    solved = echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in reduced), prime)
-    if last in solved:
-        return None
-    vector = {pivot: row.get(last, 0) for pivot, row in solved.items()}
-    numbers = rational_vector(vector, prime)
+    solution = solve_with_right_side(range(len(factors)), rows, prime)
+    numbers = None if solution is None else solution.lift()
     if numbers is None or any(x.denominator > DENOMINATOR for x in numbers.values()):
         return None
-    return [(factors[n], x) for n, x in sorted(numbers.items()) if x]
+    return [(factors[n], x) for n, x in numbers.items()]
 
 
 def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
@@ -464,8 +461,3 @@ def _name(motion: ConstrainedRates, factor: Element) -> str:
         if len(solve.block) == len(motion.distribution.independent) + len(kept) and whole == factor:
             return "|det [[B^T M B, A^T], [A, 0]]|" if kept else "det(B^T M B)"
     return ""
-
-
-def _rank(rows: Sequence[Sequence[int]], prime: int) -> int:
-    """The rank of lists of residues."""
-    return len(echelon_modulo(({n: x for n, x in enumerate(row) if x} for row in rows), prime))

@@ -20,9 +20,9 @@ from collections.abc import Iterator
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.constrained import section_momenta, section_vector
 from coadjoint.derive.mechanics.driving import explicit
-from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.exact import Element, element_text
 from coadjoint.prove.constrained import ConstrainedRates
@@ -46,9 +46,9 @@ def momentum_law(equations: Equations, section: Section) -> Element:
     found, setting = equations.distribution, equations.setting
     assert found is not None, equations.route
     field, frame = setting.field, found.frame
-    lagrangian, along = lagrangian_of(setting), section_vector(found, section)
+    lagrangian, along = setting.lagrangian, section_vector(found, section)
     turned = frame.bracket(setting.elements(frame.velocities), along)
-    momenta = field.gradient(lagrangian, frame.velocities)
+    momenta = mechanics(setting).momenta
     forces = external_forces(setting, frame.velocities)
     reactions = setting.elements([each.reaction for each in found.equations])
     worked = [field.sum(a * x for a, x in zip(row, along, strict=True)) for row in found.A]
@@ -78,6 +78,6 @@ def _statement(motion: ConstrainedRates, section: Section, law: Element) -> str:
 
 def _changes(motion: ConstrainedRates, section: Section, law: Element) -> Decision:
     """The rate of the momentum minus its law."""
-    momenta = dict(section_momenta(motion.distribution, lagrangian_of(motion.equations.setting)))
+    momenta = dict(section_momenta(motion.distribution))
     rest = motion.rate(momenta[section.name]) - motion.value(law)
     return decide_zero([rest], motion.field, motion.where)

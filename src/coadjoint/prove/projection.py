@@ -14,7 +14,6 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.distribution import Distribution
-from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.kinematics import multiplier_name, shift_name
 from coadjoint.derive.mechanics.solver import solution_defects
 from coadjoint.exact import Element
@@ -66,7 +65,7 @@ def _least(projection: Equations) -> list[Element]:
     after = zip(projection.setting.state, projection.exact.rates, strict=True)
     changes = {name: value - field[name] for name, value in after}
     rows, eta = _rows(projection), found.independent
-    energy = field.substitute(lagrangian_of(projection.setting), found.solved)
+    energy = field.substitute(projection.setting.lagrangian, found.solved)
     defects = [change for name, change in changes.items() if name not in eta]
     for place, (name, slope) in enumerate(zip(eta, field.gradient(energy, eta), strict=True)):
         mass = zip(field.gradient(slope, eta), eta, strict=True)

@@ -2,7 +2,7 @@
 
 Comes in: Equations restricted to a section. Goes out: statements and what must be zero. The
 functions that vanish there have rates in their ideal, in all the whole space; they vanish on the
-section; and the section moves with the motion, ``Ds . X = Y``.
+section; and the section moves with the motion, ``Ds . X = Y``. Forces are part of this motion.
 Read next: `coadjoint.prove.claims`.
 """
 
@@ -11,14 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from coadjoint.derive import ROUTES, Equations
+from coadjoint.derive import Equations
 from coadjoint.derive.domain import region
 from coadjoint.derive.reductions import Restriction, whole_equations
 from coadjoint.exact import Element
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.prove.relaxation import about_relaxation
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
-Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision]]
+Found = Sequence[Element] | Decision | Discovery
 
 
 def about_reduction(first: Equations) -> Iterator[Examined]:
@@ -26,9 +27,8 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
     reduction = first.spec.reduction
     if reduction is None:
         return
-    whole = whole_equations(first.setting, ROUTES[first.route])
-    whole.setting.field.region = region(whole)
-    restriction = Restriction(first.setting, whole)
+    restriction = restriction_of(first)
+    whole = restriction.whole
     section = ", ".join(f"{name} = {f.in_one_line}" for name, f in reduction.section.items())
     if reduction.where:
         where = ", ".join(f"{formula.in_one_line} = 0" for formula in reduction.where)
@@ -38,6 +38,28 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
         vanishing = partial(_on_section, restriction, functions)
         yield f"where {section}, {where}", "reduction", vanishing
     yield f"the motion keeps {section}", "reduction", partial(_section_defects, restriction)
+    for statement, kind, examine in about_relaxation(whole):
+        yield f"{statement} (of the whole system)", kind, partial(_decide, whole, examine)
+
+
+def restriction_of(first: Equations) -> Restriction:
+    """The whole system of a restricted motion, on its section."""
+    whole = whole_equations(first.setting, first.route)
+    whole.setting.field.region = region(whole)
+    return Restriction(first.setting, whole)
+
+
+def on_section(restriction: Restriction, function: Element) -> Element:
+    """A function of the whole state with the section in the place of y."""
+    return restriction.setting.field.substitute(restriction(function), restriction.section)
+
+
+def _decide(whole: Equations, examine: Callable[[], Found]) -> Decision | Discovery:
+    """What becomes of a claim about the whole system, decided in its field."""
+    found = examine()
+    if isinstance(found, Decision | Discovery):
+        return found
+    return decide_zero(found, whole.setting.field)
 
 
 def _kept(whole: Equations, functions: Sequence[Element], where: str) -> Decision:
@@ -52,9 +74,7 @@ def _kept(whole: Equations, functions: Sequence[Element], where: str) -> Decisio
 
 
 def _on_section(restriction: Restriction, functions: Sequence[Element]) -> list[Element]:
-    """Functions of the whole state with the section in the place of y."""
-    field = restriction.setting.field
-    return [field.substitute(restriction(f), restriction.section) for f in functions]
+    return [on_section(restriction, f) for f in functions]
 
 
 def _section_defects(restriction: Restriction) -> list[Element]:

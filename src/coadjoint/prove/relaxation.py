@@ -16,12 +16,13 @@ these conditions as a claim. Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.external import added_rates, metric
 from coadjoint.exact import Element
+from coadjoint.exact.dense import apply, dot
 from coadjoint.prove.driven import changes_by_time, while_constant
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
@@ -76,7 +77,7 @@ class _Relaxed:
         self.G = tuple(tuple(in_velocities(first, row)) for row in metric(first.setting))
         self._P = [in_velocities(first, row) for row in tensor]
         self._dh = gradient(first, energy)
-        self._free = self._applied(self._P, self._dh)
+        self._free = apply(self._P, self._dh)
         self._energy = energy
 
     def asymmetry(self) -> list[Element]:
@@ -84,13 +85,13 @@ class _Relaxed:
         size = range(len(self.G))
         return [self.G[i][j] - self.G[j][i] for i in size for j in range(i)]
 
-    def on_energy(self) -> list[Element]:
+    def on_energy(self) -> tuple[Element, ...]:
         """``G dh``."""
-        return self._applied(self.G, self._dh)
+        return apply(self.G, self._dh)
 
     def energy(self) -> list[Element]:
         """``dh/dt + <P dh, G P dh>``."""
-        lost = self._dot(self._free, self._applied(self.G, self._free))
+        lost = dot(self._free, apply(self.G, self._free))
         return [rate + lost for rate in drift(self.first, self._energy)]
 
     def entropy(self) -> list[Element]:
@@ -100,7 +101,7 @@ class _Relaxed:
         assert relaxation.S is not None
         S = self.first.setting.formula(relaxation.S)
         slopes = gradient(self.first, S)
-        gained = self._dot(slopes, self._applied(self.G, slopes))
+        gained = dot(slopes, apply(self.G, slopes))
         return [rate - gained for rate in drift(self.first, S)]
 
     def added(self) -> list[Element]:
@@ -108,10 +109,10 @@ class _Relaxed:
         relaxation = self.first.spec.relaxation
         assert relaxation is not None
         if relaxation.S is None:
-            expected = self._applied(self._P, self._applied(self.G, self._free))
+            expected = apply(self._P, apply(self.G, self._free))
         else:
             S = self.first.setting.formula(relaxation.S)
-            expected = self._applied(self.G, gradient(self.first, S))
+            expected = apply(self.G, gradient(self.first, S))
         rates = in_velocities(self.first, self.first.exact.rates)
         forces = in_velocities(self.first, added_rates(self.first.setting))
         parts = zip(rates, self._free, forces, expected, strict=True)
@@ -119,10 +120,4 @@ class _Relaxed:
 
     def power(self) -> Element:
         """What the double bracket takes from the energy."""
-        return -self._dot(self._free, self._applied(self.G, self._free))
-
-    def _applied(self, matrix: Tensor, vector: Sequence[Element]) -> list[Element]:
-        return [self._dot(row, vector) for row in matrix]
-
-    def _dot(self, a: Sequence[Element], b: Sequence[Element]) -> Element:
-        return self.field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)
+        return -dot(self._free, apply(self.G, self._free))

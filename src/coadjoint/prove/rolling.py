@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from coadjoint.derive.mechanics.followed import arm
-from coadjoint.groups.vectors import cross, dot
+from coadjoint.exact.dense import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Examined, decide_zero
 

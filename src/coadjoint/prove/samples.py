@@ -24,10 +24,10 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import islice
 
-from coadjoint.algebra.linear import PRIME, echelon_modulo, primes
 from coadjoint.derive.mechanics.kinematics import kept_rows
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import Residue, residue
+from coadjoint.exact.linear import PRIME, echelon_modulo, primes
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
 from coadjoint.prove.ideals import Ideal

@@ -14,9 +14,9 @@ from itertools import combinations
 
 import mpmath
 
-from coadjoint.derive.interpret import determinant
-from coadjoint.derive.mechanics.legendre import coupled_blocks
+from coadjoint.derive.mechanics.configuration import coupled_blocks
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import minor
 from coadjoint.exact.signs import sign
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.points import DIGITS, Points, real
@@ -70,7 +70,7 @@ def _has_no_negative_minor(ring: Field, matrix: Matrix, block: Sequence[int]) ->
         return False
     for size in range(1, len(block) + 1):
         for chosen in combinations(block, size):
-            minor = determinant(tuple(tuple(matrix[i][j] for j in chosen) for i in chosen))
-            if not ring.is_zero(minor) and sign(ring, minor, strict=False) != 1:
+            value = minor(matrix, chosen, chosen)
+            if not ring.is_zero(value) and sign(ring, value, strict=False) != 1:
                 return False
     return True

@@ -3,7 +3,7 @@
 Comes in: names of templates of this package and plain values. Goes out: text. Templates are files
 of this package only, never text of a spec; an undefined name is an error, a value given for nothing
 is an error, and a value that could end a comment or a string of the output is refused.
-Read next: `templates/numpy/kernel.py.j2` and its twin `templates/c/kernel.c.j2`.
+Read next: `coadjoint.render.targets`.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from jinja2 import FileSystemLoader, StrictUndefined, meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from coadjoint.errors import SpecError
-from coadjoint.render.printers import c_assignment, python_assignment, python_call
-from coadjoint.resources import templates_folder
+from coadjoint.render.printers import python_call
+from coadjoint.render.targets import TARGETS
+from coadjoint.resources import targets_folder, templates_folder
 
 #: What would begin or end a comment or a string, or glue two lines together, in C or in Python.
 UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
@@ -29,16 +30,16 @@ UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
 def environment() -> ImmutableSandboxedEnvironment:
     """The environment; the sandbox is a second wall, the first is that specs are not templates."""
     made = ImmutableSandboxedEnvironment(
-        loader=FileSystemLoader(templates_folder()),
+        loader=FileSystemLoader([targets_folder(), templates_folder()]),
         undefined=StrictUndefined,
         autoescape=False,  # code, not HTML; `refuse_unsafe` guards each value
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.filters["python_assignment"] = python_assignment
-    made.filters["c_assignment"] = c_assignment
     made.filters["python_call"] = python_call
+    for target in TARGETS.values():
+        made.filters |= target.filters()
     return made
 
 
@@ -78,7 +79,7 @@ def render_templates(names: tuple[str, ...], values: Mapping[str, Any]) -> dict[
     """The text of each template, given the same values.
 
     Args:
-        names: Paths below the folder of templates, e.g. ``numpy/kernel.py.j2``.
+        names: Paths below the folder of targets or of templates, e.g. ``numpy/kernel.py.j2``.
         values: What templates may print; each must be read by one template at least.
 
     Returns:
@@ -102,4 +103,6 @@ def names_read(template: str) -> frozenset[str]:
 
 def template_source(template: str) -> str:
     """The text of a template as it stands in its file."""
-    return (templates_folder() / template).read_text(encoding="utf-8")
+    loader = environment().loader
+    assert loader, "the environment has one"
+    return loader.get_source(environment(), template)[0]

@@ -80,7 +80,7 @@ def tree_problems(folder: Path, *, is_shipped: bool = False) -> Iterator[Problem
         yield from _in_the_way(folder, files)
     yield from _unlisted(folder, manifest["systems"])
     for path in leftovers(folder):
-        yield Problem(f"{path} was left by a run that was killed", "the next run removes it", True)
+        yield Problem(f"{path} was left behind by a killed run", "the next run removes it", True)
     yield from _lock(folder / LOCK)
 
 

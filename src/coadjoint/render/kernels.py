@@ -2,7 +2,7 @@
 
 Comes in: a `KernelContext`, which holds all that a generated file says. Goes out: text by file
 name. The choice of what to print is made here, in plain records; the templates loop and print.
-Read next: `templates/numpy/kernel.py.j2`, then `coadjoint.render.write`.
+Read next: `coadjoint.render.targets`, then `coadjoint.render.write`.
 """
 
 from __future__ import annotations
@@ -11,102 +11,25 @@ import hashlib
 import json
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, fields
+from typing import Any, Final
 
+from coadjoint.declared import Bound, Quantity
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement, operation, walk
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
+from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
-TEMPLATES: Final = {
-    "kernel.py": "numpy/kernel.py.j2",
-    "__init__.py": "numpy/__init__.py.j2",
-    "kernel.c": "c/kernel.c.j2",
-    "kernel.h": "c/kernel.h.j2",
-}
-
-#: What each function of a kernel is, for its readers.
-SUMMARIES: Final = {
-    "rhs": "Time derivative of the state",
-    "jacobian": "Derivative of rhs by the state, one row for each rate",
-    "input_jacobian": "Derivative of rhs by the inputs, one row for each rate",
-    "parameter_jacobian": "Derivative of rhs by the parameters, one row for each rate",
-    "energy": "Energy",
-    "observables": "Observables, one row for each component",
-    "poisson_tensor": "Poisson tensor, brackets of the components of the state",
-    "almost_poisson_tensor": "Almost-Poisson tensor, velocities standing for their momenta",
-    "constraint_residual": "Left minus right sides of the constraints",
-    "projection": "State moved onto the constraints by the least change of velocities",
-    "reconstruction": "Rates of what is reconstructed; state holds the state, then its rows",
-    "domain": "What is positive where the system is defined, one row for each entry of DOMAIN",
+TEMPLATES: Final = {"__init__.py": "package/__init__.py.j2"} | {
+    file: template for target in TARGETS.values() for file, template in target.files.items()
 }
 
 NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint claims none."
 
 #: Members that the NumPy kernel evaluates at a time (measured: docs/decisions/numpy-kernels.md).
 CHUNK: Final = 11_000
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A named block of state, parameters or observables, as the generated package declares it.
-
-    Attributes:
-        name: As in the spec.
-        shape: ``()``, ``(n,)`` or ``(n, m)``.
-        unit: Unit text, ``"1"`` if dimensionless.
-        components: One name per component, row by row.
-        default: One value per component, or None.
-        positive: Whether every component must be positive.
-        conserved: Whether the motion conserves it.
-        while_constant: Whether it does so only while the inputs are constant.
-        upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
-    """
-
-    name: str
-    shape: tuple[int, ...]
-    unit: str
-    components: tuple[str, ...]
-    default: tuple[float, ...] | None = None
-    positive: bool = False
-    conserved: bool = False
-    while_constant: bool = False
-    upright: str = ""
-
-    def arguments(self) -> list[str]:
-        """The arguments of its declaration, as text; what has its usual value is left out."""
-        given = [quoted(self.name), f"shape={tuple_text(map(str, self.shape))}"]
-        given += [f"unit={quoted(self.unit)}"]
-        given += [f"components={tuple_text(map(quoted, self.components))}"]
-        if self.default is not None:
-            given += [f"default={tuple_text(map(repr, self.default))}"]
-        given += ["positive=True"] * self.positive + ["conserved=True"] * self.conserved
-        given += ["while_constant=True"] * self.while_constant
-        given += [f"upright={quoted(self.upright)}"] * bool(self.upright)
-        return given
-
-
-@dataclass(frozen=True)
-class Bound:
-    """A row of the function ``domain``, as the generated package declares it.
-
-    Attributes:
-        name: Of a condition, of an acceleration or of a reaction.
-        kind: ``condition``, ``acceleration`` or ``reaction``.
-        strict: Whether it may not be zero.
-        inputs: Components of state and parameters that it depends on.
-    """
-
-    name: str
-    kind: str
-    strict: bool
-    inputs: tuple[str, ...]
-
-    def arguments(self) -> list[str]:
-        """The arguments of its declaration, as text."""
-        inputs = f"inputs={tuple_text(map(quoted, self.inputs))}"
-        return [quoted(self.name), quoted(self.kind), f"strict={self.strict}", inputs]
 
 
 @dataclass(frozen=True)
@@ -167,11 +90,13 @@ class Function:
         summary: What it is, with its shape.
         costs: Its operation counts, as lines.
         shape: Shape for one member, as Python text.
+        size: Number of its results.
+        result: What a function of plain Python makes of the list of them.
         rows: How many rows its first argument has, the state and what may follow.
         state: Components of the state that it reads.
         parameters: Components of the parameters that it reads.
         driving: Components of inputs and time that it reads, by array, as far as it takes them.
-        python_inputs: The lines that take these from the arrays in Python.
+        python_inputs: The lines that take these from each array in Python.
         of_parameters: Statements that depend on parameters alone.
         of_member: The other statements.
         outputs: Row and value of the results, those left out that are zero everywhere.
@@ -183,11 +108,13 @@ class Function:
     summary: str
     costs: list[str]
     shape: str
+    size: int
+    result: str
     rows: int
     state: tuple[Row, ...]
     parameters: tuple[Row, ...]
     driving: dict[str, tuple[Row, ...]]
-    python_inputs: tuple[str, ...]
+    python_inputs: dict[str, list[str]]
     of_parameters: tuple[Statement, ...]
     of_member: tuple[Statement, ...]
     outputs: tuple[tuple[int, Output], ...]
@@ -221,13 +148,15 @@ def fingerprint(spec_sha256: str, texts: Mapping[str, str]) -> str:
 
 def elementary_functions(programs: Iterable[Program]) -> tuple[str, ...]:
     """Functions beyond sqrt that Programs call; where there are none, all targets agree in bits."""
-    called = {
-        operation(node)
-        for program in programs
-        for value in program.values()
-        for node in walk(value)
-    }
+    called = _called(programs)
     return tuple(name for name in FUNCTIONS if name in called and name != "sqrt")
+
+
+def _called(programs: Iterable[Program]) -> list[str]:
+    """All functions that Programs call, in alphabetical order, as imports have them."""
+    values = (value for program in programs for value in program.values())
+    called = {operation(node) for value in values for node in walk(value)}
+    return sorted(name for name in FUNCTIONS if name in called)
 
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
@@ -253,14 +182,15 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
             ],
+            "called": _called(context.programs),
             "elementary": tuple_text(map(quoted, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
             "system": _system(context, identity),
             "declared": {
-                table: [quantity.arguments() for quantity in quantities]
+                table: list(map(declaration, quantities))
                 for table, quantities in _tables(context).items()
             },
-            "domain": [bound.arguments() for bound in context.domain],
+            "domain": list(map(declaration, context.domain)),
         },
     )
     return {file: rendered[template] for file, template in TEMPLATES.items()}
@@ -331,6 +261,8 @@ def _function(program: Program, summary: str) -> Function:
         summary=summary,
         costs=_costs(program),
         shape=tuple_text(map(str, program.shape)),
+        size=len(program.outputs),
+        result=_result(program.shape),
         rows=len(program.state),
         state=_read(program.state, used),
         parameters=_read(program.parameters, used),
@@ -339,16 +271,19 @@ def _function(program: Program, summary: str) -> Function:
             for array, names in program.arrays.items()
             if array in ("inputs", "time")
         },
-        python_inputs=tuple(
-            line
-            for array, names in program.arrays.items()
-            for line in _unpacked(names, used, array)
-        ),
+        python_inputs={
+            array: _unpacked(names, used, array) for array, names in program.arrays.items()
+        },
         of_parameters=program.at_level("parameters"),
         of_member=program.at_level("member"),
         outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
         zeros=_zeros(row for row, output in rows if output.value == ZERO),
     )
+
+
+def _result(shape: tuple[int, ...]) -> str:
+    """A list of results as a number, a list, or a list of rows."""
+    return {0: "out[0]", 1: "out"}.get(len(shape)) or f"_rows(out, {shape[-1]})"
 
 
 def _zeros(rows: Iterable[int]) -> tuple[str, ...]:
@@ -364,9 +299,10 @@ def _read(names: Sequence[str], used: frozenset[str]) -> tuple[Row, ...]:
 def _summary(context: KernelContext, program: Program) -> str:
     """One sentence on a function."""
     shape = ", ".join([*map(str, program.shape), "..."])
+    function = KERNEL_FUNCTIONS[program.name]
     constrained = any(other.name == "constraint_residual" for other in context.programs)
-    almost = "almost_" if constrained and program.name == "poisson_tensor" else ""
-    return f"{SUMMARIES[almost + program.name]}, shape ({shape})."
+    text = (constrained and function.constrained) or function.summary
+    return f"{text}, shape ({shape})."
 
 
 def _costs(program: Program) -> list[str]:
@@ -414,6 +350,29 @@ def _shapes(programs: Sequence[Program]) -> list[str]:
     return [
         f"{quoted(program.name)}: {tuple_text(map(str, program.shape))}" for program in programs
     ]
+
+
+def declaration(record: Quantity | Bound) -> list[str]:
+    """The arguments of a record as a generated package writes it; usual values are left out.
+
+    >>> declaration(Bound("height", "condition", True, ("h",)))
+    ['"height"', '"condition"', 'strict=True', 'inputs=("h",)']
+    """
+    given = []
+    for each in fields(record):
+        value = getattr(record, each.name)
+        if each.name in ("name", "kind"):
+            given.append(_literal(value))
+        elif value != each.default:
+            given.append(f"{each.name}={_literal(value)}")
+    return given
+
+
+def _literal(value: Any) -> str:
+    """A value as Python text: texts in double quotes, tuples of such values, and numbers."""
+    if isinstance(value, tuple):
+        return tuple_text(map(_literal, value))
+    return quoted(value) if isinstance(value, str) else repr(value)
 
 
 def tuple_text(entries: Iterable[str]) -> str:

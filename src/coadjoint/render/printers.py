@@ -2,9 +2,9 @@
 
 Comes in: nodes. Goes out: an expression or an assignment that the language evaluates in exactly
 the order of the tree, with no parenthesis that it does not need; long ones are broken at their
-operators the way our Python formatter breaks them. The languages differ in the names of functions
-alone: ``+ - * /`` and unary minus bind alike in Python and in C.
-Read next: `coadjoint.render.kernels`.
+operators the way our Python formatter breaks them. What targets share stands here: ``+ - * /`` and
+unary minus bind alike in Python and in C.
+Read next: `coadjoint.render.targets.c.printer`.
 """
 
 from __future__ import annotations
@@ -127,60 +127,21 @@ class Printer:
         return lines
 
 
-NUMPY: Final = Printer("np.")
-C: Final = Printer("")
-
-
-def python_text(node: Node) -> str:
-    """``node`` as a NumPy expression on one line.
-
-    >>> x, y = Symbol("x"), Symbol("y")
-    >>> python_text(Add(Multiply(x, Add(x, y)), Negate(Call("sqrt", y))))
-    'x * (x + y) - np.sqrt(y)'
-    """
-    return NUMPY.text(node)
-
-
-def c_text(node: Node) -> str:
-    """``node`` as a C expression on one line.
-
-    >>> x, y = Symbol("x"), Symbol("y")
-    >>> c_text(Divide(Negate(Negate(x)), Multiply(Number(Fraction(1, 2)), y)))
-    '-(-x) / (0.5 * y)'
-    """
-    return C.text(node)
-
-
-def python_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str:
+def python_assignment(printer: Printer, node: Node, to: str, column: int, comment: str) -> str:
     """``to = node`` in Python, broken as our formatter breaks it; the first line is not indented.
 
-    >>> python_assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
+    >>> python_assignment(Printer("np."), Symbol("Pi1"), "out[0]", 4, "dPi1/dt")
     'out[0] = Pi1  # dPi1/dt'
     """
     note = f"  # {comment}" if comment else ""
-    line = f"{to} = {python_text(node)}"
+    line = f"{to} = {printer.text(node)}"
     if column + len(line) + len(note) <= WIDTH or isinstance(node, Symbol | Number):
         return line + note
     if not note and not _is_long_chain(node):
         # The formatter would move these parentheses onto an operand; a comment holds them.
         note = "  # in this order"
-    inner = NUMPY.broken(node, WIDTH - column - 4)
-    return _indented([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
-
-
-def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str:
-    """``to = node;`` in C, broken at the operators if it is long; the first line is not indented.
-
-    >>> c_assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
-    'out[0] = Pi1; /* dPi1/dt */'
-    """
-    note = f" /* {comment} */" if comment else ""
-    line = f"{to} = {c_text(node)};"
-    if column + len(line) + len(note) <= WIDTH:
-        return line + note
-    inner = C.broken(node, WIDTH - column - 4 - 1)
-    inner[-1] += ";"
-    return _indented([f"{to} ={note}", *("    " + text for text in inner)], column)
+    inner = printer.broken(node, WIDTH - column - 4)
+    return indented([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
 
 
 def python_call(arguments: Sequence[str], to: str, column: int, end: str = "") -> str:
@@ -193,9 +154,9 @@ def python_call(arguments: Sequence[str], to: str, column: int, end: str = "") -
     if column + len(f"{to}({joined}){end}") <= WIDTH:
         return f"{to}({joined}){end}"
     if column + 4 + len(joined) <= WIDTH:
-        return _indented([f"{to}(", "    " + joined, f"){end}"], column)
+        return indented([f"{to}(", "    " + joined, f"){end}"], column)
     lines = ["    " + line for entry in arguments for line in _entry_lines(entry, column + 4)]
-    return _indented([f"{to}(", *lines, f"){end}"], column)
+    return indented([f"{to}(", *lines, f"){end}"], column)
 
 
 def _entry_lines(entry: str, column: int) -> list[str]:
@@ -206,7 +167,7 @@ def _entry_lines(entry: str, column: int) -> list[str]:
     return [f"{opening}(", *(f"    {item}," for item in items.split(", ")), "),"]
 
 
-def _indented(lines: list[str], column: int) -> str:
+def indented(lines: list[str], column: int) -> str:
     """Lines as one text, all but the first moved to ``column``."""
     return ("\n" + " " * column).join(lines)
 

@@ -35,6 +35,7 @@ from coadjoint.render.ownership import (
     read_manifest,
     refuse_installed,
 )
+from coadjoint.render.targets import TARGETS
 
 __all__ = [
     "LOCK",
@@ -53,7 +54,11 @@ __all__ = [
 ]
 
 #: The files of every system.
-SYSTEM_FILES: Final = ("kernel.py", "__init__.py", "kernel.c", "kernel.h", "certificate.json")
+SYSTEM_FILES: Final = (
+    "__init__.py",
+    *(file for target in TARGETS.values() for file in target.files),
+    "certificate.json",
+)
 
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 _NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC

@@ -1,4 +1,4 @@
-"""The functions of a System: one method for each that a kernel may have, all with one signature.
+"""The functions of a System: one method for each of the table, all with one signature.
 
 Comes in: arguments of a person. Goes out: results, by what `System` makes of the arguments.
 Read next: `coadjoint.solve.system`.
@@ -8,9 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, Protocol, TypeVar
 
+from coadjoint.declared import KernelFunction
 from coadjoint.errors import KernelArgumentError
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.render.targets import TARGETS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -19,7 +22,27 @@ if TYPE_CHECKING:
     #: One array, or arrays by name.
     Values = ArrayLike | Mapping[str, ArrayLike]
 
-Target = Literal["c", "numpy", "c-fast"]
+#: The name of a target; `coadjoint.render.targets` has them.
+Target = str
+#: What is said of the arguments of every function.
+_ARGUMENTS: Final = """Args:
+    state: ``(n,)`` or ``(n, *batch)``, or a mapping by name: ``{"Pi": [...], ...}``.
+    parameters: Packed, ``(k,)`` for all members or ``(k, *batch)``; or a mapping by name,
+        ``{"I": [1, 2, 3], "m": masses}``, that overrides defaults; None for the defaults.
+    inputs: Of a system that has ``INPUTS``, in the same forms: ``(m,)``, ``(m, *batch)``,
+        a mapping, or None for the defaults.
+    time: Of a system that depends on it: a number, or one for each member, ``batch``.
+    target: {targets}.
+    out: Where to write the result: float64, C-contiguous, apart from the inputs.
+
+Returns:
+    ``out``, or a new array.
+
+Raises:
+    KernelArgumentError: A shape, name, sign or aliasing that cannot be right.
+    KernelTypeError: A type that cannot become float64 without loss.
+"""
+
 _Given = ParamSpec("_Given")
 _Result = TypeVar("_Result")
 
@@ -44,16 +67,43 @@ def by_name(method: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
     return called
 
 
+class Method(Protocol):
+    """How every function of a System is called."""
+
+    def __call__(
+        self,
+        state: Values,
+        parameters: Values | None = None,
+        inputs: Values | None = None,
+        *,
+        time: ArrayLike | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        """The function at a state."""
+        ...
+
+
 class Functions:
-    """What kernels compute; a System has those of its ``functions``."""
+    """What kernels compute: a method for each of the kernel functions.
+
+    A System has those of its ``functions``.
+    """
+
+    if TYPE_CHECKING:  # the methods are made below, from the table
+
+        def __getattr__(self, name: str) -> Method: ...
 
     def _evaluate(self, function: str, target: Target, *given: Any) -> Array:
         """A function at state, parameters, inputs and time, into a result."""
         raise NotImplementedError
 
-    @by_name
-    def rhs(
-        self,
+
+def make_method(function: KernelFunction) -> Callable[..., Array]:
+    """The method of a System that evaluates a function of the table."""
+
+    def method(
+        self: Functions,
         state: Values,
         parameters: Values | None = None,
         inputs: Values | None = None,
@@ -62,195 +112,28 @@ class Functions:
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
-        """Time derivative of the state, shape ``(n, *batch)``.
+        return self._evaluate(function.name, target, state, parameters, inputs, time, out)
 
-        Args:
-            state: ``(n,)`` or ``(n, *batch)``, or a mapping by name: ``{"Pi": [...], ...}``.
-            parameters: Packed, ``(k,)`` for all members or ``(k, *batch)``; or a mapping by name,
-                ``{"I": [1, 2, 3], "m": masses}``, that overrides defaults; None for the defaults.
-            inputs: Of a system that has ``INPUTS``, in the same forms: ``(m,)``, ``(m, *batch)``,
-                a mapping, or None for the defaults.
-            time: Of a system that depends on it: a number, or one for each member, ``batch``.
-            target: ``"c"``, ``"numpy"``, or ``"c-fast"`` (fused operations: not the same bits).
-            out: Where to write the result: float64, C-contiguous, apart from the inputs.
+    method.__name__ = function.name
+    method.__qualname__ = f"Functions.{function.name}"
+    method.__doc__ = _text(function)
+    return by_name(method)
 
-        Returns:
-            ``out``, or a new array.
 
-        Raises:
-            KernelArgumentError: A shape, name, sign or aliasing that cannot be right.
-            KernelTypeError: A type that cannot become float64 without loss.
-        """
-        return self._evaluate("rhs", target, state, parameters, inputs, time, out)
+def _text(function: KernelFunction) -> str:
+    """The docstring of a method."""
+    targets = ", ".join(
+        f'``"{build}"``' + (f" ({known})" if known else "")
+        for target in TARGETS.values()
+        for build, known in target.builds.items()
+    )
+    head = f"{function.summary}; shape ``{function.shape}``.\n\n"
+    return (
+        head
+        + (f"{function.doc}\n\n" if function.doc else "")
+        + _ARGUMENTS.replace("{targets}", targets)
+    )
 
-    @by_name
-    def jacobian(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Derivative of `rhs` by the state, shape ``(n, n, *batch)``; arguments as in `rhs`."""
-        return self._evaluate("jacobian", target, state, parameters, inputs, time, out)
 
-    @by_name
-    def input_jacobian(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Derivative of `rhs` by the inputs, shape ``(n, m, *batch)``; arguments as in `rhs`.
-
-        Only systems with inputs have it.
-        """
-        return self._evaluate("input_jacobian", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def parameter_jacobian(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Derivative of `rhs` by the parameters, ``(n, k, *batch)``; arguments as in `rhs`.
-
-        Only systems with parameters have it.
-        """
-        return self._evaluate("parameter_jacobian", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def energy(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Energy, shape ``batch``; arguments as in `rhs`."""
-        return self._evaluate("energy", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def observables(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """All observables, one row for each component of ``OBSERVABLES``; arguments as in `rhs`."""
-        return self._evaluate("observables", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def poisson_tensor(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Brackets ``{x_i, x_j}`` of the state, shape ``(n, n, *batch)``; arguments as in `rhs`.
-
-        Of a constrained motion the velocities stand for their momenta, ``Omega_momentum``: with
-        those and the positions as coordinates, the motion is this matrix times the gradient of the
-        energy, which is the velocities and minus the slopes of the constrained Lagrangian. It is
-        antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.
-        """
-        return self._evaluate("poisson_tensor", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def constraint_residual(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Left minus right sides of the constraints, ``(c, *batch)``; arguments as in `rhs`.
-
-        Rows follow the declared constraints. What a constraint gives a velocity is put in, so
-        that its rows are 0; those of other constraints stay at the level of rounding along a
-        trajectory that `simulate` follows.
-        """
-        return self._evaluate("constraint_residual", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def projection(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """The nearest state on the constraints, shape ``(n, *batch)``; arguments as in `rhs`.
-
-        Positions stay. Velocities change by the d of least kinetic energy ``d . M d / 2`` with
-        which all constraints hold to rounding. Only systems have it that keep a constraint,
-        one that gives no velocity outright.
-        """
-        return self._evaluate("projection", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def domain(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """What is positive where the system is defined, ``(d, *batch)``; arguments as in `rhs`.
-
-        Rows are those of ``DOMAIN``: of a declared condition the side that is to be larger minus
-        the other; of a constrained motion also the pivots of the solve for its accelerations. A row
-        that is not ``strict`` may be zero. Where one is violated, the other functions give what
-        arithmetic gives, infinities and NaN among it; `simulate` stops there.
-        """
-        return self._evaluate("domain", target, state, parameters, inputs, time, out)
-
-    @by_name
-    def reconstruction(
-        self,
-        state: Values,
-        parameters: Values | None = None,
-        inputs: Values | None = None,
-        *,
-        time: ArrayLike | None = None,
-        target: Target = "c",
-        out: Array | None = None,
-    ) -> Array:
-        """Rates of what is reconstructed, one row for each component of ``RECONSTRUCTED``.
-
-        Arguments as in `rhs`, but that the state is followed by the rows of ``RECONSTRUCTED``:
-        ``(n + k, *batch)``, or a mapping that names them all.
-        """
-        return self._evaluate("reconstruction", target, state, parameters, inputs, time, out)
+for each in KERNEL_FUNCTIONS.values():
+    setattr(Functions, each.name, make_method(each))

@@ -7,55 +7,11 @@ rows, light to import.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from difflib import get_close_matches
 from html import escape
 
+from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A named block of rows.
-
-    Attributes:
-        name: As in the spec, e.g. ``Pi``.
-        shape: ``()``, ``(n,)`` or ``(n, m)``.
-        unit: Unit text, ``"1"`` if dimensionless, ``""`` if not stated.
-        components: Name of each row.
-        default: One value per row, or None.
-        positive: Whether every value must be positive.
-        conserved: Whether the motion conserves it.
-        while_constant: Whether it does so only while the inputs are constant.
-        upright: Of an attitude, the vector of the state that it turns upright at the start, or "".
-    """
-
-    name: str
-    shape: tuple[int, ...] = ()
-    unit: str = "1"
-    components: tuple[str, ...] = ()
-    default: tuple[float, ...] | None = None
-    positive: bool = False
-    conserved: bool = False
-    while_constant: bool = False
-    upright: str = ""
-
-
-@dataclass(frozen=True)
-class Bound:
-    """What a row of the function ``domain`` is: positive where a system is defined.
-
-    Attributes:
-        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is.
-        kind: ``condition``, ``acceleration`` or ``reaction``.
-        strict: Whether it may not be zero.
-        inputs: Components of state and parameters that it depends on.
-    """
-
-    name: str
-    kind: str
-    strict: bool
-    inputs: tuple[str, ...]
 
 
 class Quantities(Mapping[str, Quantity]):

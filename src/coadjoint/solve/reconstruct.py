@@ -19,7 +19,7 @@ from coadjoint.solve.arrays import pack
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.quantities import Quantity
+    from coadjoint.declared import Quantity
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]

@@ -1,7 +1,7 @@
 """The System: one generated folder as an object, light to import and complete to use.
 
 Comes in: the declarations in a generated ``__init__.py``. Goes out: functions of state and
-parameters by the C kernel or the NumPy kernel, and simulations. Only names are held here; arrays,
+parameters by the kernel of a target, and simulations. Only names are held here; arrays,
 kernels and integrators load on first use, so that importing a system costs next to nothing.
 Read next: `coadjoint.solve.arrays` for what may be passed, `coadjoint.solve.kernels` for who
 computes.
@@ -18,10 +18,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from coadjoint.declared import Bound, Quantity
 from coadjoint.errors import OutputError
 from coadjoint.files import read_certificate
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.functions import Functions, Target, by_name
-from coadjoint.solve.quantities import Bound, Quantities, Quantity
+from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -88,9 +90,9 @@ class System(Functions):
 
     def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
-        if function != "reconstruction":
-            return self.STATE
-        return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+        if KERNEL_FUNCTIONS[function].below:
+            return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+        return self.STATE
 
     @by_name
     def evaluate(
@@ -228,7 +230,7 @@ class System(Functions):
         """Compile and load what targets need now instead of at their first call.
 
         Args:
-            targets: ``"c"``, ``"c-fast"``, ``"numpy"``; several are compiled side by side.
+            targets: What may be given as ``target=``; several are compiled side by side.
 
         Raises:
             KernelArgumentError: No such target.

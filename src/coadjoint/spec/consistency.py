@@ -1,54 +1,29 @@
-"""Consistency: what must hold between the parts of a spec before any route can be followed.
+"""Consistency: what must hold between the tables of a spec before any route can be followed.
 
-Comes in: the records of a spec. Goes out: nothing, or a `SpecError` that names what is missing and
-how to write it. Read next: `coadjoint.spec.reader`.
+Comes in: the checked tables of a spec. Goes out: nothing, or a `SpecError` that names what is
+missing and how to write it. Read next: `coadjoint.spec.reader`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Sequence
 from typing import Any
 
-from coadjoint.algebra import LieAlgebra
-from coadjoint.errors import CoadjointError, LimitError
-from coadjoint.limits import PARAMETER_COMPONENTS, STATE_COMPONENTS
+from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import listed
-from coadjoint.spec.core.names import derived_names, refusal
 from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.model import (
-    Constraint,
-    Input,
-    Observable,
-    Parameter,
-    Reconstructed,
-    ReducedMomentum,
-    Section,
-    SpatialMomentum,
-    Symmetry,
-    Time,
-    Variable,
-    state_of,
-)
-from coadjoint.spec.routes import STARTS, energies_of, is_in_frame, kinds_of
-from coadjoint.spec.schema import SpecFile
+from coadjoint.spec.core.tree import Index, Name, walk
+from coadjoint.spec.kinds import is_in_frame, kinds_of
+from coadjoint.spec.model import Spec
+from coadjoint.spec.routes import ROUTES, energies_of
+from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.variables import VARIABLES, Variable
+from coadjoint.spec.tables import TABLES, how_to_write, list_formulas
 
-#: How a missing table is written.
-_HOW = {
-    "hamiltonian": 'Write [hamiltonian] and below it h = "dot(Pi, inverse(diag(I))*Pi)/2".',
-    "lagrangian": 'Write [lagrangian] and below it l = "dot(Omega, diag(I)*Omega)/2".',
-}
 _ENERGIES = ("hamiltonian", "lagrangian")
-#: Tables that are there for routes alone.
-_ROUTED = (
-    *_ENERGIES,
-    *("lax", "newton", "clebsch"),
-)
-#: Tables that act on the motion, so that every route must know them.
-_ACTING = ("constraints", "forces", "dissipation", "double_bracket", "metriplectic")
-#: Routes whose matrices neither time nor inputs may change.
-UNDRIVEN = ("lax", "manakov")
 #: What a kind of spec has, in words.
 _KINDS = {
     "algebra": "[algebra]",
@@ -57,168 +32,9 @@ _KINDS = {
     "canonical": "canonical pairs in [poisson]",
     "configuration": "coordinates with velocities or momenta",
 }
-#: The key and the name that time may have, and nothing else: solutions call it so, too.
-TIME: tuple[KeyPath, str] = (("time", "name"), "t")
-#: What is emitted beside the state, or may be named there.
-Emitted = (
-    Observable | Symmetry | SpatialMomentum | ReducedMomentum | Section | Constraint | Reconstructed
-)
-_TABLES = {
-    Observable: "observables",
-    Symmetry: "symmetries",
-    Section: "momenta",
-    Constraint: "constraints",
-    Reconstructed: "reconstruction",
-}
-#: What has components that are given from outside.
-Given = Parameter | Input | Time
-#: A declared thing: its key, its name, the names of its components, and the names of its rates.
-_Declared = tuple[KeyPath, str, tuple[str, ...], tuple[str, ...]]
 
 
-def check_names(
-    source: Source,
-    variables: Sequence[Variable],
-    parameters: Sequence[Given],
-    observables: Sequence[Emitted] = (),
-    others: Mapping[KeyPath, str] = MappingProxyType({}),
-) -> None:
-    """Every name is free and declared once, components and rates included.
-
-    Args:
-        source: The text of the spec.
-        variables: The variables.
-        parameters: The parameters, the inputs and the time.
-        observables: Those whose shape is known, and momentum maps.
-        others: Further names at their keys, of things whose components are not known yet.
-
-    Raises:
-        SpecError: A reserved or doubled name, with a suggestion.
-    """
-    owners: dict[str, str] = {}
-    declared = [*_declared(variables, parameters, observables)]
-    declared += [(key, name, (), ()) for key, name in others.items()]
-    for key, name, components, rates in declared:
-        for derived in dict.fromkeys((name, *components)):
-            refused = None if (key, derived) == TIME else refusal(derived)
-            if refused is not None:
-                problem, expected, hint = refused
-                if derived != name:
-                    problem = f"{problem}, and so would be a component of {name!r}"
-                    hint = "Choose another name."
-                raise _at_key(source, key, problem, derived, expected, hint)
-        for derived in dict.fromkeys((name, *components, *rates)):
-            if derived in owners:
-                problem = f"{derived!r} is doubled: {owners[derived]} has that name too"
-                expected, hint = "names and components that differ", _why_doubled(key, derived)
-                raise _at_key(source, key, problem, derived, expected, hint)
-        for derived in (name, *components, *rates):
-            owners[derived] = f"{key[0]}.{name}"
-
-
-def _why_doubled(key: KeyPath, derived: str) -> str:
-    """Where a name that nobody declared comes from."""
-    if key[0] == "constraints" and derived != key[1]:
-        return f"The multiplier of the constraint {key[1]} is {derived}: rename one of them."
-    return "The components of I with shape [3] are I1, I2, I3."
-
-
-def _declared(
-    variables: Sequence[Variable],
-    parameters: Sequence[Given],
-    observables: Sequence[Emitted],
-) -> Iterable[_Declared]:
-    for variable in variables:
-        moving = variable in state_of(variables)
-        rates = tuple(derived_names(variable.components)) if moving else ()
-        yield ("variables", variable.name), variable.name, variable.components, rates
-    for given in parameters:
-        table: KeyPath = (f"{given.role}s", given.name)
-        at = ("time", "name") if isinstance(given, Time) else table
-        yield at, given.name, given.components, ()
-    for entry in observables:
-        if isinstance(entry, ReducedMomentum):
-            yield ("variables", entry.velocity.name), entry.name, entry.components, ()
-            continue
-        if isinstance(entry, SpatialMomentum):
-            yield ("variables", entry.momentum.name), entry.name, entry.components, ()
-            continue
-        followed = entry.components if isinstance(entry, Reconstructed) else ()
-        rates = tuple(derived_names(followed))
-        of_rolling = isinstance(entry, Reconstructed) and entry.of_rolling
-        key: KeyPath = ("rolling",) if of_rolling else (_TABLES[type(entry)], entry.name)
-        yield key, entry.name, entry.components, rates
-        if isinstance(entry, Constraint):
-            yield ("constraints", entry.name), entry.reaction, entry.reactions, ()
-
-
-def check_sizes(
-    source: Source,
-    variables: Sequence[Variable],
-    parameters: Sequence[Parameter],
-    inputs: Sequence[Input] = (),
-) -> None:
-    """The state, the parameters and the inputs are not too many.
-
-    Raises:
-        LimitError: More components than the limit.
-    """
-    state = state_of(variables)
-    for key, quantities, limit, most in (
-        ("variables", state, "STATE_COMPONENTS", STATE_COMPONENTS),
-        ("parameters", parameters, "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS),
-        ("inputs", inputs, "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS),
-    ):
-        count = sum(len(quantity.components) for quantity in quantities)
-        if count > most:
-            raise source.fault(
-                (key,),
-                f"the {'state' if key == 'variables' else key} have {count} components",
-                found=count,
-                expected=f"at most {most} ({limit})",
-                kind=LimitError,
-                limit=limit,
-            )
-
-
-def check_blocks(source: Source, variables: Sequence[Variable], algebra: LieAlgebra) -> None:
-    """Velocities share no direction of the algebra, momenta neither, and both have the same blocks.
-
-    Raises:
-        SpecError: Two overlap, or one has no partner.
-    """
-    of_role = {r: [v for v in variables if v.role == r] for r in ("velocity", "momentum")}
-    for role, members in of_role.items():
-        owners: dict[int, str] = {}
-        for variable in members:
-            for place in variable.block:
-                if place in owners:
-                    problem = (
-                        f"{variable.name!r} and {owners[place]!r} both span {algebra.basis[place]}"
-                    )
-                    expected = f"one {role} for each vector of the basis"
-                    hint = f"Blocks of {algebra.name} are {listed(algebra.blocks) or 'undeclared'}."
-                    key: KeyPath = ("variables", variable.name)
-                    raise _at_key(source, key, problem, variable.name, expected, hint)
-                owners[place] = variable.name
-    if not of_role["velocity"] or not of_role["momentum"]:
-        return
-    for role, partner in (("velocity", "momentum"), ("momentum", "velocity")):
-        blocks = [variable.block for variable in of_role[partner]]
-        for variable in of_role[role]:
-            if variable.block not in blocks:
-                span = listed(algebra.basis[place] for place in variable.block)
-                raise _at_key(
-                    source,
-                    ("variables", variable.name),
-                    f"the {role} {variable.name!r} has no {partner} beside it",
-                    variable.name,
-                    f"a {partner} of the same block ({span})",
-                    "Give both the same block.",
-                )
-
-
-def check_tables(source: Source, file: SpecFile) -> None:
+def check_tables(source: Source, file: Any) -> None:
     """There is an algebra, a Poisson bracket or neither, and nothing that goes with another.
 
     Raises:
@@ -252,7 +68,7 @@ def check_tables(source: Source, file: SpecFile) -> None:
         )
 
 
-def check_routes(source: Source, file: SpecFile) -> None:
+def check_routes(source: Source, file: Any) -> None:
     """Each route starts from tables that are there, and none is there in vain.
 
     Raises:
@@ -260,9 +76,9 @@ def check_routes(source: Source, file: SpecFile) -> None:
     """
     kinds = kinds_of(file)
     for place, route in enumerate(file.routes):
-        start = STARTS[route]
+        start = ROUTES[route]
         if not set(start.kinds) & set(kinds):
-            others = [name for name, other in STARTS.items() if set(other.kinds) & set(kinds)]
+            others = [name for name, other in ROUTES.items() if set(other.kinds) & set(kinds)]
             starts = " or ".join(_KINDS[kind] for kind in start.kinds)
             raise source.fault(
                 ("routes", place),
@@ -270,9 +86,9 @@ def check_routes(source: Source, file: SpecFile) -> None:
                 found=route,
                 expected=f"one of {listed(others)}",
             )
-        if start.table and getattr(file, start.table) is None:
+        if start.table and not getattr(file, start.table):
             raise _missing(source, f"the route {route} has no table [{start.table}]", start.table)
-        if route in UNDRIVEN and (file.inputs or file.time):
+        if not start.takes_driving and (file.inputs or file.time):
             raise source.fault(
                 ("routes", place),
                 f"the route {route} knows neither inputs nor time",
@@ -287,9 +103,9 @@ def check_routes(source: Source, file: SpecFile) -> None:
             if len(names) > 1:
                 lacks = "neither " + " nor ".join(f"a {name}" for name in names)
             raise _missing(source, f"the route {route} has {lacks}", energies[0])
-        for table in _ACTING:
-            if getattr(file, table) and table not in start.options:
-                raise _unknown_to(source, place, route, table, kinds)
+        for table in TABLES:
+            if table.acts and getattr(file, table.key) and table.key not in start.options:
+                raise _unknown_to(source, place, route, table.key, kinds)
     _check_first(source, file)
     _check_use(source, file)
 
@@ -300,7 +116,7 @@ def _unknown_to(
     """A route that would leave out what acts on the motion, and so derive another one."""
     others = [
         name
-        for name, other in STARTS.items()
+        for name, other in ROUTES.items()
         if table in other.options and set(other.kinds) & set(kinds)
     ]
     return source.fault(
@@ -312,14 +128,14 @@ def _unknown_to(
     )
 
 
-def _check_first(source: Source, file: SpecFile) -> None:
+def _check_first(source: Source, file: Any) -> None:
     """The first route gives the rates of the declared state, and all that is emitted."""
     first = file.routes[0]
-    if not STARTS[first].emitted:
-        kinds, own = set(kinds_of(file)), STARTS[first]
+    if not ROUTES[first].emitted:
+        kinds, own = set(kinds_of(file)), ROUTES[first]
         others = [
             name
-            for name, start in STARTS.items()
+            for name, start in ROUTES.items()
             if start.emitted
             and set(start.kinds) & kinds
             and (start.table, start.in_frame) == (own.table, own.in_frame)
@@ -343,17 +159,17 @@ def _check_first(source: Source, file: SpecFile) -> None:
         )
 
 
-def _check_use(source: Source, file: SpecFile) -> None:
+def _check_use(source: Source, file: Any) -> None:
     """A Hamiltonian, a Lagrangian or another table that no route reads is a mistake."""
     kinds = kinds_of(file)
     used = {table for route in file.routes for table in energies_of(route, kinds)}
-    starts = [STARTS[route] for route in file.routes]
+    starts = [ROUTES[route] for route in file.routes]
     used |= {name for start in starts for name in (start.table, *start.options)}
-    for table in _ROUTED:
+    for table in (each.key for each in TABLES if each.routed):
         if getattr(file, table) and table not in used:
             readers = [
                 name
-                for name, start in STARTS.items()
+                for name, start in ROUTES.items()
                 if table in (*energies_of(name, kinds), start.table, *start.options)
                 and set(start.kinds) & set(kinds)
             ]
@@ -370,113 +186,141 @@ def _check_use(source: Source, file: SpecFile) -> None:
             )
 
 
-def check_covered(
-    source: Source, file: SpecFile, variables: Sequence[Variable], algebra: LieAlgebra | None
+def _missing(source: Source, problem: str, table: str) -> CoadjointError:
+    expected, hint = f"a table [{table}]", how_to_write(table)
+    return source.fault(("routes",), problem, found=table, expected=expected, hint=hint)
+
+
+def check_used(source: Source, spec: Spec) -> None:
+    """Every input, and the time if it is declared, occurs in some formula.
+
+    Raises:
+        SpecError: One does not.
+    """
+    trees = [formula.tree for formula in list_formulas(spec)]
+    named = {n.name for tree in trees for n in walk(tree) if isinstance(n, Name | Index)}
+    named |= {each.rate for each in spec.inputs}
+    for each in spec.driving:
+        if not named & {each.name, *each.components}:
+            table = "time" if each is spec.time else "inputs"
+            key: KeyPath = ("time",) if each is spec.time else ("inputs", each.name)
+            raise source.fault(
+                key,
+                f"{each.name!r} occurs in no formula",
+                found=each.name,
+                expected=f"a formula that names {listed(each.components)}",
+                hint=f"Use it in the energy or a force, or remove it from [{table}].",
+                at=source.positions.key(key),
+            )
+
+
+_PLURALS = {"momentum": "momenta", "velocity": "velocities"}
+
+
+def check_blocks(reading: Reading) -> None:
+    """Velocities share no direction of the algebra, momenta neither, and both have the same blocks.
+
+    Raises:
+        SpecError: Two overlap, or one has no partner.
+    """
+    algebra, variables = ALGEBRA.of(reading).algebra, VARIABLES.of(reading)
+    if algebra is None:
+        return
+    of_role = {role: [v for v in variables if v.role == role] for role in _PLURALS}
+    for role, members in of_role.items():
+        _check_overlaps(reading, role, members, algebra)
+    if not all(of_role.values()):
+        return
+    for role, partner in (("velocity", "momentum"), ("momentum", "velocity")):
+        blocks = [variable.block for variable in of_role[partner]]
+        for variable in of_role[role]:
+            if variable.block not in blocks:
+                span = listed(algebra.basis[place] for place in variable.block)
+                raise reading.at_key(
+                    ("variables", variable.name),
+                    f"the {role} {variable.name!r} has no {partner} beside it",
+                    variable.name,
+                    f"a {partner} of the same block ({span})",
+                    "Give both the same block.",
+                )
+
+
+def _check_overlaps(
+    reading: Reading, role: str, members: Sequence[Variable], algebra: LieAlgebra
 ) -> None:
+    """No vector of the basis belongs to two variables of a role."""
+    owners: dict[int, str] = {}
+    for variable in members:
+        for place in variable.block:
+            if place in owners:
+                raise reading.at_key(
+                    ("variables", variable.name),
+                    f"{variable.name!r} and {owners[place]!r} both span {algebra.basis[place]}",
+                    variable.name,
+                    f"one {role} for each vector of the basis",
+                    f"Blocks of {algebra.name} are {listed(algebra.blocks) or 'undeclared'}.",
+                )
+            owners[place] = variable.name
+
+
+def check_covered(reading: Reading) -> None:
     """Momenta and velocities span the algebra, or belong to every coordinate.
 
     Raises:
         SpecError: Some direction or coordinate has none.
     """
+    file, algebra = reading.file, ALGEBRA.of(reading).algebra
     if algebra is not None:
         if not is_in_frame(file):
-            _check_covered(source, "momentum", "Pi", variables, algebra)
-        elif any(variable.role == "coordinate" for variable in variables):
-            _check_partners(source, file, variables)
+            _check_spanned(reading, "momentum", "Pi", algebra)
+        elif any(variable.role == "coordinate" for variable in VARIABLES.of(reading)):
+            _check_partners(reading)
         if file.lagrangian is not None:
-            _check_covered(source, "velocity", "Omega", variables, algebra)
+            _check_spanned(reading, "velocity", "Omega", algebra)
     elif file.poisson is None or file.lagrangian is not None:
-        _check_partners(source, file, variables)
+        _check_partners(reading)
 
 
-def _check_partners(source: Source, file: SpecFile, variables: Sequence[Variable]) -> None:
+def _check_partners(reading: Reading) -> None:
     """Every coordinate of a configuration space has a velocity where velocities are asked for."""
-    owned = {role: {v.of for v in variables if v.role == role} for role in ("velocity", "momentum")}
+    variables = VARIABLES.of(reading)
+    owned = {role: {v.of for v in variables if v.role == role} for role in _PLURALS}
+    wanted = ["velocity"] if reading.file.lagrangian is not None else ["velocity", "momentum"]
     for variable in variables:
+        name = variable.name
         if variable.role != "coordinate":
             continue
-        wanted = ["velocity"] if file.lagrangian is not None else ["velocity", "momentum"]
-        if not any(variable.name in owned[role] for role in wanted):
-            name, role = variable.name, wanted[-1]
-            letter = "v" if role == "velocity" else "p"
-            raise _at_key(
-                source,
+        if not any(name in owned[role] for role in wanted):
+            role = wanted[-1]
+            raise reading.at_key(
                 ("variables", name),
                 f"the coordinate {name!r} has no {' and no '.join(wanted)}",
                 name,
                 f"a {role} of each coordinate",
-                f'Write for instance {letter} = {{ role = "{role}", of = "{name}" }}.',
+                f"Write for instance {'v' if role == 'velocity' else 'p'} = "
+                f'{{ role = "{role}", of = "{name}" }}.',
             )
-        if owned["momentum"] and variable.name not in owned["momentum"]:
-            raise _at_key(
-                source,
-                ("variables", variable.name),
-                f"the coordinate {variable.name!r} has no momentum, and others have",
-                variable.name,
+        if owned["momentum"] and name not in owned["momentum"]:
+            raise reading.at_key(
+                ("variables", name),
+                f"the coordinate {name!r} has no momentum, and others have",
+                name,
                 "momenta of all coordinates or of none",
-                "",
+                f'Write for instance p = {{ role = "momentum", of = "{name}" }}.',
             )
 
 
-def check_claims(source: Source, file: SpecFile, variables: Sequence[Variable]) -> None:
-    """What is claimed of a bracket has one, and Galilean relativity has particles.
-
-    Raises:
-        SpecError: Neither an energy nor momenta give a bracket, or no law of particles is there.
-    """
-    claims = file.claims
-    bare = file.algebra is None and file.poisson is None and file.lagrangian is None
-    if bare and not any(variable.role == "momentum" for variable in variables):
-        for table in ("casimirs", "brackets"):
-            if getattr(claims, table):
-                raise source.fault(
-                    ("claims", table),
-                    f"there are {table} without a bracket",
-                    found=table,
-                    expected="a Lagrangian, momenta or [poisson] that give a bracket",
-                    hint=f"Remove {table}, or declare [lagrangian].",
-                )
-    particles = [variable for variable in variables if variable.role == "coordinate"]
-    flat = [q for q in particles if q.value_shape not in ((3,), (3, 3)) or q.form == "symmetric"]
-    if claims.galilean.claim and (file.newton is None or flat):
-        found = flat[0].name if flat else "newton"
-        raise source.fault(
-            ("claims", "galilean"),
-            f"the coordinate {found!r} is no particle in space" if flat else "there is no [newton]",
-            found=found,
-            expected="laws in [newton] of coordinates with shape = [3], one for each particle, or "
-            'of one with shape = [9] and form = "matrix", a row for each particle',
-        )
-
-
-def _missing(source: Source, problem: str, table: str) -> CoadjointError:
-    expected, hint = f"a table [{table}]", _HOW.get(table, "")
-    return source.fault(("routes",), problem, found=table, expected=expected, hint=hint)
-
-
-def _check_covered(
-    source: Source, role: str, example: str, variables: Sequence[Variable], algebra: LieAlgebra
-) -> None:
+def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebra) -> None:
     """The variables of a role span the whole algebra."""
-    plural = {"momentum": "momenta", "velocity": "velocities"}[role]
-    covered = {place for v in variables if v.role == role for place in v.block}
+    covered = {place for v in VARIABLES.of(reading) if v.role == role for place in v.block}
     left = [algebra.basis[place] for place in range(algebra.dimension) if place not in covered]
     if left:
         names = ", ".join(f'"{name}"' for name in left)
         block = f", block = [{names}]" if covered else ""
-        raise source.fault(
+        raise reading.source.fault(
             ("variables",),
             f"no {role} spans {listed(left)}",
             found=listed(left),
-            expected=f"{plural} over the whole of {algebra.name}",
+            expected=f"{_PLURALS[role]} over the whole of {algebra.name}",
             hint=f'Write for instance {example} = {{ role = "{role}"{block} }}.',
         )
-
-
-def _at_key(
-    source: Source, key: KeyPath, problem: str, found: Any, expected: str, hint: str
-) -> CoadjointError:
-    """An error that points at a key and not at its value."""
-    return source.fault(
-        key, problem, found=found, expected=expected, hint=hint, at=source.positions.key(key)
-    )

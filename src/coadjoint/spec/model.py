@@ -1,32 +1,43 @@
 """The Spec: what a person declared, read, validated and parsed; the first record that travels.
 
-Comes in: the parts checked by `coadjoint.spec.reader`. Goes out: a frozen record with no text in
-it that later steps would have to parse. Free text (title, source, docs) is carried for documents
-and JSON only and never reaches a template, a C file or a Python file.
+Comes in: the records of the tables, each from its own module of `coadjoint.spec.sections`. Goes
+out: a frozen record with no text in it that later steps would have to parse. Free text (title,
+source, docs) is carried for documents and JSON only and never reaches a template, a C file or a
+Python file.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from fractions import Fraction
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
-from coadjoint.algebra.catalogue import ATTITUDES, inverse_by
+from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
 from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
-from coadjoint.spec.core.tree import Node, walk
-from coadjoint.spec.sections.constrained import (
-    Condition,
-    Constraint,
-    Reconstructed,
-    ReducedMomentum,
-    Relaxation,
-    Rolling,
-    Section,
-)
-from coadjoint.spec.sections.quantities import Input, Parameter, Time, Variable, state_of
+from coadjoint.spec.core.definitions import Definition
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.sections.claims import ClaimedBracket, Integral
+from coadjoint.spec.sections.constraints import Constraint
+from coadjoint.spec.sections.domain import Condition
+from coadjoint.spec.sections.inputs import Input
+from coadjoint.spec.sections.lax import Lax
+from coadjoint.spec.sections.momenta import Section
+from coadjoint.spec.sections.newton import Force
+from coadjoint.spec.sections.observables import Observable
+from coadjoint.spec.sections.parameters import Parameter
+from coadjoint.spec.sections.poisson import Poisson
+from coadjoint.spec.sections.reconstruction import Reconstructed
+from coadjoint.spec.sections.reduction import Submanifold
+from coadjoint.spec.sections.relaxation import Relaxation
+from coadjoint.spec.sections.rolling import Rolling
+from coadjoint.spec.sections.symmetries import Symmetry
+from coadjoint.spec.sections.time import Time
+from coadjoint.spec.sections.transformations import Transformation
+from coadjoint.spec.sections.variables import Variable, state_of
+from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
 
 __all__ = [
     "FORMS",
@@ -44,10 +55,12 @@ __all__ = [
     "Poisson",
     "Reconstructed",
     "ReducedMomentum",
+    "Reduction",
     "Relaxation",
     "Rolling",
     "Section",
     "Shape",
+    "SpatialMomentum",
     "Spec",
     "Symmetry",
     "Time",
@@ -61,244 +74,35 @@ __all__ = [
 
 
 @dataclass(frozen=True)
-class Formula:
-    """A parsed expression, its text as typed (for messages and documents) and where it stands.
+class ReducedMomentum:
+    """The momentum along the distribution that belongs to an independent velocity.
 
     Attributes:
-        text: As typed, ASCII; used in messages, JSON and documents only.
-        tree: The parsed, shape-checked tree.
-        shape: Shape of its value.
-        key: Dotted key in the spec, e.g. ``lagrangian.l``.
-        line: Line of the text in the file, counted from 1.
+        velocity: The velocity; its momentum is emitted as ``Omega_momentum``.
     """
 
-    text: str
-    tree: Node
-    shape: Shape
-    key: str
-    line: int
-
-    @property
-    def in_one_line(self) -> str:
-        """The text without its line breaks, for statements and tables."""
-        return " ".join(self.text.split())
-
-
-@dataclass(frozen=True)
-class Definition:
-    """A short name for an expression, put in as a tree wherever it occurs.
-
-    Attributes:
-        name: As declared, ``V`` of ``V(s, d)``.
-        arguments: Names of its arguments; empty if it takes none.
-        text: The expression as typed.
-        tree: The parsed expression, with earlier definitions put in.
-        shape: Shape of its value; None with arguments, whose shapes only a call has.
-    """
-
-    name: str
-    arguments: tuple[str, ...]
-    text: str
-    tree: Node
-    shape: Shape | None
-
-    @property
-    def signature(self) -> str:
-        """How it is called: ``V(s, d)``."""
-        return f"{self.name}({', '.join(self.arguments)})" if self.arguments else self.name
-
-    @property
-    def in_one_line(self) -> str:
-        """The expression without its line breaks, for documents."""
-        return " ".join(self.text.split())
-
-
-@dataclass(frozen=True)
-class Observable:
-    """A declared scalar, vector or matrix emitted beside the dynamics."""
-
-    name: str
-    formula: Formula
-    unit: str = "1"
-    doc: str = ""
-
-    @property
-    def shape(self) -> Shape:
-        """Shape of its value."""
-        return self.formula.shape
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, row by row."""
-        return component_names(self.name, self.shape)
-
-
-@dataclass(frozen=True)
-class Integral:
-    """A claimed integral of the motion: everywhere, or where some functions vanish.
-
-    Attributes:
-        formula: What is conserved, of any shape; it may name the energy and observables.
-        where: The functions that are zero on the level set; empty for an integral everywhere.
-    """
-
-    formula: Formula
-    where: tuple[Formula, ...] = ()
-
-
-@dataclass(frozen=True)
-class Poisson:
-    """A declared Poisson bracket of the coordinates.
-
-    Attributes:
-        kind: ``"nambu"``, ``"brackets"`` or ``"canonical"``.
-        functions: The n - 2 distinguished functions of a Nambu bracket, else empty.
-        entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
-            the declared brackets, or the magnetic terms of a canonical one.
-        pairs: ``(i, j)`` of a position and its momentum of a canonical bracket, else empty.
-        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices beside
-            the diagonal, since there the pairing is ``tr(P dS/dt)``, which counts it twice.
-    """
-
-    kind: str
-    functions: tuple[Formula, ...] = ()
-    entries: tuple[tuple[int, int, Formula], ...] = ()
-    pairs: tuple[tuple[int, int], ...] = ()
-    weights: tuple[Fraction, ...] = ()
-
-
-@dataclass(frozen=True)
-class Lax:
-    """A declared Lax pair: ``dL/dt = [L, M]`` for every value of the spectral parameter."""
-
-    spectral: str
-    L: Formula
-    M: Formula
-
-
-@dataclass(frozen=True)
-class Force:
-    """Newton's law of one coordinate: ``mass * acceleration = force``."""
-
-    coordinate: str
-    mass: Formula
-    force: Formula
-
-
-@dataclass(frozen=True)
-class Symmetry:
-    """An infinitesimal action, whose momentum map is emitted beside the dynamics.
-
-    Attributes:
-        name: Of the momentum map.
-        algebra: What acts.
-        element: Name of its generic element in the formulas; "" if they are none.
-        as_matrix: Whether the element is a matrix there, not the vector of its coefficients.
-        generators: How variables move, by name.
-        linear: Variables on whose stacked components the matrices of the algebra act.
-        time: How time moves, or None.
-        map: The momentum map paired with the element, where it is declared, or None.
-        side: ``"left"`` or ``"right"``.
-        form: One of `FORMS` if the components are the entries of a matrix, else "".
-        unit: Unit text of the momentum map.
-        doc: Free text for documents.
-    """
-
-    name: str
-    algebra: LieAlgebra
-    element: str = ""
-    as_matrix: bool = False
-    generators: Mapping[str, Formula] = field(default_factory=dict)
-    linear: tuple[str, ...] = ()
-    time: Formula | None = None
-    map: Formula | None = None
-    side: str = "left"
-    form: str = ""
-    unit: str = "1"
-    doc: str = ""
-
-    @property
-    def shape(self) -> Shape:
-        """Shape of the components as they are kept: the whole matrix, or a list."""
-        if self.form == "matrix":
-            return self.value_shape
-        return (self.algebra.dimension,) if self.algebra.dimension > 1 or self.form else ()
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, one for each basis vector."""
-        return component_names(self.name, self.shape, "" if self.form == "matrix" else self.form)
-
-    @property
-    def value_shape(self) -> Shape:
-        """Shape in formulas: that of the whole matrix where there is a form."""
-        size = matrix_size(self.algebra.dimension, self.form) if self.form else None
-        return self.shape if size is None else (size, size)
-
-
-@dataclass(frozen=True)
-class SpatialMomentum:
-    """A momentum as seen from space, emitted where the state has the attitude: ``Pi_spatial``.
-
-    Attributes:
-        momentum: What it is in the body.
-        conserved: Whether the energy knows nothing that is advected and no force acts, so that it
-            stays what it is.
-    """
-
-    momentum: Variable
-    conserved: bool
+    velocity: Variable
 
     @property
     def name(self) -> str:
         """Name of the observable."""
-        return f"{self.momentum.name}_spatial"
+        return f"{self.velocity.name}_momentum"
 
     @property
     def components(self) -> tuple[str, ...]:
-        """Names of the components, along the basis of the algebra."""
-        return component_names(self.name, self.momentum.shape, self.momentum.form)
+        """Names of the components, as those of the velocity."""
+        return component_names(self.name, self.velocity.shape, self.velocity.form)
 
 
 @dataclass(frozen=True)
-class Transformation:
-    """A map of the state that keeps the motion.
-
-    Attributes:
-        name: As declared.
-        map: What variables become; those left out stay.
-        reverses_time: Whether the motion becomes its reverse.
-        exchanges: What observables and momentum maps become.
-    """
-
-    name: str
-    map: Mapping[str, Formula]
-    reverses_time: bool
-    exchanges: Mapping[str, Formula]
-
-
-@dataclass(frozen=True)
-class ClaimedBracket:
-    """``{left, right} = value``, of scalars or vectors."""
-
-    left: Formula
-    right: Formula
-    value: Formula
-
-
-@dataclass(frozen=True)
-class Reduction:
-    """A submanifold of a system, on which some of its variables follow from the others.
+class Reduction(Submanifold):
+    """A submanifold of a system, with the system before.
 
     Attributes:
         whole: The system before.
-        section: What these variables are, by name.
-        where: Functions of all variables that vanish on the submanifold.
     """
 
-    whole: Spec
-    section: Mapping[str, Formula]
-    where: tuple[Formula, ...] = ()
+    whole: Spec = field(kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -345,6 +149,7 @@ class Spec:
             ``("claims", "conserved", 0)``; brackets by their places.
         inputs: What drives the system from outside, in declared order.
         time: The time, if formulas name it.
+        records: What tables gave that have no attribute here, by their keys.
     """
 
     name: str
@@ -385,6 +190,7 @@ class Spec:
     accepted: frozenset[tuple[str | int, ...]] = frozenset()
     inputs: tuple[Input, ...] = ()
     time: Time | None = None
+    records: Mapping[str, Any] = field(default_factory=dict)
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
@@ -424,17 +230,7 @@ class Spec:
     @property
     def spatial(self) -> tuple[SpatialMomentum, ...]:
         """The momenta seen from space; empty without an attitude that can be inverted."""
-        if self.attitude is None or self.algebra is None:
-            return ()
-        if self.attitude.form != "quaternion" and not inverse_by(self.algebra):
-            return ()
-        advected = self.having_role("advected")
-        names = {name for each in advected for name in (each.name, *each.components)}
-        energies = [f.tree for f in (self.lagrangian, self.hamiltonian) if f is not None]
-        used = {getattr(node, "name", "") for tree in energies for node in walk(tree)}
-        momenta = self.having_role("momentum")
-        free = not names & used and not self.is_driven
-        return tuple(SpatialMomentum(each, free) for each in momenta)
+        return spatial_momenta(self)
 
     @property
     def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:
@@ -469,3 +265,26 @@ class Spec:
         if self.algebra is not None:
             return "algebra"
         return "poisson" if self.poisson is not None else "configuration"
+
+    def restricted_to(self, submanifold: Submanifold) -> Spec:
+        """The Spec of the motion on a submanifold, where some variables follow from the others."""
+        section, where = submanifold.section, submanifold.where
+        # what follows from the state is named and emitted as velocities are
+        variables = tuple(
+            replace(
+                variable,
+                role="velocity" if variable.name in section else "coordinate",
+                block=(),
+                representation=None,
+            )
+            for variable in self.variables
+        )
+        whole = replace(self, observables=(), conserved=(), reduction=None)
+        return replace(
+            self,
+            algebra=None,
+            poisson=None,
+            invariance="left",
+            variables=variables,
+            reduction=Reduction(section, where, whole=whole),
+        )

@@ -1,25 +1,26 @@
-"""Routes: what each one starts from, so that the reader can say what is missing.
+"""Routes: what each one starts from and which module follows it. A route is registered here alone.
 
-Comes in: nothing. Goes out: a table by the names that specs use. How a route is followed is the
-business of `coadjoint.derive`; a test holds its table against this one.
+Comes in: nothing. Goes out: a table by the names that specs use, from which the schema, the checks
+of specs and `coadjoint.derive.registry` read. A new route is one line here and one module of
+`coadjoint.derive.routes`.
 Read next: `coadjoint.spec.consistency`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
-
-from coadjoint.spec.schema import SpecFile
 
 
 @dataclass(frozen=True)
-class Start:
-    """What a route starts from.
+class Route:
+    """A way from a spec to its equations of motion.
 
     Attributes:
-        kinds: The kinds of spec that it goes with, of those that `kinds_of` returns.
+        name: As specs write it.
+        kinds: The kinds of spec that it goes with, of those that `coadjoint.spec.kinds` names.
         energies: The tables of which it takes one; empty if it takes none.
         table: A table of its own, without which it cannot start; "" if none.
         options: Tables of its own that may be left out.
@@ -27,80 +28,72 @@ class Start:
             other routes it has momenta, or velocities of coordinates.
         emitted: Whether it may be the first of a spec. What moves in variables of its own, or
             leaves multipliers out, is there to be proved equal.
+        takes_driving: Whether inputs and time may act.
     """
 
+    name: str
     kinds: tuple[str, ...]
     energies: tuple[str, ...] = ()
     table: str = ""
     options: tuple[str, ...] = ()
     in_frame: bool = False
     emitted: bool = True
+    takes_driving: bool = True
+
+    @property
+    def module(self) -> str:
+        """Name of its module in `coadjoint.derive.routes`."""
+        return self.name.replace("-", "_")
 
 
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
+_ALGEBRA = ("algebra",)
+_SPACE = ("configuration", "poisson")
 #: What acts beside the energy, on routes where a rate of momenta is known.
 _DRIVES = ("forces", "dissipation")
-#: What acts by the bracket of the state.
-_RELAXES = ("double_bracket", "metriplectic")
-_ON_ALGEBRA = Start(("algebra",), _LAGRANGIAN, options=(*_DRIVES, *_RELAXES))
-_CHART = Start(("algebra",), _LAGRANGIAN, emitted=False)
-_IN_FRAME = Start(
-    ("algebra", "configuration"), _LAGRANGIAN, options=("constraints", *_DRIVES), in_frame=True
+#: The same, and what acts by the bracket of the state.
+_ACTS = (*_DRIVES, "double_bracket", "metriplectic")
+_on_algebra = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, options=_ACTS)
+_chart = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, emitted=False)
+_in_frame = partial(
+    Route,
+    kinds=("algebra", "configuration"),
+    energies=_LAGRANGIAN,
+    options=("constraints", *_DRIVES),
+    in_frame=True,
 )
+_lax = partial(Route, energies=_EITHER, takes_driving=False)
 
-STARTS: Mapping[str, Start] = MappingProxyType(
-    {
-        "euler-poincare": _ON_ALGEBRA,
-        "lie-poisson": Start(("algebra",), _EITHER, options=(*_DRIVES, *_RELAXES)),
-        "hamilton-pontryagin": _ON_ALGEBRA,
-        "clebsch": replace(_CHART, options=("clebsch",)),
-        "poincare": _ON_ALGEBRA,
-        "matrix-euler-poincare": _ON_ALGEBRA,
-        "newton-euler": _ON_ALGEBRA,
-        "cayley-klein": _CHART,
-        "kaluza-klein": _CHART,
-        "complexification": Start(("algebra",), _HAMILTONIAN),
-        "manakov": Start(("algebra",), _EITHER),
-        "lax": Start(("algebra", "poisson"), _EITHER, "lax"),
-        "nambu": Start(("algebra", "nambu"), _EITHER, options=(*_DRIVES, *_RELAXES)),
-        "poisson": Start(("poisson",), _HAMILTONIAN, options=(*_DRIVES, *_RELAXES)),
-        "canonical": Start(("canonical", "configuration"), _EITHER, options=_DRIVES),
-        "euler-lagrange": Start(("configuration", "canonical"), _LAGRANGIAN, options=_DRIVES),
-        "newton": Start(("configuration", "poisson"), (), "newton"),
-        "alignment": Start(("configuration", "poisson"), (), "newton", emitted=False),
-        "nonholonomic": _IN_FRAME,
-        "hamel": replace(_IN_FRAME, emitted=False),
-    }
+_ROUTES = (
+    _on_algebra("euler-poincare"),
+    _on_algebra("lie-poisson", energies=_EITHER),
+    _on_algebra("hamilton-pontryagin"),
+    _chart("clebsch", options=("clebsch",)),
+    _on_algebra("poincare"),
+    _on_algebra("matrix-euler-poincare"),
+    _on_algebra("newton-euler"),
+    _chart("cayley-klein"),
+    _chart("kaluza-klein"),
+    Route("complexification", _ALGEBRA, _HAMILTONIAN),
+    _lax("manakov", _ALGEBRA),
+    _lax("lax", ("algebra", "poisson"), table="lax"),
+    Route("nambu", ("algebra", "nambu"), _EITHER, options=_ACTS),
+    Route("poisson", ("poisson",), _HAMILTONIAN, options=_ACTS),
+    Route("canonical", ("canonical", "configuration"), _EITHER, options=_DRIVES),
+    Route("euler-lagrange", ("configuration", "canonical"), _LAGRANGIAN, options=_DRIVES),
+    Route("newton", _SPACE, table="newton"),
+    Route("alignment", _SPACE, table="newton", emitted=False),
+    _in_frame("nonholonomic"),
+    _in_frame("hamel", emitted=False),
 )
+#: Every route by its name.
+ROUTES: Mapping[str, Route] = MappingProxyType({route.name: route for route in _ROUTES})
 
 
 def energies_of(route: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
     """The tables of which a route takes one: a bracket that pairs nothing knows no Lagrangian."""
-    energies = STARTS[route].energies
+    energies = ROUTES[route].energies
     if "poisson" in kinds and "canonical" not in kinds:
         return tuple(each for each in energies if each != "lagrangian")
     return energies
-
-
-def is_in_frame(file: SpecFile) -> bool:
-    """Whether the state has velocities along a frame: what constraints bind, or their routes move.
-
-    >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
-    True
-    """
-    return file.constraints is not None or any(STARTS[route].in_frame for route in file.routes)
-
-
-def kinds_of(file: SpecFile) -> tuple[str, ...]:
-    """The kinds that a spec is of: ``algebra``, ``configuration``, or ``poisson`` and its way.
-
-    >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None))
-    ('configuration',)
-    """
-    if file.algebra is not None:
-        return ("algebra",)
-    if file.poisson is None:
-        return ("configuration",)
-    ways = ("nambu", "brackets", "canonical")
-    return ("poisson", *(way for way in ways if getattr(file.poisson, way) is not None))

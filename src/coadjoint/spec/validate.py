@@ -1,4 +1,4 @@
-"""Validate: a TOML text to a `SpecFile`, with every fault of its form at its line.
+"""Validate: a TOML text to a checked file, with every fault of its form at its line.
 
 Comes in: a `Source`. Goes out: the checked tables, or one error that lists all faults.
 Read next: `coadjoint.spec.sections.structure`.
@@ -21,10 +21,10 @@ from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.core.decimals import read_float
 from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, Span
 from coadjoint.spec.core.source import Source, joined, shown
-from coadjoint.spec.schema import SpecFile
-from coadjoint.spec.sections.algebra_schema import Part
+from coadjoint.spec.schema import Head, SpecFile
 
 #: Faults that one message shows at the most; each takes three rows of a screen.
 MOST_FAULTS = 6
@@ -55,7 +55,7 @@ _LIMIT = re.compile(r"\(([A-Z]+_[A-Z]+)\)")
 _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
-def validate(source: Source) -> SpecFile:
+def validate(source: Source) -> Head:
     """The tables of a spec, each key known and each value of its kind.
 
     Raises:

@@ -13,7 +13,7 @@ the motion of (M, z) is :math:`J \nabla H`, since :math:`\partial H/\partial M =
 :math:`\dot M_k = D_k l_c + \eta^i \langle p, [D_i, D_k] \rangle`. The bracket is antisymmetric, so
 that energy is kept exactly; the Jacobi identity it need not satisfy, because the brackets of the
 fields leave the distribution. All is written at the state (eta, z): no matrix is inverted.
-Comes in: a Distribution and the Lagrangian. Goes out: momenta and tensor.
+Comes in: a Setting. Goes out: momenta and tensor.
 Read next: `coadjoint.derive.routes.hamel`, `coadjoint.prove.almost_poisson`.
 """
 
@@ -21,27 +21,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from coadjoint.derive.mechanics.distribution import Distribution, Row
+from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 
 Tensor = tuple[Row, ...]
 
 
-def momenta_along(
-    found: Distribution, lagrangian: Element, fields: Sequence[Sequence[Element]]
-) -> Row:
+def momenta_along(setting: Setting, fields: Sequence[Sequence[Element]]) -> Row:
     """``<dl/dxi, D>`` along fields D of the frame, in all velocities."""
-    field = found.setting.field
-    p = field.gradient(lagrangian, found.frame.velocities)
+    field, p = setting.field, mechanics(setting).momenta
     return tuple(
         field.sum(a * b for a, b in zip(p, along, strict=True) if a and b) for along in fields
     )
 
 
-def reduced_momenta(found: Distribution, lagrangian: Element) -> list[tuple[str, Element]]:
+def reduced_momenta(found: Distribution) -> list[tuple[str, Element]]:
     """``Omega_momentum``, ...: the momenta along the columns of B, by name, in state order."""
     columns = list(zip(*found.B, strict=True))
-    values = dict(zip(found.independent, momenta_along(found, lagrangian, columns), strict=True))
+    values = dict(zip(found.independent, momenta_along(found.setting, columns), strict=True))
     return [
         (name, values[velocity])
         for each in found.setting.spec.reduced_momenta
@@ -49,23 +48,22 @@ def reduced_momenta(found: Distribution, lagrangian: Element) -> list[tuple[str,
     ]
 
 
-def almost_poisson(found: Distribution, lagrangian: Element) -> Tensor | None:
+@once
+def almost_poisson(setting: Setting) -> Tensor | None:
     """Brackets of the state, velocities standing for their momenta; None where there are none.
 
     Constraints that are kept give the momenta no free rates, and affine ones make the energy
     another function than H.
     """
+    found = distribution(setting)
     if found.kept or not found.is_linear:
         return None
-    setting, columns = found.setting, list(zip(*found.B, strict=True))
-    return brackets(
-        found, lagrangian, dict(zip(found.independent, columns, strict=True)), setting.state
-    )
+    columns = zip(*found.B, strict=True)
+    return brackets(found, dict(zip(found.independent, columns, strict=True)), setting.state)
 
 
 def brackets(
     found: Distribution,
-    lagrangian: Element,
     fields: Mapping[str, Sequence[Element]],
     names: Sequence[str],
 ) -> Tensor:
@@ -73,7 +71,6 @@ def brackets(
 
     Args:
         found: Where the fields live.
-        lagrangian: l in all velocities.
         fields: D_k by the name that stands for M_k.
         names: What rows and columns are: names of fields, or positions.
     """
@@ -83,7 +80,7 @@ def brackets(
     def bracket(a: str, b: str) -> Element:
         if a in fields and b in fields:
             turned = frame.bracket(fields[a], fields[b])
-            return -momenta_along(found, lagrangian, [turned])[0]
+            return -momenta_along(found.setting, [turned])[0]
         if a in fields:
             return -moved[a][b]
         return moved[b][a] if b in fields else field.zero

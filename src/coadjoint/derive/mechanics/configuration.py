@@ -1,10 +1,12 @@
-r"""Configuration spaces: what the routes on coordinates q and velocities v share.
+r"""Mass matrix and momenta: what every route from a Lagrangian starts from, built once.
 
-A Lagrangian l(q, v) has momenta :math:`p = \partial l / \partial v`, a mass matrix
-:math:`M = \partial^2 l / \partial v^2` and the energy :math:`E = p \cdot v - l`.
-Comes in: a Setting without an algebra. Goes out: these pieces, and inverses block by block. No
+A Lagrangian l(z, v) in the velocities v of a frame and the positions z has momenta
+:math:`p = \partial l / \partial v`, a mass matrix :math:`M = \partial^2 l / \partial v^2` and the
+energy :math:`E = p \cdot v - l`. The velocities are those along an algebra, those of coordinates,
+or both.
+Comes in: a Setting with a Lagrangian. Goes out: these pieces, and inverses block by block. No
 route's result is used here.
-Read next: `coadjoint.derive.routes.euler_lagrange`.
+Read next: `coadjoint.derive.mechanics.legendre`, `coadjoint.derive.routes.euler_lagrange`.
 """
 
 from __future__ import annotations
@@ -13,41 +15,48 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.interpret import determinant, inverse
-from coadjoint.derive.mechanics.legendre import LARGEST_BLOCK, Matrix, coupled_blocks
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.mechanics.frames import Frame, frame_of
+from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import apply, determinant, dot, inverse
 from coadjoint.exact.regular import witness_regular
 from coadjoint.spec import Formula
 
+#: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.
+LARGEST_BLOCK = 3
+
+Matrix = tuple[tuple[Element, ...], ...]
 #: What cannot be inverted and which places it concerns, as an error to raise.
 Refuse = Callable[[str, Sequence[int]], DerivationError]
 
 
 @dataclass(frozen=True)
 class Mechanics:
-    """A Lagrangian on coordinates with its derivatives.
+    """A Lagrangian with its derivatives.
 
     Attributes:
         setting: The spec and its field.
-        formula: What was declared, for messages.
-        lagrangian: l(q, v).
+        lagrangian: l(z, v) in all velocities of the frame.
     """
 
     setting: Setting
-    formula: Formula
     lagrangian: Element
+
+    @property
+    def frame(self) -> Frame:
+        """The velocities and their fields."""
+        return frame_of(self.setting)
 
     @cached_property
     def momenta(self) -> tuple[Element, ...]:
         """``dl/dv_i``."""
-        return self.setting.field.gradient(self.lagrangian, self.setting.velocities)
+        return self.setting.field.gradient(self.lagrangian, self.frame.velocities)
 
     @cached_property
     def mass(self) -> Matrix:
         """``M_ij = d2l/dv_i dv_j``."""
-        field, names = self.setting.field, self.setting.velocities
+        field, names = self.setting.field, self.frame.velocities
         return tuple(field.gradient(momentum, names) for momentum in self.momenta)
 
     @cached_property
@@ -64,9 +73,8 @@ class Mechanics:
     @cached_property
     def energy(self) -> Element:
         """``E = v . dl/dv - l``."""
-        velocities = self.setting.elements(self.setting.velocities)
-        field = self.setting.field
-        return _along(field, self.momenta, velocities) - self.lagrangian
+        velocities = self.setting.elements(self.frame.velocities)
+        return dot(self.momenta, velocities) - self.lagrangian
 
     @cached_property
     def inverse_mass(self) -> Matrix:
@@ -77,9 +85,32 @@ class Mechanics:
         """
         return inverse_in_blocks(self.setting.field, self.mass, self.refusal)
 
+    def check_quadratic(self, hint: str = "") -> None:
+        """The mass matrix may depend on anything but velocities.
+
+        Raises:
+            DerivationError: It depends on some, with the hint.
+        """
+        names = self.frame.velocities
+        for row, name in zip(self.mass, names, strict=True):
+            found = sorted(set().union(*map(self.setting.field.reach, row)) & set(names))
+            if found:
+                message = (
+                    f"the Lagrangian is not quadratic in the velocities: its second derivative by "
+                    f"{name} depends on {', '.join(found)}; expected a kinetic energy quadratic in "
+                    f"the velocities. {hint}"
+                )
+                raise fault(self.setting, self._formula, message.rstrip(), found[0])
+
+    @property
+    def _formula(self) -> Formula:
+        """What was declared, for messages."""
+        assert self.setting.spec.lagrangian is not None, "the reader asks for a Lagrangian"
+        return self.setting.spec.lagrangian
+
     def refusal(self, problem: str, places: Sequence[int]) -> DerivationError:
         """Why velocities cannot be solved for."""
-        names = [self.setting.velocities[i] for i in places]
+        names = [self.frame.velocities[i] for i in places]
         if problem == SINGULAR:
             problem += "; expected every velocity in the kinetic energy"
             remedy = f"Add the missing kinetic term of {' and '.join(names)}."
@@ -88,24 +119,23 @@ class Mechanics:
         else:
             remedy = "Declare momenta: the kernel then solves for the velocities."
         message = f"the mass matrix d2l/d({', '.join(names)})2 {problem}. {remedy}"
-        return fault(self.setting, self.formula, message, names[0])
+        return fault(self.setting, self._formula, message, names[0])
 
 
 SINGULAR = "has determinant 0"
 UNKNOWN = "has a determinant that may be 0 everywhere: no point was found where it is certainly not"
 
 
+@once
 def mechanics(setting: Setting) -> Mechanics:
     """The declared Lagrangian with its derivatives."""
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian"
-    return Mechanics(setting, formula, setting.formula(formula))
+    return Mechanics(setting, setting.lagrangian)
 
 
 def declared_energy(setting: Setting) -> Element | None:
     """The energy of coordinates and velocities that the spec knows; None if it knows none."""
     if setting.spec.hamiltonian is not None:
-        return setting.formula(setting.spec.hamiltonian)
+        return setting.hamiltonian
     return mechanics(setting).energy if setting.spec.lagrangian is not None else None
 
 
@@ -115,6 +145,17 @@ def in_state_order(setting: Setting, rates: Mapping[str, Element]) -> tuple[Elem
 
 
 # -- solving --------------------------------------------------------------------------------------
+
+
+def coupled_blocks(mass: Matrix) -> list[tuple[int, ...]]:
+    """Positions that the mass matrix couples, as its connected blocks."""
+    blocks: list[set[int]] = []
+    for i, row in enumerate(mass):
+        linked = {i} | {j for j, entry in enumerate(row) if entry != 0}
+        meeting = [block for block in blocks if block & linked]
+        blocks = [block for block in blocks if not block & linked]
+        blocks.append(linked.union(*meeting))
+    return sorted(tuple(sorted(block)) for block in blocks)
 
 
 def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
@@ -141,11 +182,6 @@ def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
             for j, entry in zip(block, row, strict=True):
                 found[i][j] = entry
     return tuple(map(tuple, found))
-
-
-def applied(field: Field, matrix: Matrix, vector: Sequence[Element]) -> tuple[Element, ...]:
-    """The matrix times a column."""
-    return tuple(_along(field, row, vector) for row in matrix)
 
 
 def conjugates(
@@ -179,11 +215,7 @@ def conjugates(
             )
     rest = dict.fromkeys(names, field.zero)
     known = [y - field.substitute(slope, rest) for y, slope in zip(values, slopes, strict=True)]
-    return applied(field, inverse_in_blocks(field, hessian, refuse), known)
-
-
-def _along(field: Field, a: Sequence[Element], b: Sequence[Element]) -> Element:
-    return field.sum(x * y for x, y in zip(a, b, strict=True) if x and y)
+    return apply(inverse_in_blocks(field, hessian, refuse), known)
 
 
 def fault(setting: Setting, formula: Formula, message: str, found: str) -> DerivationError:

@@ -12,9 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.equations import Exact
+from coadjoint.derive.emitted import emitted
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
-from coadjoint.derive.mechanics.configuration import fault
+from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.kinematics import (
     Kinematics,
@@ -23,14 +23,13 @@ from coadjoint.derive.mechanics.kinematics import (
     multiplier_name,
     rate_name,
 )
-from coadjoint.derive.mechanics.legendre import coupled_blocks
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
-from coadjoint.derive.observables import observables
+from coadjoint.derive.records import Exact
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.roots import lifted
 from coadjoint.limits import COUPLED_VELOCITIES
-from coadjoint.poisson.ranks import generic_rank
 from coadjoint.spec.model import Section
 
 
@@ -128,7 +127,6 @@ class ConstrainedMotion(Kinematics):
 
 def emission(
     motion: ConstrainedMotion,
-    lagrangian: Element,
     definitions: Sequence[Definition],
     mass: Matrix,
     known: Sequence[Element],
@@ -138,13 +136,12 @@ def emission(
 
     Args:
         motion: The kinematics.
-        lagrangian: l in all velocities.
         definitions: What a route computes before the solve.
         mass: The reduced mass matrix of eta.
         known: What it times ``d eta/dt`` is.
         reactions: What rests on the accelerations.
     """
-    setting, frame = motion.frame.setting, motion.frame
+    setting = motion.frame.setting
     field = setting.field
     solves = motion.solves(mass, known)
     for solve in solves:
@@ -153,32 +150,30 @@ def emission(
     moving = dict(zip(motion.distribution.independent, motion.accelerations, strict=True))
     moving |= motion.position_rates
     rates = tuple(moving[name] for name in setting.state)
-    xi = setting.elements(frame.velocities)
-    momenta = field.gradient(lagrangian, frame.velocities)
-    energy = field.sum(p * x for p, x in zip(momenta, xi, strict=True)) - lagrangian
+    energy = mechanics(setting).energy
     closed = field.substitute(energy, motion.distribution.solved)
     short = lifted(field, closed)  # sin^2 + cos^2 = 1, where velocities are along a turning frame
     energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
     along = [
-        *reduced_momenta(motion.distribution, lagrangian),
-        *section_momenta(motion.distribution, lagrangian),
+        *reduced_momenta(motion.distribution),
+        *section_momenta(motion.distribution),
     ]
     return Exact(
         (*definitions, *solved, *motion.computed(reactions)),
         rates,
         energy,
-        observables(setting, energy, along),
-        almost_poisson(motion.distribution, lagrangian),
+        emitted(setting, energy, along),
+        almost_poisson(setting),
         solves,
         residuals,
     )
 
 
-def section_momenta(found: Distribution, lagrangian: Element) -> list[tuple[str, Element]]:
+def section_momenta(found: Distribution) -> list[tuple[str, Element]]:
     """``<dl/dxi, B sigma>`` of every declared section sigma, in all velocities."""
-    setting, names = found.setting, found.frame.velocities
-    momenta = setting.field.gradient(lagrangian, names)
+    setting = found.setting
+    momenta = mechanics(setting).momenta
     return [
         (
             each.name,

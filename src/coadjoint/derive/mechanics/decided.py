@@ -18,9 +18,9 @@ import random
 from collections.abc import Iterable, Mapping
 from math import prod
 
-from coadjoint.algebra.linear import PRIME
 from coadjoint.exact import Element, Field
-from coadjoint.poisson.ranks import Residue, residue
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.residues import Residue, residue
 
 #: Points modulo the prime, with the same parameters.
 POINTS = 2

@@ -21,10 +21,10 @@ from functools import cached_property
 
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import fault
-from coadjoint.derive.mechanics.frames import Frame
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.mechanics.frames import Frame, frame_of
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
-from coadjoint.poisson.ranks import generic_rank
+from coadjoint.exact.ranks import generic_rank
 from coadjoint.spec.model import Constraint
 
 Row = tuple[Element, ...]
@@ -128,6 +128,7 @@ class Distribution:
         return all(field.is_zero(field.substitute(e.residual, rest)) for e in self.equations)
 
 
+@once
 def distribution(setting: Setting) -> Distribution:
     """The distribution of the declared constraints.
 
@@ -135,7 +136,7 @@ def distribution(setting: Setting) -> Distribution:
         DerivationError: A constraint is not linear in the velocities, or the constraints depend on
             each other or contradict each other.
     """
-    frame = Frame(setting)
+    frame = frame_of(setting)
     equations = [
         equation
         for constraint in setting.spec.constraints

@@ -1,34 +1,26 @@
 """Emission: what a route from a Lagrangian over an algebra hands over beside its rates.
 
-Comes in: the rates of the declared state, and the Legendre transform. Goes out: the `Exact` part of
+Comes in: the rates of the declared state. Goes out: the `Exact` part of
 its Equations: velocities, energy, observables and the bracket, the same on every such route.
 Read next: `coadjoint.derive.structure`.
 """
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Exact, Step, symbol
-from coadjoint.derive.mechanics.legendre import LegendreTransform
-from coadjoint.derive.observables import observables
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Exact, Step, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 
 
-def lagrangian_of(setting: Setting) -> Element:
-    """The declared Lagrangian, which the reader asks for on these routes."""
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian on this route"
-    return setting.formula(formula)
-
-
-def emission(setting: Setting, transform: LegendreTransform, rates: tuple[Element, ...]) -> Exact:
+def emission(setting: Setting, rates: tuple[Element, ...]) -> Exact:
     """The equations in momenta, velocities as definitions."""
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = setting.field.substitute(transform.energy, velocities)
-    seen = observables(setting, energy)
+    transform = legendre(setting)
+    seen = emitted(setting, transform.energy)
     tensor = poisson_structure(setting).tensor
-    return Exact(transform.definitions, rates, energy, seen, tensor, transform.solves)
+    return Exact(transform.definitions, rates, transform.energy, seen, tensor, transform.solves)
 
 
 def velocities_step(transform: LegendreTransform) -> Step:

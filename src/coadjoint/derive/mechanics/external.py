@@ -22,12 +22,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from coadjoint.derive.equations import Equations, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.mechanics.configuration import applied, mechanics
-from coadjoint.derive.mechanics.legendre import Matrix
+from coadjoint.derive.mechanics.configuration import Matrix, mechanics
+from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
+from coadjoint.exact.dense import apply
 from coadjoint.spec import Spec
 
 #: What may be added, as LaTeX.
@@ -120,7 +121,7 @@ def added_rates(setting: Setting) -> list[Element]:
         for name, force, weight in zip(setting.momenta, along, setting.weights, strict=True):
             found[name] = found.get(name, field.zero) + force * weight
     elif any(along):
-        moved = applied(field, mechanics(setting).inverse_mass, along)
+        moved = apply(mechanics(setting).inverse_mass, along)
         found |= zip(velocities, moved, strict=True)
     return [found.get(name, field.zero) for name in setting.state]
 
@@ -145,8 +146,6 @@ def relaxed_rates(free: Equations) -> tuple[Element, ...]:
     if relaxation is None:
         return (field.zero,) * len(setting.state)
     if relaxation.S is not None:
-        return applied(
-            field, metric(setting), field.gradient(setting.formula(relaxation.S), setting.state)
-        )
+        return apply(metric(setting), field.gradient(setting.formula(relaxation.S), setting.state))
     assert tensor is not None, "the reader asks for a bracket"
-    return applied(field, tensor, applied(field, metric(setting), free.exact.rates))
+    return apply(tensor, apply(metric(setting), free.exact.rates))

@@ -25,7 +25,7 @@ from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec.model import Reconstructed
-from coadjoint.spec.sections.followed import ATTITUDE, CONTACT
+from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT
 
 
 def rates_followed(setting: Setting, found: Distribution | None) -> tuple[tuple[str, Element], ...]:

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coadjoint.derive.mechanics.configuration import applied, fault, inverse_in_blocks
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
+from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import moved_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import apply
 from coadjoint.spec.model import Force
 
 
+@once
 def accelerations(setting: Setting) -> tuple[Element, ...]:
     """``M^-1 F`` of every coordinate, in the order of the velocities.
 
@@ -43,5 +45,5 @@ def _acceleration(setting: Setting, law: Force) -> tuple[Element, ...]:
     if not isinstance(mass, tuple):
         return tuple(inverse[0][0] * component for component in force)
     columns = len(force) // len(mass)  # 1, or those of a matrix with one row for each particle
-    moved = [applied(field, inverse, force[k::columns]) for k in range(columns)]
+    moved = [apply(inverse, force[k::columns]) for k in range(columns)]
     return tuple(moved[k][row] for row in range(len(mass)) for k in range(columns))

@@ -20,7 +20,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 from coadjoint.spec import Variable
 
@@ -112,6 +112,12 @@ class Frame:
     def slopes(self, function: Element) -> Vector:
         """``X_k f`` for every k."""
         return tuple(self.along(self.unit(k), function) for k in range(len(self.velocities)))
+
+
+@once
+def frame_of(setting: Setting) -> Frame:
+    """The frame of a system."""
+    return Frame(setting)
 
 
 def frame_rates(frame: Frame) -> Mapping[str, Element]:

@@ -13,19 +13,24 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from coadjoint.derive.interpret import determinant, inverse
+from coadjoint.derive.mechanics.configuration import (
+    LARGEST_BLOCK,
+    Matrix,
+    Mechanics,
+    coupled_blocks,
+    mechanics,
+)
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel, solver_names
-from coadjoint.derive.setting import Setting, sampled_setting
+from coadjoint.derive.setting import Setting, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.regular import certain_minors, witness_regular
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec
 
-#: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.
-LARGEST_BLOCK = 3
-
-Matrix = tuple[tuple[Element, ...], ...]
+#: The way out where velocities cannot be solved for.
+_HINT = "Give a [hamiltonian] and the route lie-poisson instead."
 
 
 @dataclass(frozen=True)
@@ -36,7 +41,7 @@ class LegendreTransform:
         momenta: ``dl/dxi_i`` along the basis of the algebra, in velocities and advected quantities.
         velocities: ``xi_i`` along the basis, in momenta and advected quantities; its own symbol
             where the kernel solves for it.
-        energy: ``<mu, xi> - l`` with mu the symbols of the momenta.
+        energy: ``<mu, xi> - l`` in terms of the momenta; what the kernel solves for keeps its name.
         definitions: What the kernel computes to solve for velocities, and these; then the other
             velocities by name.
         solves: What the kernel solves; see `coadjoint.derive.mechanics.solver`.
@@ -49,18 +54,40 @@ class LegendreTransform:
     solves: tuple[Solve, ...]
 
 
-def legendre_transform(setting: Setting, lagrangian: Element) -> LegendreTransform:
+@once
+def legendre(setting: Setting) -> LegendreTransform:
+    """The transform of the declared Lagrangian; see `legendre_transform`."""
+    return legendre_transform(mechanics(setting))
+
+
+@once
+def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
+    """The declared Hamiltonian, or the energy of the declared Lagrangian.
+
+    Returns:
+        h, and what the kernel solves for velocities, which keep their names in h. Partial
+        derivatives of such an h at fixed velocities are those of h, since ``<mu, xi> - l`` is
+        stationary in xi.
+    """
+    if setting.spec.hamiltonian is not None:
+        return setting.hamiltonian, ()
+    if not setting.momenta:  # velocities are themselves state
+        return mechanics(setting).energy, ()
+    transform = legendre(setting)
+    return transform.energy, transform.solves
+
+
+def legendre_transform(of: Mechanics) -> LegendreTransform:
     """Transform l(xi, a), quadratic in xi, block by block of coupled velocities.
 
     Raises:
         DerivationError: l is not quadratic in the velocities, or has no invertible transform.
         LimitError: l couples more velocities than docs/limits.md allows.
     """
+    setting, mass = of.setting, of.mass
     field, names = setting.field, setting.velocities
-    momenta = field.gradient(lagrangian, names)
-    mass = mass_matrix(setting, lagrangian)
-    _check_quadratic(setting, mass)
-    known = known_side(setting, momenta)
+    of.check_quadratic(_HINT)
+    known = known_side(setting, of.momenta)
     velocities: dict[str, Element] = {}
     solves: list[Solve] = []
     for block in coupled_blocks(mass):
@@ -72,22 +99,16 @@ def legendre_transform(setting: Setting, lagrangian: Element) -> LegendreTransfo
             _check_pivots(setting, own, block)
             solves.append(Solve(own, rest, block, [names[i] for i in block]))
     pairs = zip(setting.momenta, names, setting.weights, strict=True)
-    energy = sum((field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs), -lagrangian)
+    energy = sum((field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs), -of.lagrangian)
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
     return LegendreTransform(
-        momenta,
+        of.momenta,
         tuple(velocities.get(name, field[name]) for name in names),
-        energy,
+        field.substitute(energy, velocities),
         (*solved, *written),
         tuple(solves),
     )
-
-
-def mass_matrix(setting: Setting, lagrangian: Element) -> Matrix:
-    """The second derivatives of a Lagrangian by the velocities."""
-    slopes = setting.field.gradient(lagrangian, setting.velocities)
-    return tuple(setting.field.gradient(slope, setting.velocities) for slope in slopes)
 
 
 def known_side(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
@@ -108,39 +129,12 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     setting = sampled_setting(spec, "velocity", random.Random(1))  # noqa: S311 (no secret)
     try:
-        lagrangian = setting.formula(spec.lagrangian)
+        mass = mechanics(setting).mass
     except DerivationError:  # the route will say so
         return ()
-    blocks = coupled_blocks(mass_matrix(setting, lagrangian))
+    blocks = coupled_blocks(mass)
     coupled = (block for block in blocks if LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES)
     return tuple(name for block in coupled for name in solver_names(block))
-
-
-def _check_quadratic(setting: Setting, mass: Matrix) -> None:
-    """The second derivatives of l may depend on anything but velocities."""
-    for row, name in zip(mass, setting.velocities, strict=True):
-        for entry in row:
-            found = setting.field.reach(entry) & set(setting.velocities)
-            if found:
-                raise _refusal(
-                    setting,
-                    f"the Lagrangian is not quadratic in the velocities: its second derivative by "
-                    f"{name} depends on {', '.join(sorted(found))}; expected"
-                    " a kinetic energy quadratic in the velocities. Give a [hamiltonian] and the "
-                    "route lie-poisson instead.",
-                    name,
-                )
-
-
-def coupled_blocks(mass: Matrix) -> list[tuple[int, ...]]:
-    """Positions that the mass matrix couples, as its connected blocks."""
-    blocks: list[set[int]] = []
-    for i, row in enumerate(mass):
-        linked = {i} | {j for j, entry in enumerate(row) if entry != 0}
-        meeting = [block for block in blocks if block & linked]
-        blocks = [block for block in blocks if not block & linked]
-        blocks.append(linked.union(*meeting))
-    return sorted(tuple(sorted(block)) for block in blocks)
 
 
 def _written_out(

@@ -12,16 +12,15 @@ and velocities :math:`\eta + d`, with the least kinetic energy of the change d,
 
 the matrix of the accelerations, so that :math:`L D L^T` is shared with them. It is one step, since
 R is affine in the velocities.
-Comes in: Equations with constraints that are kept. Goes out: Equations whose rates are that state.
+Comes in: exact equations with constraints that are kept. Goes out: exact equations with that state
+in place of the rates.
 Read next: `coadjoint.prove.projection`.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from coadjoint.derive.equations import Equations, Exact
 from coadjoint.derive.mechanics.decided import Decided
+from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.kinematics import (
     Kinematics,
     kept_rows,
@@ -29,21 +28,22 @@ from coadjoint.derive.mechanics.kinematics import (
     rate_name,
     shift_name,
 )
-from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel
+from coadjoint.derive.mechanics.solver import Solve, definitions_under, solve_in_kernel
+from coadjoint.derive.records import Exact
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
 
-def projected(equations: Equations) -> Equations | None:
+def nearest_state(setting: Setting, found: Distribution | None, exact: Exact) -> Exact | None:
     """The nearest state on the constraints, in place of the rates; None where none is kept.
 
     Definitions are those of the equations on which matrix and residuals rest, then the solve.
     """
-    found = equations.distribution
     if found is None or not found.kept:
         return None
-    field, exact = equations.setting.field, equations.exact
+    field = setting.field
     shifts = {rate_name(v): shift_name(n) for n, v in enumerate(found.independent)}
-    sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(equations))}
+    sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(found))}
     solves = tuple(
         Solve(
             solve.matrix,
@@ -60,22 +60,19 @@ def projected(equations: Equations) -> Equations | None:
     }
     needed = [e for solve in solves for row in (*solve.matrix, solve.known) for e in row]
     needed += [residual for _, residual in exact.residuals]
-    definitions = equations.definitions_of(needed)
-    decided = Decided(field, equations.setting.state)
+    definitions = definitions_under(field, exact.definitions, needed)
+    decided = Decided(field, setting.state)
     for name, value in definitions:
         decided.define(name, value)
     definitions += [line for solve in solves for line in solve_in_kernel(field, solve, decided)]
-    state = tuple(field[name] + changes.get(name, field.zero) for name in equations.setting.state)
-    nearest = Exact(tuple(definitions), state, None, (), None, solves, exact.residuals)
-    return replace(equations, exact=nearest, steps=())
+    state = tuple(field[name] + changes.get(name, field.zero) for name in setting.state)
+    return Exact(tuple(definitions), state, None, (), None, solves, exact.residuals)
 
 
-def _residuals(equations: Equations) -> list[Element]:
+def _residuals(found: Distribution) -> list[Element]:
     """What vanishes on the constraints that are kept, in eta, with entries by their names."""
-    found = equations.distribution
-    assert found is not None, "asked for only where constraints are kept"
-    field, motion = equations.setting.field, Kinematics(found)
-    eta = equations.setting.elements(found.independent)
+    field, motion = found.setting.field, Kinematics(found)
+    eta = found.setting.elements(found.independent)
     return [
         field.sum([*(motion.named(a) * x for a, x in zip(row, eta, strict=True)), motion.named(b)])
         for *row, b in kept_rows(found)

@@ -10,7 +10,7 @@ so that :math:`\mathrm{Ad}^*_{g^{-1}} \mu` is conserved where no torque acts; al
 right-invariant one :math:`\mathrm{Ad}^*_g \mu` is. Its components are
 :math:`\langle \mu, g^{-1} e_i g \rangle`: products of matrices or of quaternions.
 Comes in: a Setting with an attitude among its advected quantities. Goes out: these components.
-Read next: `coadjoint.derive.observables`.
+Read next: `coadjoint.derive.emitted`.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.algebra.attitudes import has_fixed_row
+from coadjoint.algebra.attitudes import has_fixed_row, turning_places
 from coadjoint.algebra.catalogue import inverse_by
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import size
-from coadjoint.derive.equations import Relation
-from coadjoint.derive.interpret import Matrix, inverse
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.records import Relation
+from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
+from coadjoint.exact.dense import Matrix, apply, inverse, product, scale, transpose
+from coadjoint.exact.linear import Span
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import apply, matmul, scale, transpose
 
 
+@once
 def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     """``Ad*_{g^-1} mu`` along the basis; ``Ad*_g mu`` if the motion is right-invariant."""
     attitude = setting.spec.attitude
@@ -37,7 +37,11 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     g = setting.elements(attitude.components)
     mu = setting.elements(setting.momenta)
     if attitude.form == "quaternion":
-        return _turned(setting, Quaternion(*g), mu)
+        places = turning_places(setting.algebra)
+        assert places is not None, "quaternions turn along the rotations"
+        turned = _turned(setting, Quaternion(*g), [mu[place] for place in places])
+        along = dict(zip(places, turned, strict=True))
+        return tuple(along.get(place, m) for place, m in enumerate(mu))
     matrix = _whole(setting, g)
     outer, inner = inverse_of(setting.algebra, matrix), matrix
     if setting.sign == -1:
@@ -49,7 +53,7 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
             tuple(setting.field.zero + X.get((i, j), 0) for j in range(len(matrix)))
             for i in range(len(matrix))
         )
-        seen = matmul(matmul(outer, dense), inner)
+        seen = product(product(outer, dense), inner)
         parts = [
             m * w * seen[i][j] for m, row in zip(mu, coordinates, strict=True) for i, j, w in row
         ]

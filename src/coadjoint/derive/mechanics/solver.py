@@ -13,7 +13,7 @@ Read next: `coadjoint.derive.mechanics.decided`, which finds the zeros;
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -196,6 +196,19 @@ class _Elimination:
         value = self.decided.define(name, value)
         self.lines.append((name, value))
         return self.decided.numbers.get(name, self.field[name])
+
+
+def definitions_under(
+    field: Field, definitions: Sequence[Definition], elements: Iterable[Element]
+) -> list[Definition]:
+    """The definitions on which elements rest, in their order."""
+    wanted = frozenset[str]().union(*map(field.reach, elements))
+    found = []
+    for name, value in reversed(definitions):
+        if name in wanted:
+            wanted |= field.reach(value)
+            found.append((name, value))
+    return found[::-1]
 
 
 def factors(

@@ -16,24 +16,24 @@ Read next: `coadjoint.groups.quaternions`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
+from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.vectors import Vector, add, cross, dot, scale
 from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """The motion of the alignment quaternion.
 
     Raises:
         DerivationError: There is not one particle in three dimensions, or a mass is zero.
     """
-    setting = setting_of(given)
     _check_particle(setting)
     field, r = setting.field, setting.elements(setting.positions)
     own = symbols(setting.spec)

@@ -19,19 +19,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import (
     conjugates,
-    declared_energy,
     fault,
     in_state_order,
     mechanics,
 )
 from coadjoint.derive.mechanics.external import external_forces
-from coadjoint.derive.mechanics.legendre import legendre_transform
-from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel
-from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.mechanics.legendre import hamiltonian
+from coadjoint.derive.mechanics.solver import solve_in_kernel
+from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
@@ -43,17 +43,16 @@ Pair = tuple[str, str, Fraction]
 Magnetic = Mapping[tuple[str, str], Element]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Hamilton's equations.
 
     Raises:
         DerivationError: The Legendre transform cannot be inverted, or nothing says what the momenta
             of a declared Hamiltonian are.
     """
-    setting = setting_of(given)
     if setting.spec.poisson is None and not setting.momenta:
         return _in_own_momenta(setting)
-    h, solves = _hamiltonian(setting)
+    h, solves = hamiltonian(setting)
     field, pairs = setting.field, _pairs(setting)
     velocities = dict(zip(setting.momenta, setting.velocities, strict=False))
     slopes = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
@@ -66,7 +65,7 @@ def derive(given: Spec | Setting) -> Equations:
     named = {p: field[v] for p, v in velocities.items()}
     rates = in_state_order(setting, _hamilton(setting, pairs, slopes, named, _magnetic(setting)))
     tensor = poisson_structure(setting).tensor
-    exact = Exact((*solved, *written), rates, h, observables(setting, h), tensor, solves)
+    exact = Exact((*solved, *written), rates, h, emitted(setting, h), tensor, solves)
     return Equations(setting, "canonical", exact, _steps(setting.state, h, slopes, rates))
 
 
@@ -76,19 +75,6 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     coordinates = spec.having_role("coordinate")
     return fresh(spec, [f"p_{name}" for q in coordinates for name in q.components])
-
-
-def _hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
-    """h, declared or by the Legendre transform; what the kernel solves for keeps its name in it."""
-    spec = setting.spec
-    if spec.hamiltonian is None and setting.momenta:
-        assert spec.lagrangian is not None, "the reader asks for a Hamiltonian or a Lagrangian"
-        transform = legendre_transform(setting, setting.formula(spec.lagrangian))
-        velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-        return setting.field.substitute(transform.energy, velocities), transform.solves
-    energy = declared_energy(setting)
-    assert energy is not None, "the reader asks for a Hamiltonian or a Lagrangian"
-    return energy, ()
 
 
 def _pairs(setting: Setting) -> list[Pair]:

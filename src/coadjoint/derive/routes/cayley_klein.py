@@ -31,11 +31,12 @@ from fractions import Fraction
 
 from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.algebra.representation import adjoint
-from coadjoint.derive.equations import Chart, Equations, Exact, Relation, Step, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emission
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
@@ -88,21 +89,20 @@ class _Body:
         return HALF * self.product(self.q, self.omega)
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Lagrange's equations for unit quaternions.
 
     Raises:
         DerivationError: The algebra is not so(3), or what is advected is no vector.
     """
-    setting = setting_of(given)
     check_rotations(setting)
-    lagrangian = lagrangian_of(setting)
+    lagrangian = setting.lagrangian
     body = _body(setting)
-    transform = legendre_transform(setting, lagrangian)
+    transform = legendre(setting)
     momentum_rate = _momentum_rate(body, _slopes(body, lagrangian))
     if _declared(setting.spec) is not None:
         rates = setting.in_state_order(momentum_rate, _advection(body))
-        exact = emission(setting, transform, rates)
+        exact = emission(setting, rates)
         return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, setting.state))
     exact, chart = _in_chart(body, transform, momentum_rate)
     return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, chart.variables), chart)

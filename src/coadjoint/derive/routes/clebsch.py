@@ -27,10 +27,10 @@ from itertools import islice
 
 from coadjoint.algebra import Representation, algebra_by_name
 from coadjoint.algebra.representation import adjoint
-from coadjoint.derive.equations import Chart, Equations, Exact, Step, partial, rate, symbol
-from coadjoint.derive.mechanics.emission import lagrangian_of
-from coadjoint.derive.mechanics.legendre import legendre_transform
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -78,14 +78,13 @@ def _pairs(setting: Setting) -> list[_Pair]:
     return pairs
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion of a canonical pair by Clebsch's principle.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
-    field, lagrangian, pairs = setting.field, lagrangian_of(setting), _pairs(setting)
+    field, lagrangian, pairs = setting.field, setting.lagrangian, _pairs(setting)
     q = tuple(name for each, _, _ in pairs for name in each)
     p = tuple(name for _, each, _ in pairs for name in each)
     pairing = _pairing(setting, pairs)
@@ -96,7 +95,7 @@ def derive(given: Spec | Setting) -> Equations:
     )
     momentum = tuple(-slope for slope in field.gradient(pairing, setting.velocities))
     image = dict(zip(setting.momenta, momentum, strict=True))
-    transform = legendre_transform(setting, lagrangian)
+    transform = legendre(setting)
     velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
     state = tuple(image.get(name, field[name]) for name in setting.state)
     chart = Chart((*q, *p), state, _through(setting, pairs))

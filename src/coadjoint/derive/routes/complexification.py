@@ -23,31 +23,28 @@ from functools import reduce
 from operator import add
 
 from coadjoint.algebra import LieAlgebra, complexification, same_constants
-from coadjoint.derive.equations import Equations, Exact, Step, partial, rate, symbol
-from coadjoint.derive.observables import observables
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.records import Exact, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
+from coadjoint.exact.dense import identity
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.vectors import identity
-from coadjoint.spec import Spec
 
 ROUTE = "complexification"
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion as real and imaginary parts of complex ones.
 
     Raises:
         DerivationError: The algebra is no complexification, something is advected, or the
             Hamiltonian calls functions that complex numbers here do not have.
     """
-    setting = setting_of(given)
     real = real_algebra(setting)
-    formula = setting.spec.hamiltonian
-    assert formula is not None, "the reader asks for a Hamiltonian on this route"
-    h = _at_real(setting, setting.formula(formula), real)
+    h = _at_real(setting, setting.hamiltonian, real)
     L = _momenta(setting, real)
     slopes = setting.field.gradient(h, setting.momenta[: real.dimension])
     zeta = tuple(_continued(setting, slope, L) for slope in slopes)
@@ -58,7 +55,7 @@ def derive(given: Spec | Setting) -> Equations:
     halves = (*(z.re for z in zeta), *(-z.im for z in zeta))
     pairs = zip(setting.velocities, setting.field.vector(halves), strict=bool(setting.velocities))
     tensor = poisson_structure(setting).tensor
-    exact = Exact(tuple(pairs), rates, energy, observables(setting, energy), tensor)
+    exact = Exact(tuple(pairs), rates, energy, emitted(setting, energy), tensor)
     return Equations(setting, ROUTE, exact, _steps(setting, h, zeta, rates))
 
 

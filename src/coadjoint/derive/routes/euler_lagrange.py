@@ -21,15 +21,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
-from coadjoint.derive.mechanics.configuration import Mechanics, applied, in_state_order, mechanics
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import Mechanics, in_state_order, mechanics
 from coadjoint.derive.mechanics.driving import explicit_rate
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
+from coadjoint.exact.dense import apply
 
 #: ``table[c][a][b]``.
 Table = tuple[tuple[tuple[Element, ...], ...], ...]
@@ -38,45 +39,42 @@ _LATEX = r"\frac{d}{dt} \frac{\partial l}{\partial v} = \frac{\partial l}{\parti
 _LATEX += r"\dot q = v"
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Hamilton's principle.
 
     Raises:
         DerivationError: The mass matrix is singular, or velocities cannot be solved for.
     """
-    setting = setting_of(given)
     known = mechanics(setting)
     return _in_momenta(known) if setting.momenta else _in_velocities(known)
 
 
 def _in_velocities(known: Mechanics) -> Equations:
     """``dq/dt = v, dv/dt = M^-1 (dl/dq - d2l/dvdq v)``."""
-    setting, field = known.setting, known.setting.field
+    setting = known.setting
     v = setting.elements(setting.velocities)
-    carried = applied(field, known.mixed, v)
+    carried = apply(known.mixed, v)
     own = [explicit_rate(setting, p, "a momentum dl/dv") for p in known.momenta]
     forces = [slope - c - e for slope, c, e in zip(known.slopes, carried, own, strict=True)]
-    moved = applied(field, known.inverse_mass, forces)
+    moved = apply(known.inverse_mass, forces)
     named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
     rates = in_state_order(setting, named)
     tensor = poisson_structure(setting).tensor
-    exact = Exact((), rates, known.energy, observables(setting, known.energy), tensor)
+    exact = Exact((), rates, known.energy, emitted(setting, known.energy), tensor)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates))
 
 
 def _in_momenta(known: Mechanics) -> Equations:
     """``dq/dt = v, dp/dt = dl/dq`` with v from ``p = dl/dv``."""
-    setting, field = known.setting, known.setting.field
-    transform = legendre_transform(setting, known.lagrangian)
+    setting = known.setting
+    transform = legendre(setting)
     pairs = zip(setting.momenta, known.slopes, setting.weights, strict=True)
     named = dict(zip(setting.positions, setting.elements(setting.velocities), strict=True))
     named |= {p: slope * weight for p, slope, weight in pairs}
     rates = in_state_order(setting, named)
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    energy = field.substitute(transform.energy, velocities)
     tensor = poisson_structure(setting).tensor
-    values = observables(setting, energy)
-    exact = Exact(transform.definitions, rates, energy, values, tensor, transform.solves)
+    h, values = transform.energy, emitted(setting, transform.energy)
+    exact = Exact(transform.definitions, rates, h, values, tensor, transform.solves)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates, transform))
 
 
@@ -104,11 +102,10 @@ def christoffel(known: Mechanics) -> Table:
     Source:
         Holm (2011), Geometric Mechanics II, section 2.2.4.
     """
-    field, first = known.setting.field, christoffel_first(known)
+    first = christoffel_first(known)
     size = range(len(first))
     columns = [
-        [applied(field, known.inverse_mass, [first[c][a][b] for c in size]) for b in size]
-        for a in size
+        [apply(known.inverse_mass, [first[c][a][b] for c in size]) for b in size] for a in size
     ]
     return tuple(tuple(tuple(columns[a][b][c] for b in size) for a in size) for c in size)
 
@@ -117,7 +114,7 @@ def is_natural(known: Mechanics) -> bool:
     """Whether velocities occur in l as ``M_ab(q) v_a v_b/2`` alone."""
     field, names = known.setting.field, known.setting.velocities
     v = known.setting.elements(names)
-    moving = [m - x for m, x in zip(known.momenta, applied(field, known.mass, v), strict=True)]
+    moving = [m - x for m, x in zip(known.momenta, apply(known.mass, v), strict=True)]
     named = set(names).intersection(
         *[set().union(*(field.reach(e) for r in known.mass for e in r))]
     )

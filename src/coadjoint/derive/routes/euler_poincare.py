@@ -16,25 +16,24 @@ l/\partial\xi`, with the velocities as definitions. Read next:
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, partial, rate, signed, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emission, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, signed, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by the Euler-Poincare theorem.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     rates = _rates(setting, lagrangian)
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     return Equations(
         setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
     )

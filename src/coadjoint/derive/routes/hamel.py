@@ -17,45 +17,42 @@ Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, component, partial, symbol
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
 from coadjoint.derive.mechanics.distribution import Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
-from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
-from coadjoint.derive.mechanics.kinematics import Matrix
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.mechanics.kinematics import Matrix, symbols
+from coadjoint.derive.records import Step, component, partial, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
+
+__all__ = ["derive", "symbols"]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Hamel's equations.
 
     Raises:
         DerivationError: As on the route nonholonomic.
     """
-    setting = setting_of(given)
     found = distribution(setting)
     motion = ConstrainedMotion(found)
-    lagrangian = lagrangian_of(setting)
-    constrained = setting.field.substitute(lagrangian, found.solved)
+    constrained = setting.field.substitute(setting.lagrangian, found.solved)
     momenta = setting.field.gradient(constrained, found.independent)
     mass = tuple(setting.field.gradient(p, found.independent) for p in momenta)
-    known = _known(motion, lagrangian, constrained, momenta)
-    exact = emission(motion, lagrangian, motion.kinematics, mass, known, ())
+    known = _known(motion, constrained, momenta)
+    exact = emission(motion, motion.kinematics, mass, known, ())
     steps = _steps(motion, constrained, momenta, mass, known)
     return Equations(setting, "hamel", exact, steps, distribution=found)
 
 
-def _known(
-    motion: ConstrainedMotion, lagrangian: Element, constrained: Element, momenta: Row
-) -> Row:
+def _known(motion: ConstrainedMotion, constrained: Element, momenta: Row) -> Row:
     """``D_k l_c + <p, [xi, D_k]> + B_k f - dp_c/dz dz/dt``."""
     found, frame = motion.distribution, motion.frame
     field = frame.setting.field
-    slopes = field.gradient(lagrangian, frame.velocities)
-    p = [field.substitute(slope, found.solved) for slope in slopes]
+    p = [field.substitute(slope, found.solved) for slope in mechanics(frame.setting).momenta]
     acting = external_forces(frame.setting, frame.velocities)
     forces = [field.substitute(force, found.solved) for force in acting]
     known = []

@@ -26,10 +26,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emission, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -42,18 +43,17 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return fresh(spec, [f"{letter}{n}" for letter in ("eps", "deps") for n in numbers])
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by the Hamilton-Pontryagin principle.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
-    lagrangian = lagrangian_of(setting)
+    lagrangian = setting.lagrangian
     action = _action(setting, lagrangian)
-    transform = legendre_transform(setting, lagrangian)
+    transform = legendre(setting)
     rates = setting.in_state_order(_momentum_equation(setting, action), _advection(setting, action))
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     steps = _steps(setting, action, transform, rates)
     return Equations(setting, "hamilton-pontryagin", exact, steps)
 

@@ -22,9 +22,12 @@ Chart of momenta, advected quantities and p. Read next: `coadjoint.prove.charts`
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import (
+from coadjoint.derive.emitted import emitted_energy
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import Mechanics
+from coadjoint.derive.mechanics.legendre import legendre_transform
+from coadjoint.derive.records import (
     Chart,
-    Equations,
     Exact,
     Relation,
     Step,
@@ -33,13 +36,11 @@ from coadjoint.derive.equations import (
     signed,
     symbol,
 )
-from coadjoint.derive.mechanics.emission import lagrangian_of
-from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element, element_text
-from coadjoint.groups.vectors import Vector, add, dot, scale, subtract
+from coadjoint.exact.dense import Vector, add, dot, scale, subtract
 from coadjoint.spec import Spec
 from coadjoint.spec.model import component_names
 
@@ -53,14 +54,13 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return fresh(spec, wanted)
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion as geodesics with cyclic coordinates.
 
     Raises:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
     """
-    setting = setting_of(given)
-    lagrangian, names = lagrangian_of(setting), _advected(setting)
+    lagrangian, names = setting.lagrangian, _advected(setting)
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)
     velocities, momenta = _cyclic(setting)
@@ -71,12 +71,12 @@ def derive(given: Spec | Setting) -> Equations:
     slopes = field.gradient(whole, velocities)
     solved = dict(zip(velocities, subtract(p, subtract(slopes, qdot)), strict=True))
     forces = [field.substitute(slope, solved) for slope in field.gradient(whole, names)]
-    transform = legendre_transform(setting, kinetic)
+    transform = legendre_transform(Mechanics(setting, kinetic))
     inner = dict(zip(setting.velocities, transform.velocities, strict=True))
     mu, xi = setting.elements(setting.momenta), setting.elements(setting.velocities)
     energy = field.substitute(dot(mu, xi) + dot(p, qdot) - whole, inner | solved)
     rates = (*_rates(setting, forces), *(field.zero for _ in p))
-    exact = Exact(transform.definitions, rates, energy, (("energy", energy),), None)
+    exact = Exact(transform.definitions, rates, energy, (emitted_energy(setting, energy),), None)
     relations = tuple(
         Relation(f"{name} = {element_text(field, value)}", field[name] - value)
         for name, value in zip(momenta, level, strict=True)

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, rate, symbol
-from coadjoint.derive.observables import observables
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
-from coadjoint.derive.routes import manakov
-from coadjoint.derive.routes.lie_poisson import hamiltonian
+from coadjoint.derive.records import Exact, Left, Step, rate, symbol
 from coadjoint.derive.routes.poisson import velocities_of
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -30,53 +31,33 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return (spec.lax.spectral,) if spec.lax is not None else ()
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by the declared pair.
 
     Raises:
         DerivationError: The pair does not determine the rates of the state.
     """
-    setting = setting_of(given)
-    return _equations(setting, ROUTE, declared_pair(setting), ())
+    return equations_of_pair(setting, ROUTE, declared_pair(setting))
 
 
-def derive_found(given: Spec | Setting) -> Equations:
-    """Equations of motion by the pair that `coadjoint.derive.routes.manakov` finds.
+def equations_of_pair(
+    setting: Setting, route: str, pair: LaxPair, search: tuple[Step, ...] = ()
+) -> Equations:
+    """Equations by a pair; the energy gives nothing but the velocities that M names.
 
-    Raises:
-        DerivationError: There is none.
+    Args:
+        setting: The spec and the field.
+        route: Name of the route.
+        pair: Declared or found.
+        search: How it was found.
     """
-    setting = setting_of(given)
-    return _equations(setting, manakov.ROUTE, manakov.find_pair(setting), _search(setting))
-
-
-def _equations(setting: Setting, route: str, pair: LaxPair, search: tuple[Step, ...]) -> Equations:
-    """Equations by a pair; the energy gives nothing but the velocities that M names."""
     h, solves = hamiltonian(setting)
     definitions = velocities_of(setting, h, solves)
     rates = rates_of(setting, pair, route)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, h, observables(setting, h), tensor, solves)
+    exact = Exact(definitions, rates, h, emitted(setting, h), tensor, solves)
     steps = (*search, *_steps(setting, pair, definitions, rates))
     return replace(Equations(setting, route, exact, steps), pair=pair)
-
-
-def _search(setting: Setting) -> tuple[Step, ...]:
-    """What Manakov's equations were solved for."""
-    body = manakov.body_of(setting)
-    return (
-        Step(
-            "Inertia in the planes",
-            "M_ij = I_ij Omega_ij",
-            r"M_{ij} = I_{ij} \Omega_{ij}",
-            tuple((symbol(f"I{i + 1}{j + 1}"), value) for (i, j), value in body.inertia.items()),
-        ),
-        Step(
-            "Manakov's equations",
-            "[B, Omega] + [M, A] = 0: I_ij (a_i - a_j) = b_i - b_j, solved for A and B",
-            r"[B, \Omega] + [M, A] = 0: \quad I_{ij} (a_i - a_j) = b_i - b_j",
-        ),
-    )
 
 
 def _steps(
@@ -118,7 +99,7 @@ def _entries(pair: LaxPair) -> tuple[tuple[Left, Element], ...]:
 
 def _integrals(setting: Setting) -> Step:
     """The integrals that are emitted."""
-    found = setting.integrals
+    found = lax_integrals(setting)
     assert found is not None, "there is a pair"
     words = ", ".join(
         f"integral{n} from tr L^{each.trace} at {found.pair.spectral}^{each.power}"

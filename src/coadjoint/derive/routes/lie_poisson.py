@@ -16,22 +16,18 @@ the spec names them. Read next: `coadjoint.prove.equivalence`.
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.legendre import legendre_transform
-from coadjoint.derive.mechanics.solver import Solve
+from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.routes.poisson import hamiltonian_equations
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra
-from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by the Lie-Poisson bracket.
 
     Raises:
         DerivationError: Neither a Hamiltonian nor an invertible Legendre transform is there.
     """
-    setting = setting_of(given)
     sign = "-" if setting.sign == 1 else ""
     law = (
         f"Lie-Poisson bracket on the dual of {momentum_algebra(setting).name}",
@@ -40,20 +36,3 @@ def derive(given: Spec | Setting) -> Equations:
     )
     h, solves = hamiltonian(setting)
     return hamiltonian_equations(setting, "lie-poisson", h, law, solves)
-
-
-def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
-    """The declared Hamiltonian, or the Legendre transform of the declared Lagrangian.
-
-    Returns:
-        h, and what the kernel solves for velocities, which keep their names in h. Partial
-        derivatives of such an h at fixed velocities are those of h, since ``<mu, xi> - l`` is
-        stationary in xi.
-    """
-    spec = setting.spec
-    if spec.hamiltonian is not None:
-        return setting.formula(spec.hamiltonian), ()
-    assert spec.lagrangian is not None, "the reader asks for a Hamiltonian or a Lagrangian"
-    transform = legendre_transform(setting, setting.formula(spec.lagrangian))
-    velocities = dict(zip(setting.velocities, transform.velocities, strict=True))
-    return setting.field.substitute(transform.energy, velocities), transform.solves

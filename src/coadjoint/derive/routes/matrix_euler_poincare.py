@@ -19,37 +19,36 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from coadjoint.algebra.linear import Span
 from coadjoint.algebra.matrices import SparseMatrix
-from coadjoint.derive.equations import Equations, Step, partial, rate, signed
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.pairs import Matrix, bracket, combined, multiplied
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emission, velocities_step
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, signed
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of, weighted
+from coadjoint.derive.setting import Setting, weighted
 from coadjoint.exact import Element, Field
-from coadjoint.spec import Spec
+from coadjoint.exact.dense import Matrix, add, commutator, product, scale, transpose
+from coadjoint.exact.linear import Span
 from coadjoint.spec.core.faults import listed
 from coadjoint.spec.model import Variable, unpacked
 
 ROUTE = "matrix-euler-poincare"
 #: A rate and a matrix C whose trace tr(C e) is the torque along e.
-Advection = Callable[[Field, Matrix, Matrix, Matrix], tuple[Matrix, Matrix]]
+Advection = Callable[[Matrix, Matrix, Matrix], tuple[Matrix, Matrix]]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by products of matrices.
 
     Raises:
         DerivationError: The algebra is not given by matrices, a quantity is advected in another
             way, or the Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
     _check_matrices(setting)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     rates = _rates(setting, lagrangian)
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, rates))
 
 
@@ -72,14 +71,14 @@ def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     xi = weighted(setting.elements(setting.velocities), setting.algebra.matrices)
     M = _momentum(setting)
     # tr(M^T (xi e - e xi)) = tr((M^T xi - xi M^T) e)
-    torque = bracket(field, _turned(M), xi)
+    torque = commutator(transpose(M), xi)
     advected: dict[str, Sequence[Element]] = {}
     for variable in setting.advected:
         move = _advection(setting, variable)
         a = _as_matrix(setting, variable, setting.elements(variable.components))
         slopes = field.gradient(lagrangian, variable.components)
-        speed, push = move(field, xi, a, _slope_matrix(setting, variable, slopes))
-        torque = combined(field, (field.one, torque), (field.one, push))
+        speed, push = move(xi, a, _slope_matrix(setting, variable, slopes))
+        torque = add(torque, push)
         advected[variable.name] = [sign * x for x in _kept(variable, speed)]
     along = [sign * _trace_with(field, torque, e) for e in setting.algebra.matrices]
     return setting.in_state_order(along, advected)
@@ -111,29 +110,23 @@ def _trace_with(field: Field, a: Matrix, e: SparseMatrix) -> Element:
     return field.sum(a[j][i] * value for (i, j), value in e.items())
 
 
-def _turned(a: Matrix) -> Matrix:
-    return tuple(zip(*a, strict=True))
-
-
 # -- advected quantities --------------------------------------------------------------------------
 
 
-def _column(field: Field, xi: Matrix, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
+def _column(xi: Matrix, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
     """``da/dt = -xi a``, and ``-tr(b^T e a)``."""
-    moved, work = multiplied(field, xi, a), multiplied(field, a, _turned(b))
-    return combined(field, (-field.one, moved)), combined(field, (-field.one, work))
+    return scale(-1, product(xi, a)), scale(-1, product(a, transpose(b)))
 
 
-def _rows(field: Field, xi: Matrix, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
+def _rows(xi: Matrix, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
     """``da/dt = a xi``, and ``tr(b^T a e)``."""
-    return multiplied(field, a, xi), multiplied(field, _turned(b), a)
+    return product(a, xi), product(transpose(b), a)
 
 
-def _symmetric(field: Field, xi: Matrix, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
+def _symmetric(xi: Matrix, a: Matrix, b: Matrix) -> tuple[Matrix, Matrix]:
     """``da/dt = -(xi a + a xi^T)``, and ``-tr(b (e a + a e^T)) = -2 tr(a b e)``."""
-    moved = multiplied(field, xi, a)
-    speed = combined(field, (-field.one, moved), (-field.one, _turned(moved)))
-    return speed, combined(field, (field.number(-2), multiplied(field, a, b)))
+    moved = product(xi, a)
+    return scale(-1, add(moved, transpose(moved))), scale(-2, product(a, b))
 
 
 _ADVECTIONS: dict[str, Advection] = {

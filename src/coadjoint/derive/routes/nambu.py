@@ -23,36 +23,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, partial, rate, symbol
-from coadjoint.derive.interpret import determinant
-from coadjoint.derive.observables import observables
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.legendre import hamiltonian
+from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.routes.lie_poisson import hamiltonian
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
 from coadjoint.errors import CoadjointError
 from coadjoint.exact import Element
-from coadjoint.groups.vectors import dot
+from coadjoint.exact.dense import dot, minor
 from coadjoint.poisson.casimirs import casimirs
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by gradients alone.
 
     Raises:
         DerivationError: A formula divides by zero, the dual of the algebra has not three
             dimensions, or no distinguished function of it was found.
     """
-    setting = setting_of(given)
     spec, names = setting.spec, setting.state
     if spec.poisson is None:
         h, _ = hamiltonian(setting)
         found = distinguished_function(setting)
         functions, multiplier = [found.function], found.multiplier
     else:
-        assert spec.hamiltonian is not None, "the reader asks for a Hamiltonian on this route"
-        h, multiplier = setting.formula(spec.hamiltonian), setting.field.one
+        h, multiplier = setting.hamiltonian, setting.field.one
         functions = [setting.formula(c) for c in spec.poisson.functions]
     gradients = [setting.field.gradient(function, names) for function in (*functions, h)]
     velocities = _velocities(setting)
@@ -64,7 +61,7 @@ def derive(given: Spec | Setting) -> Equations:
     slopes = dict(zip(names, gradients[-1], strict=True))
     definitions = tuple((xi, slopes[momentum]) for momentum, xi in velocities)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, h, observables(setting, h), tensor)
+    exact = Exact(definitions, rates, h, emitted(setting, h), tensor)
     steps = _steps(setting, [*functions, h], rates, gradients, multiplier)
     return Equations(setting, "nambu", exact, steps)
 
@@ -139,8 +136,8 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
 def generalised_cross_product(gradients: list[tuple[Element, ...]]) -> list[Element]:
     """Cofactors of the unit vectors above n - 1 vectors of R^n: ``a x b`` for n = 3."""
     n = len(gradients) + 1
-    rest = [tuple(row[:i] + row[i + 1 :] for row in gradients) for i in range(n)]
-    return [(-1) ** i * determinant(minor) for i, minor in enumerate(rest)]
+    rest = [[j for j in range(n) if j != i] for i in range(n)]
+    return [(-1) ** i * minor(gradients, range(n - 1), columns) for i, columns in enumerate(rest)]
 
 
 def _steps(

@@ -13,32 +13,31 @@ Read next: `coadjoint.prove.galilean`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Exact, Left, Step, rate, symbol
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import declared_energy, in_state_order
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.records import Exact, Left, Step, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 from coadjoint.spec.model import Formula, component_names
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Newton's equations.
 
     Raises:
         DerivationError: A mass is zero, or a matrix of masses cannot be inverted.
     """
-    setting = setting_of(given)
     velocities = setting.elements(setting.velocities)
     named = dict(zip(setting.positions, velocities, strict=True))
     named |= zip(setting.velocities, accelerations(setting), strict=True)
     rates = in_state_order(setting, named)
     energy = declared_energy(setting)
     tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    exact = Exact((), rates, energy, observables(setting, energy), tensor)
+    exact = Exact((), rates, energy, emitted(setting, energy), tensor)
     return Equations(setting, "newton", exact, _steps(setting, rates))
 
 

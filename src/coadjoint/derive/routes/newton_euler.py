@@ -24,24 +24,15 @@ from dataclasses import dataclass
 from functools import reduce
 
 from coadjoint.algebra import algebra_by_name, same_constants
-from coadjoint.derive.equations import Equations, Step, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform, mass_matrix
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.emission import emission
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text
-from coadjoint.groups.vectors import (
-    Matrix,
-    Vector,
-    add,
-    combine,
-    cross,
-    dot,
-    scale,
-    subtract,
-    trace,
-)
-from coadjoint.spec import Spec
+from coadjoint.exact.dense import Matrix, Vector, add, cross, dot, scale, subtract, trace
 
 ROUTE = "newton-euler"
 AXES: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -72,21 +63,20 @@ class MassPoints:
         )
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Newton's law for the points of the body.
 
     Raises:
         DerivationError: The algebra is neither so(3) nor se(3), the system is not left-invariant,
             or no body of mass points has this kinetic energy.
     """
-    setting = setting_of(given)
     _check_motions(setting)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     points = mass_points(setting, lagrangian)
     forces = _forces(setting, lagrangian)
     rates = _rates(setting, points, forces)
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     return Equations(setting, ROUTE, exact, _steps(setting, transform, points, forces, rates))
 
 
@@ -125,10 +115,10 @@ def mass_points(setting: Setting, lagrangian: Element) -> MassPoints:
         DerivationError: No points have it: a mass that depends on the direction, a coupling of V to
             Omega other than V . Omega x c, or something that moves inside the body.
     """
-    mass = mass_matrix(setting, lagrangian)
+    mass = mechanics(setting).mass
     inertia = tuple(tuple(row[:3]) for row in mass[:3])
     half = trace(inertia) / 2
-    second = combine(tuple(scale(half, axis) for axis in AXES), inertia, -1)
+    second = subtract(scale(half, AXES), inertia)
     total, first = setting.field.zero, (setting.field.zero,) * 3
     if len(mass) == 6:  # Omega . D V is V . Omega x c for D_ij = -epsilon_ijk c_k
         total, first = mass[3][3], (mass[2][4], mass[0][5], mass[1][3])

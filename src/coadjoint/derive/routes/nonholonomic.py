@@ -29,80 +29,45 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from coadjoint.derive.equations import (
-    Equations,
-    Left,
-    Step,
-    bracket,
-    component,
-    partial,
-    rate,
-    symbol,
-)
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import Tensor
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
-from coadjoint.derive.mechanics.emission import lagrangian_of
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.followed import rates_followed
-from coadjoint.derive.mechanics.frames import Frame
-from coadjoint.derive.mechanics.kinematics import Matrix
+from coadjoint.derive.mechanics.kinematics import Matrix, symbols
 from coadjoint.derive.mechanics.solver import Definition
-from coadjoint.derive.setting import Setting, setting_of
-from coadjoint.errors import DerivationError
+from coadjoint.derive.records import Left, Step, bracket, component, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.roots import lifted
-from coadjoint.spec import Spec
+
+__all__ = ["derive", "symbols"]
 
 #: Terms of a bracket up to which the document shows it.
 SHOWN = 8
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Lagrange and d'Alembert's principle.
 
     Raises:
         DerivationError: A constraint is not linear in the velocities or not independent of the
             others, the Lagrangian is not quadratic, or its reduced mass matrix is singular.
     """
-    setting = setting_of(given)
     motion = ConstrainedMotion(distribution(setting))
-    lagrangian = lagrangian_of(setting)
-    mass = mass_matrix(motion.frame, lagrangian)
+    lagrangian, whole = setting.lagrangian, mechanics(setting)
+    whole.check_quadratic()
+    mass = whole.mass
     forces, named = _forces(motion, lagrangian, mass)
     reduced = _projected(motion, mass)
     known = _known(motion, forces)
     definitions = [*motion.kinematics, *named]
     reactions = motion.reactions(mass, forces)
-    exact = emission(motion, lagrangian, definitions, reduced, known, reactions)
+    exact = emission(motion, definitions, reduced, known, reactions)
     steps = _steps(motion, lagrangian, named, reduced, known, reactions, exact.poisson_tensor)
     return Equations(setting, "nonholonomic", exact, steps, distribution=motion.distribution)
-
-
-def mass_matrix(frame: Frame, lagrangian: Element) -> Matrix:
-    """``d2l/dxi2`` in all velocities of a frame.
-
-    Raises:
-        DerivationError: It depends on velocities.
-    """
-    field, names = frame.setting.field, frame.velocities
-    slopes = field.gradient(lagrangian, names)
-    mass = tuple(field.gradient(slope, names) for slope in slopes)
-    for row, name in zip(mass, names, strict=True):
-        found = sorted(set().union(*map(field.reach, row)) & set(names))
-        if found:
-            formula = frame.setting.spec.lagrangian
-            assert formula is not None
-            raise DerivationError(
-                f"{frame.setting.spec.path}:{formula.line}: {formula.key}: the Lagrangian is not "
-                f"quadratic in the velocities: its second derivative by {name} depends on "
-                f"{', '.join(found)}; expected a kinetic energy quadratic in the velocities.",
-                path=str(frame.setting.spec.path),
-                line=formula.line,
-                key=formula.key,
-                found=name,
-            )
-    return mass
 
 
 def _forces(

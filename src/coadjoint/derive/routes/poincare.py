@@ -17,28 +17,27 @@ Read next: `coadjoint.derive.routes.hamilton_pontryagin`.
 
 from __future__ import annotations
 
-from coadjoint.derive.equations import Equations, Step, partial, rate, symbol
-from coadjoint.derive.mechanics.emission import emission, lagrangian_of
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre_transform
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emission
+from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
+from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by Poincare's theorem.
 
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    setting = setting_of(given)
-    lagrangian = lagrangian_of(setting)
-    transform = legendre_transform(setting, lagrangian)
+    lagrangian = setting.lagrangian
+    transform = legendre(setting)
     fields = _vector_fields(setting)
     inertial, forces = _inertial(setting, transform.momenta), _along(setting, fields, lagrangian)
     momentum = [a + b for a, b in zip(inertial, forces, strict=True)]
     rates = setting.in_state_order(momentum, _advection(setting, fields))
-    exact = emission(setting, transform, rates)
+    exact = emission(setting, rates)
     steps = _steps(setting, lagrangian, transform, forces, rates)
     return Equations(setting, "poincare", exact, steps)
 

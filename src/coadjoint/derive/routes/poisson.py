@@ -11,29 +11,26 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from coadjoint.derive.equations import Equations, Exact, Step, bracket, partial, rate, symbol
+from coadjoint.derive.emitted import emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
-from coadjoint.derive.observables import observables
-from coadjoint.derive.setting import Setting, setting_of
+from coadjoint.derive.records import Exact, Step, bracket, partial, rate, symbol
+from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
 
 #: Title, text and LaTeX of the step that states the bracket.
 Law = tuple[str, str, str]
 
 
-def derive(given: Spec | Setting) -> Equations:
+def derive(setting: Setting) -> Equations:
     """Equations of motion by the declared bracket.
 
     Raises:
         DerivationError: A formula divides by zero.
     """
-    setting = setting_of(given)
-    formula = setting.spec.hamiltonian
-    assert formula is not None, "the reader asks for a Hamiltonian on this route"
     law = ("Poisson bracket of the coordinates", "{x_i, x_j}", r"\{x_i, x_j\}")
-    return hamiltonian_equations(setting, "poisson", setting.formula(formula), law)
+    return hamiltonian_equations(setting, "poisson", setting.hamiltonian, law)
 
 
 def hamiltonian_equations(
@@ -62,7 +59,7 @@ def hamiltonian_equations(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
         for row in tensor
     )
-    exact = Exact(definitions, rates, h, observables(setting, h), tensor, solves)
+    exact = Exact(definitions, rates, h, emitted(setting, h), tensor, solves)
     brackets = tuple(
         (bracket(a, b), tensor[i][j])
         for (i, a), (j, b) in combinations(enumerate(setting.state), 2)

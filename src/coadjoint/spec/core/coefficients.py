@@ -12,18 +12,18 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from coadjoint.limits import PARAMETRIC_TERMS
+from coadjoint.spec.core.components import Shape, unpacked
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.formulas import ROLES
+from coadjoint.spec.core.formulas import ROLES, Quantity
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, walk, walk_up
-from coadjoint.spec.model import Input, Parameter, Shape, Time, unpacked
 
 if TYPE_CHECKING:
     from coadjoint.exact import Field
@@ -39,6 +39,18 @@ _COMBINATION = (
 _POLYNOMIAL = "a polynomial of parameters", "numbers and parameters with + - * and powers"
 
 
+class Constant(Quantity, Protocol):
+    """A parameter, as far as coefficients know it."""
+
+    @property
+    def positive(self) -> bool:
+        """Whether every component is positive."""
+
+    @property
+    def form(self) -> str:
+        """The matrix that its components fill, or ""."""
+
+
 class Scalars:
     """The components of the parameters, as exact values from the first use on.
 
@@ -48,7 +60,7 @@ class Scalars:
     """
 
     def __init__(
-        self, parameters: Sequence[Parameter] = (), driving: Sequence[Input | Time] = ()
+        self, parameters: Sequence[Constant] = (), driving: Sequence[Quantity] = ()
     ) -> None:
         self._driving = {
             name: each.role for each in driving for name in (each.name, *each.components)
@@ -116,7 +128,7 @@ class Scalars:
         return Field(names, positive=self._positive)
 
 
-def _entries(parameter: Parameter) -> dict[tuple[int, ...], tuple[str, int]]:
+def _entries(parameter: Constant) -> dict[tuple[int, ...], tuple[str, int]]:
     """The component, and its sign, that each entry of a parameter is."""
     names, shape = parameter.components, parameter.value_shape
     places = list(product(*(range(1, length + 1) for length in shape)))

@@ -89,3 +89,26 @@ def unpacked(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
         elif form == "symmetric":
             entries[j, i] = value
     return tuple(tuple(entries.get((i, j), zero) for j in range(size)) for i in range(size))
+
+
+class Components:
+    """Names of components and shape in formulas of a record with a name, a shape and a form."""
+
+    name: str
+    shape: Shape
+    form: str = ""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, in order."""
+        return component_names(self.name, self.shape, self.form)
+
+    @property
+    def matrix_size(self) -> int | None:
+        """Rows of the matrix that it is in formulas; None for scalars and vectors."""
+        return matrix_size(self.shape[0], self.form) if self.form else None
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas: that of the whole matrix where there is a form."""
+        return self.shape if self.matrix_size is None else (self.matrix_size,) * 2

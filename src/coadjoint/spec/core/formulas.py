@@ -1,14 +1,18 @@
 """Formulas: expressions read where the names that may occur in them are known.
 
 Comes in: the text at a key of a spec, and a scope. Goes out: a `Formula` whose tree has been
-checked for names, shapes and size. Read next: `coadjoint.spec.consistency`.
+checked for names, shapes and size. Read next: `coadjoint.spec.core.reading`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
+from coadjoint.errors import CoadjointError
+from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
 from coadjoint.spec.core.positions import KeyPath
@@ -16,11 +20,54 @@ from coadjoint.spec.core.shapes import shape_of, words
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source, dotted
 from coadjoint.spec.core.tree import Index, Name, Node, walk
-from coadjoint.spec.model import Definition, Formula, Input, Parameter, Shape, Time, Variable
-from coadjoint.spec.sections.definitions import expand, functions
+
+
+class Quantity(Protocol):
+    """What has components: a variable, a parameter, an input or the time."""
+
+    @property
+    def name(self) -> str:
+        """As declared."""
+
+    @property
+    def role(self) -> str:
+        """One of `ROLES`."""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, in order."""
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas."""
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A parsed expression, its text as typed (for messages and documents) and where it stands.
+
+    Attributes:
+        text: As typed, ASCII; used in messages, JSON and documents only.
+        tree: The parsed, shape-checked tree.
+        shape: Shape of its value.
+        key: Dotted key in the spec, e.g. ``lagrangian.l``.
+        line: Line of the text in the file, counted from 1.
+    """
+
+    text: str
+    tree: Node
+    shape: Shape
+    key: str
+    line: int
+
+    @property
+    def in_one_line(self) -> str:
+        """The text without its line breaks, for statements and tables."""
+        return " ".join(self.text.split())
+
 
 #: What a spec declares and a formula may use.
-Quantity = Variable | Parameter | Input | Time | Definition
+Declared = Quantity | Definition
 #: What the variables of each role are called together.
 PLURALS = {
     "velocity": "velocities",
@@ -66,7 +113,7 @@ class Scope:
 def make_scope(
     kind: str,
     roles: tuple[str, ...],
-    quantities: Iterable[Quantity],
+    quantities: Iterable[Declared],
     others: Mapping[str, Shape] | Iterable[str] = (),
     *,
     driven: Sequence[str] = (),
@@ -147,3 +194,25 @@ def _check_roles(tree: Node, scope: Scope) -> None:
                 expected=f"{scope.kind} in terms of {scope.takes}",
                 hint=did_you_mean(node.name, scope.shapes),
             )
+
+
+def read_fitting(
+    source: Source, key: KeyPath, text: str, scope: Scope, shape: Shape, name: str, hint: str = ""
+) -> Formula:
+    """The formula at a key, of the shape of the quantity of some name.
+
+    Raises:
+        SpecError: As `read_formula`, or the value has another shape.
+    """
+    formula = read_formula(source, key, text, scope, any_shape=True)
+    if formula.shape != shape:
+        raise misfit(source, key, formula, f"{words(shape)}, as {name!r} is", hint)
+    return formula
+
+
+def misfit(
+    source: Source, key: KeyPath, formula: Formula, expected: str, hint: str = ""
+) -> CoadjointError:
+    """A formula whose value has another shape than it may have."""
+    found = words(formula.shape)
+    return source.fault(key, f"the value is {found}", found=found, expected=expected, hint=hint)

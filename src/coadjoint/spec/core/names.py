@@ -15,7 +15,9 @@ import sys
 from collections.abc import Iterable, Iterator
 from types import MappingProxyType
 
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.limits import NAME_CHARACTERS
+from coadjoint.resources import reserved_words
 from coadjoint.spec.core.shapes import FUNCTIONS
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
@@ -26,38 +28,10 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-# Some are keywords of later Pythons only; a spec means the same everywhere.
-_PYTHON = {*keyword.kwlist, *keyword.softkwlist, "match", "case", "type"}
-_C = _words(
-    """
-    auto break case char const continue default do double else enum extern float for goto if inline
-    int long register restrict return short signed sizeof static struct switch typedef union
-    unsigned void volatile while alignas alignof asm bool constexpr false nullptr static_assert
-    thread_local true typeof typeof_unqual
-    """
-)
-# Of <math.h> and <stddef.h>, in ISO mode or out of it; a macro changes what a name means silently.
-_C_HEADERS = _words(
-    """
-    NULL offsetof size_t ptrdiff_t wchar_t max_align_t nullptr_t unreachable float_t double_t
-    HUGE HUGE_VAL HUGE_VALF HUGE_VALL INFINITY NAN MAXFLOAT SNAN SNANF SNANL
-    FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_ILOGB0 FP_ILOGBNAN
-    FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL MATH_ERRNO MATH_ERREXCEPT math_errhandling
-    fpclassify isfinite isinf isnan isnormal signbit iseqsig issignaling issubnormal iszero
-    isgreater isgreaterequal isless islessequal islessgreater isunordered
-    M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2
-    M_SQRT1_2 DOMAIN SING OVERFLOW UNDERFLOW TLOSS PLOSS errno linux unix i386
-    """
-)
-# Arguments, modules and functions of generated code, and the labels of results.
-_OURS = _words(
-    """
-    state parameters inputs out count state_stride parameters_stride inputs_stride time_stride
-    out_stride np math numpy input_jacobian parameter_jacobian
-    rhs jacobian energy observables poisson_tensor constraint_residual projection
-    reconstruction domain target time t drift
-    """
-)
+#: What each word is to a target that reserves it.
+_TARGETS = reserved_words()
+# Arguments of all targets and of Systems, functions, and labels of results.
+_OURS = _words("state parameters inputs out target time t drift") | set(KERNEL_FUNCTIONS)
 _OURS_PATTERN = re.compile(r"(casimir|integral)\d+(_\d+)?|COADJOINT(_.*)?")
 
 _BETTER = MappingProxyType({"lambda": "lam", "t": "tau", "norm": "length", "np": "n_p"})
@@ -79,18 +53,11 @@ def refusal(name: str) -> tuple[str, str, str] | None:
     if len(name) > NAME_CHARACTERS:
         problem = f"{name!r} has {len(name)} characters"
         return problem, f"at most {NAME_CHARACTERS} (NAME_CHARACTERS)", ""
-    for reserved, of in (
-        (FUNCTIONS, "a function of the expression language"),
-        (_PYTHON, "a keyword of Python"),
-        (_C, "a keyword of C"),
-        (_C_HEADERS, "a name of the C headers"),
-        (_OURS, "a name that generated code or results use"),
-    ):
-        if name in reserved:
-            return f"{name!r} is {of}", "a free name", f"Call it {better(name)!r}."
-    if _OURS_PATTERN.fullmatch(name):
-        problem = f"{name!r} is a name that generated code or results use"
-        return problem, "a free name", f"Call it {better(name)!r}."
+    kind = "a function of the expression language" if name in FUNCTIONS else _TARGETS.get(name)
+    if kind is None and (name in _OURS or _OURS_PATTERN.fullmatch(name)):
+        kind = "a name that generated code or results use"
+    if kind is not None:
+        return f"{name!r} is {kind}", "a free name", f"Call it {better(name)!r}."
     return None
 
 

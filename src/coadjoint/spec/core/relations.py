@@ -12,12 +12,11 @@ from dataclasses import replace
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import listed
-from coadjoint.spec.core.formulas import Scope, read_formula
+from coadjoint.spec.core.formulas import Formula, Scope, read_formula
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Number
-from coadjoint.spec.model import Formula
 
 EQUATION = ("==",)
 INEQUALITIES = (">", ">=", "<", "<=")

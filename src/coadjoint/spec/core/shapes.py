@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, listed
 from coadjoint.spec.core.tree import (
     Binary,
@@ -25,7 +26,6 @@ from coadjoint.spec.core.tree import (
     children,
     walk_up,
 )
-from coadjoint.spec.model import Shape
 
 #: The functions that are adjoined to the field, by their own names.
 ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")

@@ -15,6 +15,7 @@ from fractions import Fraction
 from math import comb, factorial
 
 from coadjoint import limits
+from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.shapes import ELEMENTARY, shapes
 from coadjoint.spec.core.tree import (
@@ -28,7 +29,6 @@ from coadjoint.spec.core.tree import (
     children,
     walk_up,
 )
-from coadjoint.spec.model import Shape
 
 
 @dataclass(frozen=True)

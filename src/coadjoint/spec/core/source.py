@@ -136,10 +136,10 @@ class Source:
             limit=error.limit,
         )
 
-    def claim_key(self, key: KeyPath) -> KeyPath:
-        """Where the expression of a claim stands: at its key, or in the table there."""
-        inner = ((*key, name) for name in ("claim", "integral"))  # integral: its former name
-        return next((each for each in inner if each in self.positions.values), key)
+    def place_of(self, key: KeyPath, *inner: str) -> KeyPath:
+        """Where an entry stands: at its key, or at one of some keys of the table there."""
+        places = ((*key, name) for name in inner)
+        return next((each for each in places if each in self.positions.values), key)
 
     def within(self, key: KeyPath, start: int, end: int) -> Span:
         """Where the characters ``start`` to ``end`` of a string's value stand in the file."""

@@ -12,8 +12,13 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, PlainValidator, WithJsonSchema
 
+from coadjoint.errors import CoadjointError
 from coadjoint.limits import STATE_COMPONENTS, TITLE_CHARACTERS, UNIT_CHARACTERS
+from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.decimals import NUMBER_SCHEMA, is_number_text, read_number
+from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.source import Source
 
 NAME_PATTERN = "^[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*$"
 # Printed in comments of generated code: no text that opens or closes one.
@@ -117,3 +122,64 @@ Names = Annotated[list[str], Field(min_length=1), AfterValidator(is_unique)]
 Length = Annotated[int, Field(ge=1, le=STATE_COMPONENTS)]
 Title = Annotated[str, Field(max_length=TITLE_CHARACTERS), AfterValidator(_is_printable)]
 License = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_license)]
+
+
+def read_default(
+    source: Source, key: KeyPath, value: object, shape: Shape
+) -> tuple[Fraction, ...] | None:
+    """The declared default, one number for each component; None if there is none."""
+    spread = None if value is None else _spread(value, shape)
+    if spread is None and value is not None:
+        raise source.fault(
+            key,
+            f"the default of {str(key[-2])!r} does not have its shape {list(shape)}",
+            found=_shape_text(value),
+            expected=f"one number for all components, or {_shape_words(shape)}",
+        )
+    return spread
+
+
+def _spread(value: object, shape: Shape) -> tuple[Fraction, ...] | None:
+    """One number for each component, row by row; None if the shape does not fit."""
+    if not isinstance(value, list):
+        assert isinstance(value, Fraction), value
+        count = 1
+        for length in shape:
+            count *= length
+        return (value,) * count
+    if not shape or len(value) != shape[0]:
+        return None
+    if len(shape) == 1:
+        return None if any(isinstance(entry, list) for entry in value) else tuple(value)
+    rows = [_spread(row, shape[1:]) for row in value if isinstance(row, list)]
+    whole = [row for row in rows if row is not None]
+    return tuple(x for row in whole for x in row) if len(whole) == shape[0] else None
+
+
+def _shape_words(shape: Shape) -> str:
+    if not shape:
+        return "a single number"
+    counts = [f"{shape[0]} numbers"] if len(shape) == 1 else [f"{shape[0]} lists of {shape[1]}"]
+    return f"a list of {counts[0]}"
+
+
+def _shape_text(value: object) -> str:
+    """The lengths of nested lists, for a message."""
+    if not isinstance(value, list):
+        return "a number"
+    inner = {len(row) if isinstance(row, list) else 1 for row in value}
+    return f"a list of {len(value)}" + (
+        f" lists of {listed(map(str, inner))}" if inner != {1} else ""
+    )
+
+
+def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
+    """A number of components that no matrix of a form keeps."""
+    counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
+    return source.fault(
+        key,
+        f"{count} components fill no matrix of the form {form!r}",
+        found=count,
+        expected=f"{counts[form]} components for an n by n matrix",
+        hint="Remove form, or choose another block, representation or shape.",
+    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -32,10 +32,12 @@ from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.formulas import Quantity
 from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import BRACKET_PATTERN
-from coadjoint.spec.sections.algebra_schema import (
+from coadjoint.spec.sections.algebra_keys import (
     WAYS,
     ActionPart,
     AlgebraPart,
@@ -45,8 +47,8 @@ from coadjoint.spec.sections.algebra_schema import (
     SemidirectPart,
     SubalgebraPart,
 )
-from coadjoint.spec.sections.matrix_brackets import read_bracket
-from coadjoint.spec.sections.representations import (
+from coadjoint.spec.sections.inputs import INPUTS
+from coadjoint.spec.sections.matrices import (
     by_matrices,
     check_basis_names,
     located,
@@ -54,8 +56,40 @@ from coadjoint.spec.sections.representations import (
     read_matrices,
     representation_of,
 )
+from coadjoint.spec.sections.matrix_brackets import read_bracket
+from coadjoint.spec.sections.parameters import PARAMETERS
+from coadjoint.spec.sections.time import TIME
 
 _BRACKET = re.compile(BRACKET_PATTERN, re.ASCII)
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What the velocities are along.
+
+    Attributes:
+        algebra: Their Lie algebra; None without one.
+        invariance: ``"left"`` (body, and without an algebra) or ``"right"`` (space).
+    """
+
+    algebra: LieAlgebra | None = None
+    invariance: str = "left"
+
+
+def read_structure(reading: Reading, part: AlgebraPart) -> Structure:
+    """The Lie algebra of the velocities.
+
+    Raises:
+        SpecError, AlgebraError: As `read_algebra`.
+    """
+    algebra = read_algebra(reading.source, part, reading.name, scalars_of(reading))
+    return Structure(algebra, part.invariance)
+
+
+def scalars_of(reading: Reading) -> Scalars:
+    """The parameters that constants may depend on, and what they may not name."""
+    driving: list[Quantity] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
+    return Scalars(PARAMETERS.of(reading), driving)
 
 
 def read_algebra(
@@ -107,13 +141,9 @@ class _Algebras:
         return self._with_blocks(algebra, part.blocks or {}, key)
 
     def _by_name(self, name: str, key: KeyPath) -> LieAlgebra:
-        key = self._or_text(key, "name")
+        key = self.source.place_of(key, "name")
         with located(self.source, key):
             return algebra_by_name(name, most=STATE_COMPONENTS)
-
-    def _or_text(self, key: KeyPath, inner: str) -> KeyPath:
-        """The key of a name, which may stand for the whole table."""
-        return (*key, inner) if (*key, inner) in self.source.positions.values else key
 
     def _with_blocks(
         self, algebra: LieAlgebra, declared: Mapping[str, list[str]], key: KeyPath
@@ -236,7 +266,8 @@ class _Algebras:
     ) -> Representation:
         """The representation of a name, or by matrices."""
         if part.name is not None:
-            return representation_of(self.source, self._or_text(key, "name"), algebra, part.name)
+            at = self.source.place_of(key, "name")
+            return representation_of(self.source, at, algebra, part.name)
         inner = (*key, "matrices")
         return by_matrices(self.source, inner, algebra, name, part.matrices or {}, self.scalars)
 
@@ -299,3 +330,13 @@ class _Algebras:
                     expected="names that differ",
                     hint="Choose another name here.",
                 )
+
+
+ALGEBRA = Table[Structure](
+    "algebra",
+    AlgebraPart,
+    "the Lie algebra of the velocities",
+    read_structure,
+    absent=Structure(),
+    attribute=None,
+)

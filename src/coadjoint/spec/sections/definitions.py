@@ -1,40 +1,32 @@
-"""Definitions: short names for expressions, put in as trees wherever they occur.
+"""Definitions: the table [definitions], short names for expressions.
 
-Comes in: the table [definitions], such as ``u = "A*b"`` and ``"V(s, d)" = "s^2 - d"``. Goes out:
-`Definition` records whose own trees hold no definition any more, and, of any other tree, the one
-with all definitions put in. What is put in takes the place of the call, so that later faults point
-there, and remembers which definition it is from.
-Read next: `coadjoint.spec.core.formulas`.
+Comes in: keys such as ``u`` and ``V(s, d)`` with their expressions. Goes out: `Definition` records
+whose own trees hold no definition any more. Read next: `coadjoint.spec.core.definitions`, which
+puts them into other formulas.
 """
 
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 
-from coadjoint import limits
+from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
+from coadjoint.spec.core.formulas import Quantity
 from coadjoint.spec.core.names import refusal
 from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import (
-    Call,
-    Component,
-    Index,
-    Name,
-    Node,
-    children,
-    rebuilt,
-    walk,
-    walk_up,
-)
+from coadjoint.spec.core.tree import Index, Name, Node, walk
 from coadjoint.spec.core.values import DEFINITION_PATTERN
-from coadjoint.spec.model import Definition, Input, Parameter, Shape, Time, Variable
+from coadjoint.spec.sections.inputs import INPUTS
+from coadjoint.spec.sections.parameters import PARAMETERS
+from coadjoint.spec.sections.time import TIME
+from coadjoint.spec.sections.variables import VARIABLES
 
 _KEY = re.compile(DEFINITION_PATTERN, re.ASCII)
 
@@ -49,24 +41,19 @@ def signature(key: str) -> tuple[str, tuple[str, ...]]:
     return name.strip(), tuple(part.strip() for part in rest.rstrip(") ").split(",") if rest)
 
 
-def read_definitions(
-    source: Source,
-    texts: Mapping[str, str],
-    quantities: Sequence[Variable | Parameter | Input | Time],
-) -> tuple[Definition, ...]:
+def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Definition, ...]:
     """The definitions in order; each may use those before it.
-
-    Args:
-        source: The text of the spec.
-        texts: The table [definitions]; its names have been found free.
-        quantities: All variables, parameters, inputs and the time.
 
     Raises:
         SpecError: A key or an expression is none, or a name in it is unknown.
         LimitError: With the earlier definitions put in, an expression is too large.
     """
+    source = reading.source
+    given: list[Quantity] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
     shapes: dict[str, Shape] = {}
-    for quantity in quantities:
+    for text in texts:
+        reading.declare(Naming(("definitions", text), _checked_name(source, text)))
+    for quantity in (*given, *filter(None, [TIME.of(reading)])):
         shapes |= {**dict.fromkeys(quantity.components, ()), quantity.name: quantity.value_shape}
     known: dict[str, Definition] = {}
     for text, expression in texts.items():
@@ -82,30 +69,18 @@ def read_definitions(
     return tuple(known.values())
 
 
-def defined_names(source: Source, texts: Iterable[str]) -> dict[KeyPath, str]:
-    """The name in each key of [definitions].
-
-    Raises:
-        SpecError: A key is neither like ``u`` nor like ``V(s, d)``.
-    """
-    found: dict[KeyPath, str] = {}
-    for text in texts:
+def _checked_name(source: Source, text: str) -> str:
+    """The name in a key of [definitions]."""
+    if not _KEY.fullmatch(text):
         key: KeyPath = ("definitions", text)
-        if not _KEY.fullmatch(text):
-            raise source.fault(
-                key,
-                f"{text!a} cannot be defined",
-                found=text,
-                expected='a name, or a name with arguments in quotes, such as "V(s, d)"',
-                at=source.positions.key(key),
-            )
-        found[key] = _name(text)
-    return found
-
-
-def functions(definitions: Mapping[str, Definition]) -> list[str]:
-    """Names of the definitions that take arguments."""
-    return [definition.name for definition in definitions.values() if definition.arguments]
+        raise source.fault(
+            key,
+            f"{text!a} cannot be defined",
+            found=text,
+            expected='a name, or a name with arguments in quotes, such as "V(s, d)"',
+            at=source.positions.key(key),
+        )
+    return _name(text)
 
 
 def _name(key: str) -> str:
@@ -149,99 +124,12 @@ def _shape(
     return shape_of(tree, shapes)
 
 
-# -- putting in -----------------------------------------------------------------------------------
-
-
-def expand(
-    tree: Node, definitions: Mapping[str, Definition], spent: Counter[str] | None = None
-) -> Node:
-    """A tree with its definitions put in.
-
-    Args:
-        tree: What was read.
-        definitions: What may be put in, by name.
-        spent: Parts that were put into other trees of the spec; those of this one are added.
-
-    Raises:
-        ExpressionError: One is given another number of arguments, or a tree grows beyond the
-            limits, which is seen before it does: 20 definitions that double make a million parts.
-
-    >>> double = Definition("f", ("x",), "x + x", read_expression("x + x"), None)
-    >>> expand(read_expression("f(2*y)", ["f"]), {"f": double}) == read_expression("2*y + 2*y")
-    True
-    """
-    if not definitions:
-        return tree
-    spent = Counter() if spent is None else spent
-    total = sum(1 for _ in walk(tree))
-    made: dict[int, tuple[Node, int]] = {}  # with the number of parts
-    for node in walk_up(tree):
-        below = [made[id(child)] for child in children(node)]
-        found = rebuilt(node, [part for part, _ in below]), 1 + sum(count for _, count in below)
-        definition = definitions.get(_called(node))
-        if definition is not None:
-            put = _put_in(node, definition, below)
-            total += put[1] - found[1]
-            spent["DEFINED_PARTS"] += put[1]
-            found = put
-            if total > limits.EXPRESSION_NODES:
-                raise _too_large(node, definition, "EXPRESSION_NODES", "the expression has")
-            if spent["DEFINED_PARTS"] > limits.DEFINED_PARTS:
-                raise _too_large(node, definition, "DEFINED_PARTS", "all expressions have")
-        made[id(node)] = found
-    return made[id(tree)][0]
-
-
-def _too_large(node: Node, definition: Definition, limit: str, what: str) -> ExpressionError:
-    return ExpressionError(
-        f"with {definition.name} put in, {what} too many parts",
-        node.start,
-        node.end,
-        found=definition.name,
-        expected=f"at most {getattr(limits, limit)} ({limit})",
-        limit=limit,
-    )
-
-
-def _called(node: Node) -> str:
-    """What a node may be a definition of; empty for operators."""
-    match node:
-        case Name(name=name) | Index(name=name) | Call(function=name):
-            return name
-    return ""
-
-
-def _put_in(
-    node: Node, definition: Definition, given: Sequence[tuple[Node, int]]
-) -> tuple[Node, int]:
-    """The expression of a definition in the place of its call, and the number of its parts."""
-    if len(given) != len(definition.arguments):
-        raise ExpressionError(
-            f"{definition.name} is given {len(given)} argument{'s' * (len(given) != 1)}",
-            node.start,
-            node.end,
-            found=str(len(given)),
-            expected=definition.signature,
-        )
-    values = dict(zip(definition.arguments, given, strict=True))
-    made: dict[int, Node] = {}
-    count = 0
-    for part in walk_up(definition.tree):
-        fresh = rebuilt(part, [made[id(child)] for child in children(part)])
-        fresh = replace(fresh, start=node.start, end=node.end, within=definition.name)
-        argument = values.get(_called(part)) if isinstance(part, (Name, Index)) else None
-        if argument is not None:
-            fresh = _component(fresh, argument[0])
-        count += 1 if argument is None else argument[1] + isinstance(part, Index)
-        made[id(part)] = fresh
-    return _component(node, made[id(definition.tree)]), count + isinstance(node, Index)
-
-
-def _component(node: Node, whole: Node) -> Node:
-    """``whole`` for a name that stands for it, and its component for a component of the name."""
-    if not isinstance(node, Index):
-        return whole
-    if isinstance(whole, Name):
-        return replace(node, name=whole.name)
-    start, end, within = node.start, node.end, node.within
-    return Component(node.name, whole, node.indices, start=start, end=end, within=within)
+DEFINITIONS = Table[tuple[Definition, ...]](
+    "definitions",
+    str,
+    "short names for expressions, such as u = 'A*b' and 'V(s, d)' = 's^2 - d'",
+    read_definitions,
+    many=True,
+    pattern=DEFINITION_PATTERN,
+    quantities=True,
+)

@@ -1,48 +1,57 @@
-"""Lax pairs: the table [lax] of a spec, two matrices that name the spectral parameter.
+"""Lax pairs: the table [lax], two matrices that name the spectral parameter.
 
-Comes in: the table and what the spec declares. Goes out: a `Lax` with two square matrices of one
-size. Whether ``dL/dt = [L, M]`` is a claim that the certificate decides.
+Comes in: its keys. Goes out: a `Lax` with two square matrices of one size. Whether
+``dL/dt = [L, M]`` is a claim that the certificate decides.
 Read next: `coadjoint.derive.routes.lax`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 
-from coadjoint.spec.core.formulas import Quantity, Scope, make_scope, read_formula
+from pydantic import Field
+
+from coadjoint.spec.core.formulas import Formula, Scope
 from coadjoint.spec.core.names import NAME
+from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import FUNCTIONS, words
-from coadjoint.spec.core.source import Source
-from coadjoint.spec.model import Definition, Formula, Lax
-from coadjoint.spec.schema import LaxPart
+from coadjoint.spec.sections.variables import motion_roles, state_roles
 
 
-def read_lax(
-    source: Source, part: LaxPart, roles: tuple[str, ...], quantities: Sequence[Quantity]
-) -> Lax:
+class LaxPart(Part):
+    """A Lax pair, ``dL/dt = [L, M]`` for every value of the spectral parameter."""
+
+    spectral: str = Field("lambda", description="name of the spectral parameter in L and M")
+    L: str = Field(description="a square matrix of state, parameters and the spectral parameter")
+    M: str = Field(description="the same of velocities too: how L turns")
+
+
+@dataclass(frozen=True)
+class Lax:
+    """A declared Lax pair: ``dL/dt = [L, M]`` for every value of the spectral parameter."""
+
+    spectral: str
+    L: Formula
+    M: Formula
+
+
+def read_lax(reading: Reading, part: LaxPart) -> Lax:
     """The declared pair.
-
-    Args:
-        source: The text of the spec.
-        part: The table.
-        roles: Roles of the variables of the state.
-        quantities: Everything the spec declares.
 
     Raises:
         SpecError: The spectral parameter has a taken name, or L and M are not square matrices of
             one size.
     """
-    _check_spectral(source, part.spectral, quantities)
     others = {part.spectral: ()}
-    of_state = make_scope("L of a Lax pair", roles, quantities, others)
-    of_motion = make_scope(
-        "M of a Lax pair", tuple(dict.fromkeys((*roles, "velocity"))), quantities, others
-    )
-    L = _square(source, "L", part.L, of_state)
-    M = _square(source, "M", part.M, of_motion)
+    of_state = reading.scope("L of a Lax pair", state_roles(reading), others, driven=())
+    of_motion = reading.scope("M of a Lax pair", motion_roles(reading), others, driven=())
+    _check_spectral(reading, part.spectral)
+    L = _read_square(reading, "L", part.L, of_state)
+    M = _read_square(reading, "M", part.M, of_motion)
     if L.shape != M.shape:
-        raise source.fault(
+        raise reading.source.fault(
             ("lax", "M"),
             f"M is {words(M.shape)} and L is {words(L.shape)}",
             found=words(M.shape),
@@ -51,12 +60,10 @@ def read_lax(
     return Lax(part.spectral, L, M)
 
 
-def _check_spectral(source: Source, name: str, quantities: Sequence[Quantity]) -> None:
+def _check_spectral(reading: Reading, name: str) -> None:
     """The spectral parameter has a name of its own; it may be a keyword, since no code names it."""
-    taken = {q.name for q in quantities}
-    taken |= {c for q in quantities if not isinstance(q, Definition) for c in q.components}
-    if not NAME.fullmatch(name) or name in taken or name in FUNCTIONS:
-        raise source.fault(
+    if not NAME.fullmatch(name) or name in reading.owners or name in FUNCTIONS:
+        raise reading.source.fault(
             ("lax", "spectral"),
             f"{name!a} cannot name the spectral parameter",
             found=name,
@@ -64,11 +71,12 @@ def _check_spectral(source: Source, name: str, quantities: Sequence[Quantity]) -
         )
 
 
-def _square(source: Source, which: str, text: str, scope: Scope) -> Formula:
+def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formula:
+    """One of the two matrices."""
     key: KeyPath = ("lax", which)
-    formula = read_formula(source, key, text, scope, any_shape=True)
+    formula = reading.formula(key, text, scope, any_shape=True)
     if len(formula.shape) != 2 or formula.shape[0] != formula.shape[1]:
-        raise source.fault(
+        raise reading.source.fault(
             key,
             f"{which} is {words(formula.shape)}",
             found=words(formula.shape),
@@ -76,3 +84,13 @@ def _square(source: Source, which: str, text: str, scope: Scope) -> Formula:
             hint="Write hat(Pi) for the matrix of a vector, diag(a) for a diagonal one.",
         )
     return formula
+
+
+LAX = Table[Lax | None](
+    "lax",
+    LaxPart,
+    "a Lax pair of the motion",
+    read_lax,
+    routed=True,
+    example='L = "hat(Pi)" and M = "hat(Omega)"',
+)

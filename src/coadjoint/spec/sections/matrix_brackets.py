@@ -20,6 +20,8 @@ from coadjoint.algebra.matrices import (
     transpose,
 )
 from coadjoint.spec.core.coefficients import Scalars
+from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.degrees import degree_in
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.positions import KeyPath
@@ -38,13 +40,10 @@ from coadjoint.spec.core.tree import (
     children,
     walk_up,
 )
-from coadjoint.spec.model import Shape
 
 #: What the two matrices are called.
 PAIR = ("X", "Y")
 _EXPECTED = "sums of products such as X*N*Y - Y*N*X, in which X and Y occur once each"
-
-Degree = tuple[int, int]
 
 
 def read_bracket(
@@ -66,7 +65,8 @@ def read_bracket(
             problem = f"the value is {words(shape)}"
             raise fault_at(tree, problem, found=words(shape), expected=words((size, size)))
         scalars.check_terms(tree, check_size(tree, scope))
-        _check_bilinear(tree)
+        if any(degree_in(tree, (name,)) != 1 for name in PAIR):
+            raise fault_at(tree, "this is not linear in X and in Y", expected=_EXPECTED)
         evaluation = _Evaluation(scalars)
         zero: SparseMatrix = {}
         evaluation.value(tree, dict.fromkeys(PAIR, zero))  # what cannot be evaluated is refused now
@@ -86,31 +86,6 @@ def _check_free(tree: Node, scalars: Scalars) -> None:
                 expected="parameters with other names than X and Y",
                 hint="Rename the parameter.",
             )
-
-
-def _check_bilinear(tree: Node) -> None:
-    """Every addend has X once and Y once."""
-    degrees: dict[int, Degree] = {}
-    for node in walk_up(tree):
-        degrees[id(node)] = _degree(node, [degrees[id(child)] for child in children(node)])
-    if degrees[id(tree)] != (1, 1):
-        raise fault_at(tree, "this is not linear in X and in Y", expected=_EXPECTED)
-
-
-def _degree(node: Node, below: list[Degree]) -> Degree:
-    """How often X and Y occur in each addend of a node."""
-    match node:
-        case Name(name=name) if name in PAIR:
-            return (1, 0) if name == PAIR[0] else (0, 1)
-        case Power(exponent=exponent):
-            return below[0][0] * exponent, below[0][1] * exponent
-        case Binary(operator="+" | "-"):
-            if below[0] != below[1]:
-                raise fault_at(node, "the addends are not linear in X and in Y", expected=_EXPECTED)
-            return below[0]
-        case Binary(operator="/") if below[1] != (0, 0):
-            raise fault_at(node, "X or Y stands in a divisor", expected=_EXPECTED)
-    return sum(x for x, _ in below), sum(y for _, y in below)
 
 
 class _Evaluation:

@@ -1,68 +1,97 @@
-"""Poisson: a declared bracket of coordinates, for systems without a Lie algebra.
+"""Poisson: the table [poisson], a declared bracket for systems without a Lie algebra.
 
-Comes in: the validated table [poisson] and the coordinates. Goes out: a `Poisson` record whose
-functions have been parsed in the scope of coordinates and parameters. Whether the bracket satisfies
-the Jacobi identity is proved later. Read next: `coadjoint.spec.consistency`.
+Comes in: its keys and the coordinates. Goes out: a `Poisson` record. Whether the bracket satisfies
+the Jacobi identity is proved later. Read next: `coadjoint.spec.sections.newton`.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import Annotated
 
+from pydantic import Field, model_validator
+
+from coadjoint.spec.core.components import unpacked
 from coadjoint.spec.core.faults import did_you_mean, listed
-from coadjoint.spec.core.formulas import Quantity, make_scope, read_formula
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.parts import Part, named
 from coadjoint.spec.core.positions import KeyPath
-from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.values import POISSON_PATTERN
-from coadjoint.spec.model import (
-    Definition,
-    Formula,
-    Input,
-    Parameter,
-    Poisson,
-    Time,
-    Variable,
-    unpacked,
-)
-from coadjoint.spec.schema import PoissonPart
+from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of, state_roles
 
-_BRACKET = re.compile(POISSON_PATTERN, re.ASCII)
+_KEY = re.compile(POISSON_PATTERN, re.ASCII)
 
 
-def read_poisson(
-    source: Source,
-    part: PoissonPart,
-    variables: Sequence[Variable],
-    constants: Sequence[Parameter | Input | Time | Definition],
-) -> Poisson:
-    """The bracket of a spec.
+class PoissonPart(Part):
+    """A Poisson bracket of coordinates, in the place of an algebra."""
 
-    Args:
-        source: The text of the spec.
-        part: The table [poisson].
-        variables: The state.
-        constants: What its functions may use beside the state.
+    nambu: Annotated[list[str], Field(min_length=1)] | None = Field(
+        None, description="the n - 2 distinguished functions of n coordinates"
+    )
+    brackets: dict[str, str] | None = Field(
+        None,
+        description="brackets such as '{X1, X2}' = '4*X3', each pair once; the others are 0",
+        json_schema_extra=named(POISSON_PATTERN),
+    )
+    canonical: list[Annotated[list[str], Field(min_length=2, max_length=2)]] | None = Field(
+        None, description="pairs of a position and its momentum, as [['q', 'p']]"
+    )
+    magnetic: dict[str, str] | None = Field(
+        None,
+        description="brackets of canonical momenta, such as '{p1, p2}' = 'B*q3'",
+        json_schema_extra=named(POISSON_PATTERN),
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> PoissonPart:
+        ways = [self.nambu, self.brackets, self.canonical]
+        if sum(way is not None for way in ways) != 1:
+            raise ValueError("exactly one of nambu, brackets and canonical")
+        if self.magnetic is not None and self.canonical is None:
+            raise ValueError("magnetic terms beside canonical alone")
+        return self
+
+
+@dataclass(frozen=True)
+class Poisson:
+    """A declared Poisson bracket of the coordinates.
+
+    Attributes:
+        kind: ``"nambu"``, ``"brackets"`` or ``"canonical"``.
+        functions: The n - 2 distinguished functions of a Nambu bracket, else empty.
+        entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
+            the declared brackets, or the magnetic terms of a canonical one.
+        pairs: ``(i, j)`` of a position and its momentum of a canonical bracket, else empty.
+        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices beside
+            the diagonal, since there the pairing is ``tr(P dS/dt)``, which counts it twice.
+    """
+
+    kind: str
+    functions: tuple[Formula, ...] = ()
+    entries: tuple[tuple[int, int, Formula], ...] = ()
+    pairs: tuple[tuple[int, int], ...] = ()
+    weights: tuple[Fraction, ...] = ()
+
+
+def read_poisson(reading: Reading, part: PoissonPart) -> Poisson:
+    """The declared bracket.
 
     Raises:
         SpecError: A coordinate is unknown, a pair stands twice, or functions are too few or many.
     """
-    return _Reading(source, variables, constants).poisson(part)
+    return _Bracket(reading).poisson(part)
 
 
-class _Reading:
+class _Bracket:
     """The reading of one table, with the places of the coordinates."""
 
-    def __init__(
-        self,
-        source: Source,
-        variables: Sequence[Variable],
-        constants: Sequence[Parameter | Input | Time | Definition],
-    ) -> None:
-        self.source = source
-        self.quantities: tuple[Quantity, ...] = (*variables, *constants)
-        self.roles = tuple(dict.fromkeys(variable.role for variable in variables))
+    def __init__(self, reading: Reading) -> None:
+        self.reading, self.source = reading, reading.source
+        variables = state_of(VARIABLES.of(reading))
         self.state = [name for variable in variables for name in variable.components]
         self.forms = {variable.name: variable.form for variable in variables}
         self.places = {variable.name: self._run(variable) for variable in variables}
@@ -85,7 +114,8 @@ class _Reading:
         return Poisson("canonical", (), entries, tuple(weights), tuple(weights.values()))
 
     def _formula(self, key: KeyPath, text: str, kind: str) -> Formula:
-        return read_formula(self.source, key, text, make_scope(kind, self.roles, self.quantities))
+        scope = self.reading.scope(kind, state_roles(self.reading), driven=())
+        return self.reading.formula(key, text, scope)
 
     def _nambu(self, texts: Sequence[str]) -> tuple[Formula, ...]:
         """The distinguished functions, two fewer than there are coordinates."""
@@ -126,7 +156,7 @@ class _Reading:
     def _pair(self, key: KeyPath, text: str, allowed: Sequence[int]) -> tuple[int, int]:
         """The places of X1 and X2 in a key ``{X1, X2}``."""
         names = [self.state[place] for place in allowed]
-        found = _BRACKET.fullmatch(text)
+        found = _KEY.fullmatch(text)
         unknown = [name for name in found.groups() if name not in names] if found else [text]
         if found is None or unknown:
             example = listed(names[:2]) if len(names) > 1 else "X1, X2"
@@ -204,3 +234,11 @@ def pairing_weights(count: int, form: str) -> list[Fraction]:
     rows = unpacked(range(count), form)
     diagonal = {rows[n][n] for n in range(len(rows))}
     return [Fraction(1, 1 if n in diagonal else 2) for n in range(count)]
+
+
+POISSON = Table[Poisson | None](
+    "poisson",
+    PoissonPart,
+    "a Poisson bracket of coordinates, where there is no algebra",
+    read_poisson,
+)

@@ -1,112 +1,183 @@
-"""Symmetries: declared actions, maps that keep the motion, and brackets that are claimed.
+"""Symmetries: the table [symmetries], infinitesimal actions with their momentum maps.
 
-Comes in: the tables [symmetries], [transformations] and [claims.brackets]. Goes out: records of
-`coadjoint.spec.model`, whose formulas have been found to fit the variables that they move and to be
-linear in the element of the algebra. Whether what they say is true is proved later.
+Comes in: its keys. Goes out: `Symmetry` records, whose formulas fit the variables that they move
+and are linear in the element of the algebra. Whether what they say is true is proved later.
 Read next: `coadjoint.derive.symmetries`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import combinations
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.matrices import size
-from coadjoint.errors import CoadjointError
-from coadjoint.spec.core.coefficients import Scalars
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, listed
-from coadjoint.spec.core.formulas import DRIVING, Quantity, make_scope, read_formula
+from coadjoint.spec.core.components import Shape, component_names, matrix_size
+from coadjoint.spec.core.degrees import degree_in
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, listed
+from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.names import NAME
+from coadjoint.spec.core.parts import Accept, Part, named
 from coadjoint.spec.core.positions import KeyPath
-from coadjoint.spec.core.shapes import words
-from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import (
-    Binary,
-    Call,
-    Index,
-    Name,
-    Negate,
-    Node,
-    Number,
-    Power,
-    children,
-    walk_up,
-)
-from coadjoint.spec.model import (
-    ClaimedBracket,
-    Formula,
-    Observable,
-    Section,
-    Shape,
-    Symmetry,
-    Transformation,
-    Variable,
-    matrix_size,
-)
-from coadjoint.spec.schema import ClaimPart, SymmetryPart, TransformationPart
-from coadjoint.spec.sections.algebras import read_algebra
-
-#: Functions that are linear in each argument, so that degrees add up.
-_MULTILINEAR = ("dot", "cross", "outer", "commutator")
-#: Functions that are linear in all arguments together.
-_LINEAR = ("trace", "transpose", "hat", "diag", "rows", "vector")
+from coadjoint.spec.core.reading import Reading, Table, name_each
+from coadjoint.spec.core.values import Names, Prose, Unit
+from coadjoint.spec.sections.algebra_keys import OperandPart
+from coadjoint.spec.sections.algebras import read_algebra, scalars_of
+from coadjoint.spec.sections.momenta import Section
+from coadjoint.spec.sections.observables import OBSERVABLES, Observable
+from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of, state_roles
 
 
-def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[str, Shape]:
-    """Shapes of the energy, of observables and momentum maps, and of their components."""
-    named: dict[str, Shape] = {"energy": ()}
-    for entry in entries:
-        shape = entry.value_shape if isinstance(entry, Symmetry) else entry.shape
-        named |= {**dict.fromkeys(entry.components, ()), entry.name: shape}
-    return named
+class SymmetryPart(Part):
+    """An infinitesimal action of a Lie algebra on the state, with its momentum map."""
+
+    algebra: OperandPart = Field(description="the algebra that acts: its name, or a table")
+    vector: str | None = Field(
+        None,
+        description="name of an element of the algebra, as its coefficients along the basis; with "
+        "_ and the name of a block, those along the block, as xi_rotation",
+    )
+    matrix: str | None = Field(
+        None, description="name of an element of the algebra, as a matrix of the algebra"
+    )
+    generators: Annotated[dict[str, str], Field(min_length=1)] | None = Field(
+        None,
+        description="how variables move, linear in the element: of positions alone, whose momenta "
+        "then follow, or of the whole state, where what is left out stands still",
+        json_schema_extra=named(),
+    )
+    linear: Names | None = Field(
+        None, description="variables on whose stacked components the algebra's matrices act"
+    )
+    time: str | None = Field(None, description="how time moves, linear in the element")
+    map: str | None = Field(
+        None, description="the momentum map paired with the element, where it is not derived"
+    )
+    side: Literal["left", "right"] = Field("left", description="of the action")
+    form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
+        None, description="the matrix whose entries are the components of the momentum map"
+    )
+    accept: Accept = None
+    unit: Unit = Field("1", description="unit of the momentum map; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SymmetryPart:
+        if (self.generators is None) == (self.linear is None):
+            raise ValueError("either generators or linear")
+        formulas = self.generators is not None or self.time is not None or self.map is not None
+        if (self.vector is not None) + (self.matrix is not None) != formulas:
+            raise ValueError("one name, vector or matrix, where formulas use it")
+        return self
 
 
-class SymmetryReader:
-    """The reading of what a spec says about symmetries.
+@dataclass(frozen=True)
+class Symmetry:
+    """An infinitesimal action, whose momentum map is emitted beside the dynamics.
 
-    Args:
-        source: The text of the spec.
-        state: The variables that make the state.
-        quantities: Variables, parameters and definitions.
-        observables: What claims may use beside the energy.
+    Attributes:
+        name: Of the momentum map.
+        algebra: What acts.
+        element: Name of its generic element in the formulas; "" if they are none.
+        as_matrix: Whether the element is a matrix there, not the vector of its coefficients.
+        generators: How variables move, by name.
+        linear: Variables on whose stacked components the matrices of the algebra act.
+        time: How time moves, or None.
+        map: The momentum map paired with the element, where it is declared, or None.
+        side: ``"left"`` or ``"right"``.
+        form: One of `FORMS` if the components are the entries of a matrix, else "".
+        unit: Unit text of the momentum map.
+        doc: Free text for documents.
     """
 
-    def __init__(
-        self,
-        source: Source,
-        state: Sequence[Variable],
-        quantities: Sequence[Quantity],
-        observables: Sequence[Observable],
-    ) -> None:
-        self.source, self.quantities = source, quantities
-        self.named = emitted_shapes(observables)
-        self.state = {variable.name: variable for variable in state}
-        self.roles = tuple(dict.fromkeys(variable.role for variable in state))
+    name: str
+    algebra: LieAlgebra
+    element: str = ""
+    as_matrix: bool = False
+    generators: Mapping[str, Formula] = field(default_factory=dict)
+    linear: tuple[str, ...] = ()
+    time: Formula | None = None
+    map: Formula | None = None
+    side: str = "left"
+    form: str = ""
+    unit: str = "1"
+    doc: str = ""
 
-    # -- [symmetries] -------------------------------------------------------------------
+    @property
+    def shape(self) -> Shape:
+        """Shape of the components as they are kept: the whole matrix, or a list."""
+        if self.form == "matrix":
+            return self.value_shape
+        return (self.algebra.dimension,) if self.algebra.dimension > 1 or self.form else ()
 
-    def symmetries(
-        self, parts: Mapping[str, SymmetryPart], system: str, scalars: Scalars
-    ) -> tuple[Symmetry, ...]:
-        """The declared actions, in order.
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, one for each basis vector."""
+        return component_names(self.name, self.shape, "" if self.form == "matrix" else self.form)
 
-        Raises:
-            SpecError: A formula does not fit, or is not linear in the element.
-            AlgebraError: The algebra is none.
-        """
-        found = []
-        for name, part in parts.items():
-            key: KeyPath = ("symmetries", name)
-            inner = (*key, "algebra")
-            algebra = read_algebra(self.source, part.algebra, system, scalars, inner)
-            found.append(self._symmetry(name, part, key, algebra))
-        self.named |= emitted_shapes(found)
-        return tuple(found)
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas: that of the whole matrix where there is a form."""
+        size = matrix_size(self.algebra.dimension, self.form) if self.form else None
+        return self.shape if size is None else (size, size)
 
-    def _symmetry(
-        self, name: str, part: SymmetryPart, key: KeyPath, algebra: LieAlgebra
-    ) -> Symmetry:
+
+def read_symmetries(reading: Reading, parts: Mapping[str, SymmetryPart]) -> tuple[Symmetry, ...]:
+    """The declared actions, in order.
+
+    Raises:
+        SpecError: A formula does not fit, or is not linear in the element.
+        AlgebraError: The algebra is none.
+    """
+    OBSERVABLES.of(reading)  # whose names elements may not have
+    actions = _Actions(reading)
+    return tuple(actions.symmetry(name, part) for name, part in parts.items())
+
+
+def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
+    """The variable of the state that something moves.
+
+    Raises:
+        SpecError: There is none of that name.
+    """
+    state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+    if name not in state:
+        raise reading.source.fault(
+            key,
+            f"{name!a} is no variable of the state",
+            found=name,
+            expected=f"one of {listed(state)}",
+            hint=did_you_mean(name, state),
+        )
+    return state[name]
+
+
+def read_move(
+    reading: Reading, key: KeyPath, name: str, text: str, kind: str, others: Mapping[str, Shape]
+) -> Formula:
+    """A formula of the shape of the variable of the state that it moves."""
+    shape = find_moved(reading, key, name).value_shape
+    scope = reading.scope(kind, state_roles(reading), others, driven=("time",))
+    return read_fitting(reading.source, key, text, scope, shape, name)
+
+
+class _Actions:
+    """The reading of the declared actions."""
+
+    def __init__(self, reading: Reading) -> None:
+        self.reading, self.source = reading, reading.source
+        self.scalars = scalars_of(reading)
+        self.state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+
+    def symmetry(self, name: str, part: SymmetryPart) -> Symmetry:
+        """One declared action."""
+        key: KeyPath = ("symmetries", name)
+        algebra = read_algebra(
+            self.source, part.algebra, self.reading.name, self.scalars, (*key, "algebra")
+        )
         form = part.form or ""
         if form and matrix_size(algebra.dimension, form) is None:
             raise self.source.fault(
@@ -130,27 +201,26 @@ class SymmetryReader:
             if getattr(part, table) is not None
         }
         return Symmetry(
-            name,
-            algebra,
-            element,
-            part.matrix is not None,
-            generators,
-            tuple(part.linear or ()),
-            scalar.get("time"),
-            scalar.get("map"),
-            part.side,
-            form,
-            part.unit,
-            part.doc,
+            name=name,
+            algebra=algebra,
+            element=element,
+            as_matrix=part.matrix is not None,
+            generators=generators,
+            linear=tuple(part.linear or ()),
+            time=scalar.get("time"),
+            map=scalar.get("map"),
+            side=part.side,
+            form=form,
+            unit=part.unit,
+            doc=part.doc,
         )
 
     def _element(self, part: SymmetryPart, key: KeyPath, algebra: LieAlgebra) -> dict[str, Shape]:
         """The name of the generic element and those of its blocks, with their shapes."""
         way = "vector" if part.vector is not None else "matrix"
         name = getattr(part, way)
-        taken = {x for q in self.quantities for x in (q.name, *getattr(q, "components", ()))}
         names = {name, *(f"{name}_{block}" for block in algebra.blocks)}
-        if not NAME.fullmatch(name) or names & (taken | self.named.keys()):
+        if not NAME.fullmatch(name) or names & (self.reading.owners.keys() | {"energy"}):
             raise self.source.fault(
                 (*key, way),
                 f"{name!a} cannot name an element of {algebra.name}",
@@ -177,7 +247,7 @@ class SymmetryReader:
     def _check_linear(self, key: KeyPath, names: Sequence[str], algebra: LieAlgebra) -> None:
         """The matrices fit the stacked components."""
         for place, name in enumerate(names):
-            self._variable((*key, "linear", place), name)
+            find_moved(self.reading, (*key, "linear", place), name)
         self._check_matrices((*key, "linear"), algebra)
         count = sum(len(self.state[name].components) for name in names)
         rows = size(algebra.matrices)
@@ -190,42 +260,16 @@ class SymmetryReader:
                 expected=f"variables with {rows} components together",
             )
 
-    def _variable(self, key: KeyPath, name: str) -> Variable:
-        if name not in self.state:
-            raise self.source.fault(
-                key,
-                f"{name!a} is no variable of the state",
-                found=name,
-                expected=f"one of {listed(self.state)}",
-                hint=did_you_mean(name, self.state),
-            )
-        return self.state[name]
-
     def _moves(self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape]) -> Formula:
         """How a variable moves under the element."""
         key = (*key, "generators", name)
-        formula = self._fitting(key, name, text, "a generator", shapes)
+        formula = read_move(self.reading, key, name, text, "a generator", shapes)
         return self._linear(key, formula, shapes)
-
-    def _fitting(
-        self, key: KeyPath, name: str, text: str, kind: str, others: Mapping[str, Shape]
-    ) -> Formula:
-        """A formula of the shape of a variable of the state."""
-        shape = self._variable(key, name).value_shape
-        scope = make_scope(kind, self.roles, self.quantities, others, driven=("time",))
-        formula = read_formula(self.source, key, text, scope, any_shape=True)
-        if formula.shape != shape:
-            raise self._misfit(key, formula, f"{words(shape)}, as {name} is")
-        return formula
-
-    def _misfit(self, key: KeyPath, formula: Formula, expected: str) -> CoadjointError:
-        found = words(formula.shape)
-        return self.source.fault(key, f"the value is {found}", found=found, expected=expected)
 
     def _scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
         kind = f"a {key[-1]} of a symmetry"
-        scope = make_scope(kind, self.roles, self.quantities, shapes, driven=("time",))
-        return self._linear(key, read_formula(self.source, key, text, scope), shapes)
+        scope = self.reading.scope(kind, state_roles(self.reading), shapes, driven=("time",))
+        return self._linear(key, self.reading.formula(key, text, scope), shapes)
 
     def _linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
         """The formula, if it is linear in the element."""
@@ -244,158 +288,26 @@ class SymmetryReader:
             raise self.source.expression_fault(key, error) from None
         return formula
 
-    # -- [transformations] --------------------------------------------------------------
 
-    def transformations(
-        self, parts: Mapping[str, TransformationPart]
-    ) -> tuple[Transformation, ...]:
-        """The declared maps, in order; to be read after the symmetries.
-
-        Raises:
-            SpecError: A formula does not fit what it stands for.
-        """
-        return tuple(
-            Transformation(
-                name,
-                {
-                    variable: self._fitting(
-                        ("transformations", name, "map", variable), variable, text, "a map", {}
-                    )
-                    for variable, text in part.map.items()
-                },
-                part.reverses_time,
-                {
-                    observable: self._exchange(
-                        ("transformations", name, "exchanges", observable), observable, each.claim
-                    )
-                    for observable, each in part.exchanges.items()
-                },
-            )
-            for name, part in parts.items()
-        )
-
-    def _exchange(self, key: KeyPath, name: str, text: str) -> Formula:
-        if name not in self.named:
-            raise self.source.fault(
-                key,
-                f"{name!a} is no observable and no momentum map",
-                found=name,
-                expected=f"one of {listed(self.named)}",
-                hint=did_you_mean(name, self.named),
-                at=self.source.positions.key(key),
-            )
-        key = self.source.claim_key(key)
-        formula = self._any_shape(key, text, "an observable")
-        if formula.shape != self.named[name]:
-            raise self._misfit(key, formula, f"{words(self.named[name])}, as {name} is")
-        return formula
-
-    def _any_shape(self, key: KeyPath, text: str, kind: str) -> Formula:
-        scope = make_scope(kind, self.roles, self.quantities, self.named, driven=DRIVING)
-        return read_formula(self.source, key, text, scope, any_shape=True)
-
-    # -- [claims.brackets] --------------------------------------------------------------
-
-    def brackets(self, parts: Mapping[str, ClaimPart]) -> tuple[ClaimedBracket, ...]:
-        """The claimed brackets, in order; to be read after the symmetries.
-
-        Raises:
-            SpecError: A key is no bracket, or the value does not have its shape.
-        """
-        return tuple(self._bracket(text, part.claim) for text, part in parts.items())
-
-    def _bracket(self, text: str, value: str) -> ClaimedBracket:
-        key: KeyPath = ("claims", "brackets", text)
-        left, right = (self._side(key, text, side) for side in self._sides(key, text))
-        key = self.source.claim_key(key)
-        formula = self._any_shape(key, value, "a bracket")
-        shape = left.shape + right.shape
-        if formula.shape != shape:
-            raise self._misfit(key, formula, f"{words(shape)}, as {text} is")
-        return ClaimedBracket(left, right, formula)
-
-    def _sides(self, key: KeyPath, text: str) -> tuple[str, str]:
-        """The two expressions of a key ``{f, g}``: it is cut at the comma outside parentheses."""
-        inner = text.strip()
-        if inner.startswith("{") and inner.endswith("}"):
-            inner, depth = inner[1:-1], 0
-            for place, letter in enumerate(inner):
-                depth += (letter in "([") - (letter in ")]")
-                if letter == "," and depth == 0:
-                    return inner[:place].strip(), inner[place + 1 :].strip()
-        raise self.source.fault(
-            key,
-            f"{text!a} is no bracket",
-            found=text,
-            expected="a key such as '{L, A}'",
-            at=self.source.positions.key(key),
-        )
-
-    def _side(self, key: KeyPath, text: str, side: str) -> Formula:
-        """One side of a bracket; faults point at the key, in which it stands."""
-        at = self.source.positions.key(key)
-        try:
-            formula = self._any_shape(key, side, "a side of a bracket")
-        except CoadjointError as error:
-            problem = str(error).splitlines()[0].partition(f"{text}: ")[2] or str(error)
-            raise self.source.fault(
-                key, f"{side!a}: {problem}".rstrip("."), found=error.parts.get("found"), at=at
-            ) from None
-        if len(formula.shape) > 1:
-            raise self.source.fault(
-                key,
-                f"{side!a} is {words(formula.shape)}",
-                found=side,
-                expected="scalars and vectors in a bracket",
-                hint="Take a row or a component of it, as A[1] or A[1, 2].",
-                at=at,
-            )
-        return formula
+SYMMETRIES = Table[tuple[Symmetry, ...]](
+    "symmetries",
+    SymmetryPart,
+    "symmetries by the names of their momentum maps",
+    read_symmetries,
+    many=True,
+    names=name_each,
+)
 
 
-def degree_in(tree: Node, names: Sequence[str]) -> int | None:
-    """The degree of an expression in some names, if all its terms have the same; None of 0.
-
-    Raises:
-        ExpressionError: They do not, or a name stands in a divisor or a function.
-
-    >>> from coadjoint.spec.core.expressions import read_expression
-    >>> degree_in(read_expression("cross(xi, r) + 2*xi"), ["xi"])
-    1
-    >>> degree_in(read_expression("vector(0, xi)"), ["xi"])
-    1
-    """
-    degrees: dict[int, int | None] = {}
-    for node in walk_up(tree):
-        below = [degrees[id(child)] for child in children(node)]
-        degrees[id(node)] = _degree(node, below, names)
-    return degrees[id(tree)]
+def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[str, Shape]:
+    """Shapes of the energy, of observables and momentum maps, and of their components."""
+    named: dict[str, Shape] = {"energy": ()}
+    for entry in entries:
+        shape = entry.value_shape if isinstance(entry, Symmetry) else entry.shape
+        named |= {**dict.fromkeys(entry.components, ()), entry.name: shape}
+    return named
 
 
-def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> int | None:
-    """The degree of a node by the degrees of its parts."""
-    known = [degree for degree in below if degree is not None]
-    match node:
-        case Number(value=value):
-            return 0 if value else None
-        case Name(name=found) | Index(name=found):
-            return int(found in names)
-        case Binary(operator="*"):
-            return sum(known) if len(known) == len(below) else None
-        case Call(function=function) if function in _MULTILINEAR:
-            return sum(known) if len(known) == len(below) else None
-        case Power(exponent=exponent) if exponent > 0:
-            return known[0] * exponent if known else None
-    same = all(a == b for a, b in combinations(known, 2))
-    plain = isinstance(node, (Negate, Binary)) or getattr(node, "function", "") in _LINEAR
-    divided = isinstance(node, Binary) and node.operator == "/"
-    if divided and not below[1]:
-        return below[0]
-    if any(known) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
-        raise fault_at(
-            node,
-            f"this is not linear in {names[0]!r}",
-            found=names[0],
-            expected=f"sums of terms that are linear in {names[0]}",
-        )
-    return known[0] if known else None if plain else 0
+def shapes_in_claims(reading: Reading) -> Mapping[str, Shape]:
+    """What claims about symmetries may name beside the state."""
+    return emitted_shapes([*OBSERVABLES.of(reading), *SYMMETRIES.of(reading)])

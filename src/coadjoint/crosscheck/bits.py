@@ -1,0 +1,159 @@
+"""Cross-check, bits: targets against NumPy, bit for bit.
+
+Comes in: a `Subject`. Goes out: at how many points each target was equal, or a `CrossCheckError`
+that shows the point and the two values.
+Read next: `coadjoint.crosscheck.ladder`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
+from coadjoint.crosscheck.subject import Subject, work
+from coadjoint.lower.program import run
+from coadjoint.render.targets import BUILDS
+
+#: Members compared at a time: few enough for the cache.
+BLOCK: Final = 10_000
+#: Operations and outputs of a slow target in each batch, all its members together.
+SLOW_WORK: Final = 2000
+
+
+def equal_bits(subject: Subject, count: int) -> dict[str, dict[str, int]]:
+    """Compare every exact target with NumPy bit for bit; NaN equals NaN, and 0 is not -0.
+
+    Args:
+        subject: The system; what calls functions beyond sqrt is not compared, since their last
+            bits belong to the libraries (`against_oracle` holds them to the threshold).
+        count: How many points for each function, odd batches and special values beside them; of a
+            slow target the first members of each batch.
+
+    Returns:
+        Points compared by function and target, those where all is NaN left out; all of them were
+        equal.
+
+    Raises:
+        CrossCheckError: Two results differ in a bit.
+    """
+    equal = {function: dict.fromkeys(subject.exact, 0) for function in subject.programs}
+    functions = [function for function in equal if subject.has_equal_bits(function)]
+    for batch in _bit_batches(subject.points, count) if functions and subject.exact else ():
+        _compare_bits(subject, functions, batch, equal)
+    missing = [function for function in functions if not all(equal[function].values())]
+    if missing and subject.inside.size:
+        _compare_bits(subject, missing, subject.points.around(subject.inside, 5, BLOCK), equal)
+    return equal
+
+
+def _compare_bits(
+    subject: Subject, functions: Sequence[str], batch: Batch, equal: dict[str, dict[str, int]]
+) -> None:
+    """Compare one batch bit for bit, and count what was equal."""
+    for function in functions:
+        one = subject.evaluate(function, batch, "numpy")
+        for target in subject.exact:
+            own, expected = _expected(subject, function, target, batch, one)
+            other = subject.evaluate(function, own, target)
+            different = differing(expected, other)
+            if different.any():
+                row, member = np.argwhere(different)[0].tolist()
+                pair = {"numpy": float(expected[row, member]), target: float(other[row, member])}
+                raise subject.failure(function, row, own, member, rung=5, **pair)
+            equal[function][target] += int((~np.isnan(other)).any(axis=0).sum())
+
+
+def _expected(
+    subject: Subject, function: str, target: str, batch: Batch, numpy: Array
+) -> tuple[Batch, Array]:
+    """The members of a batch that a target computes, and what it is to have there."""
+    language, program = BUILDS[target], subject.programs[function]
+    if language.is_slow:
+        most = max(1, SLOW_WORK // work(program))
+        batch, numpy = batch.first(most), numpy[:, :most]
+    if language.stops_at_poles:
+        numpy = np.where(_has_numbers(subject, function, batch), numpy, np.nan)
+    return batch, np.ascontiguousarray(numpy)
+
+
+@dataclass(frozen=True)
+class _Stopping:
+    """A value that notes where its language would stop; an arithmetic for `run`.
+
+    Attributes:
+        value: For each member, or of all.
+        goes_on: For each member, whether every operation up to now has a number.
+    """
+
+    value: Any
+    goes_on: NDArray[np.bool_]
+
+    def __add__(self, other: _Stopping) -> _Stopping:
+        return _Stopping(self.value + other.value, self.goes_on)
+
+    def __mul__(self, other: _Stopping) -> _Stopping:
+        return _Stopping(self.value * other.value, self.goes_on)
+
+    def __truediv__(self, other: _Stopping) -> _Stopping:
+        self.goes_on[...] &= other.value != 0
+        return _Stopping(self.value / other.value, self.goes_on)
+
+    def __neg__(self) -> _Stopping:
+        return _Stopping(-self.value, self.goes_on)
+
+
+def _has_numbers(subject: Subject, function: str, batch: Batch) -> NDArray[np.bool_]:
+    """For each member, whether nothing is divided by zero and no root is of a negative number.
+
+    A quotient by zero stops a language that has no infinity even where it is infinity's
+    reciprocal that is wanted.
+    """
+    goes_on = np.ones(batch.state.shape[1], dtype=bool)
+
+    def number(value: Fraction) -> _Stopping:
+        return _Stopping(np.float64(value), goes_on)
+
+    def root(_: str, of: _Stopping) -> _Stopping:
+        goes_on[...] &= ~(of.value < 0)
+        return _Stopping(np.sqrt(of.value), goes_on)
+
+    given = {name: _Stopping(row, goes_on) for name, row in subject.values(batch).items()}
+    with np.errstate(all="ignore"):
+        run(subject.programs[function], given, number, root)
+    return goes_on
+
+
+def _bit_batches(points: Points, count: int) -> Iterator[Batch]:
+    """Blocks of every family, special values and odd sizes; parameters shared in every other."""
+    yield from _both_ways(points.special(seed, size) for seed, size in enumerate(ODD_SIZES))
+    yield from _both_ways(iter([points.special(99, BLOCK)]))
+    for seed in range(-(-count // BLOCK)):
+        quarter = -(-min(BLOCK, count - seed * BLOCK) // 4)
+        for number, batch in enumerate(points.families(seed + 10, quarter).values()):
+            yield batch.shared() if (seed + number) % 2 else batch
+
+
+def _both_ways(batches: Iterator[Batch]) -> Iterator[Batch]:
+    """Each batch with parameters of its own and with shared ones; inputs and time likewise."""
+    for batch in batches:
+        yield batch
+        yield batch.shared()
+        if batch.driving:
+            yield batch.steady()
+            yield batch.shared().steady()
+
+
+def differing(one: Array, other: Array) -> NDArray[np.bool_]:
+    """Where two arrays differ in their bits, NaN apart.
+
+    >>> differing(np.array([0.0, np.nan, 1.0]), np.array([-0.0, -np.nan, 1.0])).tolist()
+    [True, False, False]
+    """
+    different = one.view(np.int64) != other.view(np.int64)
+    return np.asarray(different & ~(np.isnan(one) & np.isnan(other)))

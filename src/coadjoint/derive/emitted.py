@@ -1,0 +1,122 @@
+"""Emitted: what is emitted beside the dynamics, as one list that everything else reads.
+
+Comes in: a Setting and a route's energy. Goes out: the energy, the claimed Casimirs, velocities,
+the reactions and momenta of constraints, what the spec declares, momentum maps, the integrals of a
+Lax pair, and momenta as seen from space where the state has the attitude: each with its unit, its
+components and what is known of its conservation, in the order in which kernels return them.
+Read next: `coadjoint.derive.units`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from coadjoint.derive import units
+from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.mechanics.reconstruction import spatial_momentum
+from coadjoint.derive.records import Emitted, Kept
+from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.symmetries import in_formulas, momentum_maps
+from coadjoint.exact import Element
+from coadjoint.spec.model import component_names
+
+
+def emitted(
+    setting: Setting, energy: Element | None, momenta: Sequence[tuple[str, Element]] = ()
+) -> tuple[Emitted, ...]:
+    """Everything that is emitted, in order.
+
+    Args:
+        setting: The spec and its field.
+        energy: Of the route, or None.
+        momenta: Along a constraint distribution, of velocities and then of sections.
+    """
+    return (
+        *(() if energy is None else (emitted_energy(setting, energy),)),
+        *_first(setting),
+        *_along_distribution(setting, dict(momenta)),
+        *_declared(setting),
+        *_momentum_maps(setting, energy),
+        *_last(setting),
+    )
+
+
+def emitted_energy(setting: Setting, energy: Element) -> Emitted:
+    """The energy of a route."""
+    return Emitted("energy", (), ("energy",), units.of_energy(setting), (energy,), Kept.AS_ENERGY)
+
+
+@once
+def _first(setting: Setting) -> tuple[Emitted, ...]:
+    """Casimirs, velocities that the state gives, and reactions."""
+    spec, elements = setting.spec, setting.elements
+    found = []
+    for n, casimir in enumerate(spec.casimirs, 1):
+        name, unit = f"casimir{n}", units.of_formula(setting, casimir)
+        names, values = component_names(name, casimir.shape), setting.components(casimir)
+        found.append(Emitted(name, casimir.shape, names, unit, values, Kept.UNLESS_WORKED_ON))
+    for v in spec.defined:
+        values, form = elements(v.components), setting.values[v.name]
+        found.append(Emitted(v.name, v.shape, v.components, v.unit, values, form=form))
+    for each in spec.constraints:
+        name, unit = each.reaction, units.of_reaction(setting, each)
+        names, values = each.reactions, elements(each.reactions)
+        found.append(Emitted(name, each.shape, names, unit, values))
+    return tuple(found)
+
+
+def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterator[Emitted]:
+    """Momenta of the independent velocities, then of sections."""
+    for each in setting.spec.reduced_momenta:
+        unit = units.of_momentum(setting, each.velocity)
+        parts = tuple(values[name] for name in each.components)
+        yield Emitted(each.name, each.velocity.shape, each.components, unit, parts)
+    for section in setting.spec.sections:
+        name, kept = section.name, _claimed(setting, section.name)
+        yield Emitted(name, (), (name,), section.unit, (values[name],), kept)
+
+
+@once
+def _declared(setting: Setting) -> tuple[Emitted, ...]:
+    """The observables of the spec."""
+    return tuple(
+        Emitted(
+            each.name,
+            each.shape,
+            each.components,
+            each.unit,
+            setting.components(each.formula, setting.reactions),
+            _claimed(setting, each.name),
+        )
+        for each in setting.spec.observables
+    )
+
+
+def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted]:
+    """The momentum maps of declared symmetries."""
+    values = momentum_maps(setting, energy)
+    for each in setting.spec.symmetries:
+        parts, kept = values[each.name], _claimed(setting, each.name)
+        whole = in_formulas(each, parts)
+        yield Emitted(each.name, each.shape, each.components, each.unit, parts, kept, whole)
+
+
+@once
+def _last(setting: Setting) -> tuple[Emitted, ...]:
+    """The integrals of the Lax pair, then momenta as seen from space."""
+    found, pair = [], lax_integrals(setting)
+    for name, value in () if pair is None else pair.named:
+        unit = units.of_value(setting, value)
+        found.append(Emitted(name, (), (name,), unit, (value,), Kept.ALWAYS))
+    for each in setting.spec.spatial:
+        inner, kept = each.momentum, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
+        seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
+        parts = tuple(seen[name] for name in inner.components)
+        found.append(Emitted(each.name, inner.shape, each.components, inner.unit, parts, kept))
+    return tuple(found)
+
+
+def _claimed(setting: Setting, name: str) -> Kept:
+    """Whether the spec claims that a quantity is conserved, everywhere."""
+    claims = setting.spec.conserved
+    return Kept.ALWAYS if name in {each.everywhere for each in claims} else Kept.UNKNOWN

@@ -1,0 +1,156 @@
+"""Formulas: what each function of a kernel computes, as elements of the Equations.
+
+Comes in: Equations. Goes out: the rows of a function with their labels, or None where a system does
+not have it. Each function here has the name of an entry of `coadjoint.kernel_functions`; lowering,
+its check and the reference ask here, and nothing else knows what a function is.
+Read next: `coadjoint.lower.lowering` and `coadjoint.derive.reference`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from coadjoint.derive.domain import bounds
+from coadjoint.derive.equations import Equations
+from coadjoint.exact import Element
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What a function computes, for one member.
+
+    Attributes:
+        of: The equations that define what the elements name.
+        lines: Label and value of each row; of a derivative, of each row of what is differentiated.
+        shape: Of the result.
+        state: What the rows of its first argument are.
+        by: Of a derivative, the names that it is by; else none.
+        may_hide_zeros: Whether a row may vanish everywhere that is not written as zero.
+    """
+
+    of: Equations
+    lines: tuple[tuple[str, Element], ...]
+    shape: tuple[int, ...]
+    state: tuple[str, ...]
+    by: tuple[str, ...] = ()
+    may_hide_zeros: bool = False
+
+    @property
+    def elements(self) -> list[Element]:
+        """The values alone."""
+        return [value for _, value in self.lines]
+
+
+def rows_of(equations: Equations, function: str) -> Rows | None:
+    """What a function of the table computes; None where a system has no such function."""
+    formula = getattr(sys.modules[__name__], KERNEL_FUNCTIONS[function].name)
+    found: Rows | None = formula(equations)
+    return found
+
+
+def rhs(equations: Equations) -> Rows:
+    """The rates."""
+    return _rows(equations, _rates(equations))
+
+
+def jacobian(equations: Equations) -> Rows:
+    """Derivatives of the rates by the state."""
+    return _slopes(equations, equations.setting.state)
+
+
+def input_jacobian(equations: Equations) -> Rows | None:
+    """Derivatives of the rates by the inputs."""
+    inputs = equations.setting.inputs
+    return _slopes(equations, inputs) if inputs else None
+
+
+def parameter_jacobian(equations: Equations) -> Rows | None:
+    """Derivatives of the rates by the parameters."""
+    parameters = equations.setting.parameters
+    return _slopes(equations, parameters) if parameters else None
+
+
+def energy(equations: Equations) -> Rows | None:
+    """The energy, a number for each member."""
+    value = equations.exact.energy
+    return None if value is None else _rows(equations, [("energy", value)], ())
+
+
+def observables(equations: Equations) -> Rows | None:
+    """The observables in their order."""
+    found = equations.exact.observables
+    return _rows(equations, found) if found else None
+
+
+def poisson_tensor(equations: Equations) -> Rows | None:
+    """The brackets of the components of the state, row by row."""
+    state, tensor = equations.setting.state, equations.exact.poisson_tensor
+    if tensor is None:
+        return None
+    brackets = (
+        (f"{{{a}, {b}}}", entry)
+        for a, row in zip(state, tensor, strict=True)
+        for b, entry in zip(state, row, strict=True)
+    )
+    return _rows(equations, brackets, (len(state), len(state)))
+
+
+def constraint_residual(equations: Equations) -> Rows | None:
+    """What vanishes on the constraints."""
+    found = equations.exact.residuals
+    return _rows(equations, found) if found else None
+
+
+def projection(equations: Equations) -> Rows | None:
+    """The nearest state on the constraints, by equations of its own."""
+    own = equations.projection
+    if own is None:
+        return None
+    nearest = _rows(own, zip(own.setting.state, own.exact.rates, strict=True))
+    return replace(nearest, may_hide_zeros=True)
+
+
+def reconstruction(equations: Equations) -> Rows | None:
+    """The rates of what is reconstructed, which follows the state in the first argument."""
+    followed = equations.followed
+    if not followed:
+        return None
+    state = (*equations.setting.state, *(name for name, _ in followed))
+    return _rows(equations, [(f"d{name}/dt", rate) for name, rate in followed], state=state)
+
+
+def domain(equations: Equations) -> Rows | None:
+    """What is positive where the system is defined."""
+    found = [(bound.label, value) for bound, value in bounds(equations)]
+    return _rows(equations, found) if found else None
+
+
+def _rows(
+    equations: Equations,
+    lines: Iterable[tuple[str, Element]],
+    shape: tuple[int, ...] | None = None,
+    state: tuple[str, ...] | None = None,
+) -> Rows:
+    """Rows of the state, one for each line, unless something else is said."""
+    listed = tuple(lines)
+    return Rows(
+        of=equations,
+        lines=listed,
+        shape=(len(listed),) if shape is None else shape,
+        state=equations.setting.state if state is None else state,
+    )
+
+
+def _rates(equations: Equations) -> list[tuple[str, Element]]:
+    """The rates with their labels."""
+    state, rates = equations.setting.state, equations.exact.rates
+    return [(f"d{name}/dt", rate) for name, rate in zip(state, rates, strict=True)]
+
+
+def _slopes(equations: Equations, by: tuple[str, ...]) -> Rows:
+    """Derivatives of the rates by names."""
+    rates = _rows(equations, _rates(equations))
+    return replace(rates, shape=(len(rates.lines), len(by)), by=by, may_hide_zeros=True)

@@ -1,0 +1,215 @@
+"""Records: the parts of Equations, and how the left sides of their lines are written.
+
+Comes in: exact elements from a route. Goes out: frozen records: the steps of a derivation, the
+equations as field elements, and charts. Read next: `coadjoint.derive.equations`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cache
+
+import sympy
+from sympy.printing.mathml import mathml
+
+from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.mechanics.solver import Solve
+from coadjoint.derive.setting import shaped
+from coadjoint.exact import Element
+from coadjoint.spec.model import Shape
+
+
+@dataclass(frozen=True)
+class Left:
+    """The left side of a line of a derivation: plain text, LaTeX and presentation MathML."""
+
+    text: str
+    latex: str
+    mathml: str
+
+
+#: How kernels call a time derivative.
+_RATE = re.compile(r"d(?P<of>.+)_dt")
+
+
+def is_of_kernel(name: str) -> bool:
+    """Whether a name is one that kernels give: of an intermediate, or of a rate."""
+    return name.startswith("_") or _RATE.fullmatch(name) is not None
+
+
+@cache  # every route writes the same names
+def symbol(name: str) -> Left:
+    """The symbol itself: ``Pi1``; names of kernels as a book would write them."""
+    moving = _RATE.fullmatch(name)
+    if moving:
+        return replace(rate(moving["of"]), text=name)
+    plain = sympy.Symbol(name.removeprefix("_"))
+    return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
+
+
+def signed(sign: int, text: str) -> str:
+    """A sum, or minus it in brackets.
+
+    >>> signed(1, "a + b"), signed(-1, "a + b")
+    ('a + b', '-(a + b)')
+    """
+    return text if sign == 1 else f"-({text})"
+
+
+def rate(name: str) -> Left:
+    """Its time derivative: ``dPi1/dt``."""
+    of = symbol(name)
+    fraction = f"<mfrac><mrow><mi>d</mi>{of.mathml}</mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>"
+    return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", fraction)
+
+
+def partial(function: str, name: str) -> Left:
+    """A partial derivative: ``dl/dOmega1``."""
+    by = symbol(name)
+    fraction = (
+        f"<mfrac><mrow><mo>&#x2202;</mo><mi>{function}</mi></mrow>"
+        f"<mrow><mo>&#x2202;</mo>{by.mathml}</mrow></mfrac>"
+    )
+    return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {by.latex}", fraction)
+
+
+def component(text: str, latex: str, n: int) -> Left:
+    """A component of a vector that is written out: ``(M eta')_1``."""
+    inner = f"<mo>(</mo><mtext>{text}</mtext><mo>)</mo>"
+    return Left(
+        f"({text})_{n}", f"({latex})_{{{n}}}", f"<msub><mrow>{inner}</mrow><mn>{n}</mn></msub>"
+    )
+
+
+def bracket(a: str, b: str) -> Left:
+    """A Poisson bracket: ``{Pi1, Pi2}``."""
+    x, y = symbol(a), symbol(b)
+    braced = f"<mo>{{</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>}}</mo>"
+    return Left(f"{{{a}, {b}}}", rf"\{{{x.latex}, {y.latex}\}}", braced)
+
+
+def algebra_bracket(a: str, b: str) -> Left:
+    """A bracket of a Lie algebra: ``[J1, J2]``."""
+    x, y = symbol(a), symbol(b)
+    braced = f"<mo>[</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>]</mo>"
+    return Left(f"[{a}, {b}]", rf"[{x.latex}, {y.latex}]", braced)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a derivation, for the document.
+
+    Attributes:
+        title: What is done.
+        text: The general law as plain text, from the theorem and not from the spec.
+        latex: The same law as LaTeX.
+        lines: Left and right sides of what it gives for this system.
+    """
+
+    title: str
+    text: str
+    latex: str
+    lines: tuple[tuple[Left, Element], ...] = ()
+
+
+class Kept(Enum):
+    """When the motion conserves a quantity, as far as the spec and its kind tell."""
+
+    UNKNOWN = "unknown"
+    ALWAYS = "always"
+    AS_ENERGY = "where nothing acts that changes the energy"
+    UNLESS_WORKED_ON = "where the forces do not change it"
+
+
+@dataclass(frozen=True)
+class Emitted:
+    """A quantity that is emitted beside the dynamics.
+
+    Attributes:
+        name: As kernels and claims call it.
+        shape: ``()``, ``(n,)`` or ``(n, m)``.
+        components: Names of the components, row by row.
+        unit: Unit text, "" where the declared units do not tell.
+        values: The components.
+        kept: When it is conserved.
+        form: What it is in formulas, where that is no array of its components.
+    """
+
+    name: str
+    shape: Shape
+    components: tuple[str, ...]
+    unit: str
+    values: tuple[Element, ...]
+    kept: Kept = Kept.UNKNOWN
+    form: Quantity | None = None
+
+    @property
+    def whole(self) -> Quantity:
+        """What its name stands for in formulas."""
+        return shaped(self.values, self.shape) if self.form is None else self.form
+
+
+@dataclass(frozen=True)
+class Exact:
+    """The equations as field elements.
+
+    Attributes:
+        definitions: Velocities by name, each in terms of the state; rates and observables may use
+            these names. In the order in which they can be computed. Names with a leading underscore
+            are intermediates of a solve in the kernel (`coadjoint.derive.mechanics.solver`).
+        rates: Time derivative of each state component.
+        energy: The Hamiltonian, in terms of the state; None for forces without a potential.
+        emitted: What is emitted beside the dynamics, energy included.
+        poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
+        solves: Linear equations that definitions solve in the kernel, in that order.
+        residuals: What vanishes on the constraints, by the names of these.
+        forces: What external forces add to each rate; empty where none act, and with constraints.
+    """
+
+    definitions: tuple[tuple[str, Element], ...]
+    rates: tuple[Element, ...]
+    energy: Element | None
+    emitted: tuple[Emitted, ...]
+    poisson_tensor: tuple[tuple[Element, ...], ...] | None
+    solves: tuple[Solve, ...] = ()
+    residuals: tuple[tuple[str, Element], ...] = ()
+    forces: tuple[Element, ...] = ()
+
+    @property
+    def observables(self) -> tuple[tuple[str, Element], ...]:
+        """Name and value of each scalar that is emitted."""
+        return tuple(
+            pair for each in self.emitted for pair in zip(each.components, each.values, strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class Relation:
+    """A function that vanishes where variables live, such as ``chi . r`` or ``q . q - 1``.
+
+    Attributes:
+        text: The relation for people: ``dot(chi, r) = 0``.
+        element: What vanishes.
+    """
+
+    text: str
+    element: Element
+
+
+@dataclass(frozen=True)
+class Chart:
+    """The variables in which a route moves, where they are not the declared state.
+
+    Attributes:
+        variables: Their names, in the order of the route's rates.
+        state: Each component of the declared state as a function of them.
+        through: The map in words for certificates: ``Pi = P x Q``.
+        relations: What vanishes where the variables live; the motion must keep it so.
+    """
+
+    variables: tuple[str, ...]
+    state: tuple[Element, ...]
+    through: str
+    relations: tuple[Relation, ...] = ()

@@ -1,0 +1,39 @@
+"""Registry: the module of a route, and the Setting in which all routes of a spec live.
+
+Comes in: the name of a route, or a Spec. Goes out: a module with the function `derive`, loaded when
+it is asked for, and a Setting with the symbols of all routes that a spec lists.
+Read next: `coadjoint.spec.routes`, where routes are registered; `coadjoint.derive.setting`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+
+from coadjoint.derive import setting as settings
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics import external, legendre
+from coadjoint.derive.setting import Setting
+from coadjoint.spec import Spec
+from coadjoint.spec.routes import ROUTES
+
+_FOLDER = "coadjoint.derive.routes"
+
+
+def load_route(name: str) -> Callable[[Setting], Equations]:
+    """The function that follows a route.
+
+    >>> load_route("lie-poisson").__module__
+    'coadjoint.derive.routes.lie_poisson'
+    """
+    found: Callable[[Setting], Equations] = import_module(f"{_FOLDER}.{ROUTES[name].module}").derive
+    return found
+
+
+def make_setting(spec: Spec) -> Setting:
+    """The Setting of a Spec, with the symbols of all its routes: they live in one field."""
+    modules = [import_module(f"{_FOLDER}.{ROUTES[name].module}") for name in spec.routes]
+    # routes that share their variables share the function that names them, too
+    makers = dict.fromkeys(module.symbols for module in modules if hasattr(module, "symbols"))
+    names = [name for make in (*makers, external.symbols, legendre.symbols) for name in make(spec)]
+    return settings.make_setting(spec, tuple(dict.fromkeys(names)))

@@ -1,0 +1,225 @@
+"""Ranks of matrices of functions: never above the true rank at almost every point.
+
+Comes in: sparse rows of elements. Goes out: a rank, which is a certain bound from below.
+
+Rational entries are taken at a random point modulo a prime. Where no denominator is zero there,
+this is a homomorphism of rings: a minor with a nonzero value is a nonzero function. Entries with
+elementary functions are taken at a real point where they are defined, with bounds of all values
+(`coadjoint.exact.witness`): a minor whose bounds exclude zero is not zero there, hence at almost
+every point of the connected set around it on which the entries are analytic.
+
+From above nothing is certain. Rational minors of degree d that are not zero vanish at a random
+point with a chance below d/p, about 1e-15, and not at both of two points with two primes; values of
+functions bound no such chance. Who needs the rank itself has to bound it from above by other means,
+as Casimirs do the rank of a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
+primes are the same in every run.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
+from itertools import islice
+from typing import Any
+
+import mpmath
+
+from coadjoint.errors import AlgebraError
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.linear import SpanModulo, primes, rank_modulo
+from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.witness import UNDEFINED, Enclosure, enclosure, points_inside
+
+#: Points at which a rank is taken; the largest counts.
+POINTS = 2
+#: Points without a pole are looked for that often, each modulo another prime.
+TRIES = 50
+#: How ranks are known, in words.
+MODULO = "at random points modulo a prime"
+ENCLOSED = "at a real point, with bounds that exclude zero"
+#: How likely it is that a rank is larger than the one found, in words.
+CHANCE = "the ranks are certain from below; that one is larger has a chance below 1e-12"
+NO_CHANCE = (
+    "the ranks are certain from below; that one is larger is excluded by values alone, which bound "
+    "no chance"
+)
+#: Characters of an entry that a message shows.
+SHOWN = 60
+
+
+def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
+    """The rank of a sparse matrix at almost every point, as found: never above the true one.
+
+    Raises:
+        AlgebraError: No real point was found at which all entries are defined.
+
+    >>> field = Field(["x", "y"])
+    >>> x, y = field["x"], field["y"]
+    >>> generic_rank(field, [{0: x, 1: y}, {0: x * y, 1: y**2}])
+    1
+    """
+    largest, most = 0, _most(rows)
+    if not most:
+        return 0
+    exact = is_exact(field, _entries(rows))
+    ranks = _ranks_modulo(field, rows) if exact else map(_count, _bounded(field, rows))
+    for rank in islice(ranks, POINTS):
+        largest = max(largest, rank)
+        if largest == most:
+            break
+    return largest
+
+
+def source_of_ranks(field: Field, *ranks: tuple[Sequence[Mapping[int, Element]], int]) -> str:
+    """How the ranks of some matrices are known from below: `MODULO` or `ENCLOSED`.
+
+    >>> field = Field(["x"], slots=2)
+    >>> source_of_ranks(field, ([{0: field.call("cos", field["x"])}], 1))
+    'at a real point, with bounds that exclude zero'
+    """
+    exact = all(is_exact(field, _entries(rows)) for rows, _ in ranks)
+    return MODULO if exact else ENCLOSED
+
+
+def error_of_ranks(field: Field, *matrices: Sequence[Mapping[int, Element]]) -> str:
+    """How likely it is that the rank of one of some matrices is larger than found, in words."""
+    return CHANCE if all(is_exact(field, _entries(rows)) for rows in matrices) else NO_CHANCE
+
+
+def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> list[int]:
+    """Places of the rows that do not depend on those before them, at almost every point.
+
+    That these rows are independent is certain, that the others depend on them is not.
+
+    Raises:
+        AlgebraError: No real point was found at which all entries are defined.
+
+    >>> field = Field(["x", "y"])
+    >>> x, y = field["x"], field["y"]
+    >>> independent_rows(field, [{0: x}, {0: x * y}, {0: x, 1: y}])
+    [0, 2]
+    """
+    if not _most(rows):
+        return []
+    if not is_exact(field, _entries(rows)):
+        return max(islice(_bounded(field, rows), POINTS), key=len)
+    spans = ((SpanModulo(prime), numbers) for prime, numbers in _sampled(field, rows))
+    chosen = (span.independent(numbers) for span, numbers in islice(spans, POINTS))
+    return max(chosen, key=len)
+
+
+def is_exact(field: Field, elements: Iterable[Element]) -> bool:
+    """Whether no elementary function occurs, so that ranks modulo a prime make sense.
+
+    A square root modulo a prime has no sign: that of x^2 may be -x there, which it is nowhere for
+    positive x.
+    """
+    return not field.adjoined or all(map(field.function_free, elements))
+
+
+def _entries(rows: Sequence[Mapping[int, Element]]) -> Iterator[Element]:
+    return (entry for row in rows for entry in row.values())
+
+
+def _most(rows: Sequence[Mapping[int, Element]]) -> int:
+    """The largest rank that the places of nonzero entries allow."""
+    columns = {place for row in rows for place, entry in row.items() if entry}
+    return min(sum(any(row.values()) for row in rows), len(columns))
+
+
+# -- modulo primes --------------------------------------------------------------------------------
+
+
+def _ranks_modulo(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[int]:
+    return (rank_modulo(numbers, prime) for prime, numbers in _sampled(field, rows))
+
+
+def _sampled(
+    field: Field, rows: Sequence[Mapping[int, Element]]
+) -> Iterator[tuple[int, list[dict[int, int]]]]:
+    """The matrix at random points, each modulo a prime of its own; poles are passed over.
+
+    A factor or a denominator that is one of the primes can mislead at one point only.
+    """
+    source = random.Random(1)  # noqa: S311 (not for secrets)
+    for prime in islice(primes(), TRIES):
+        point = {name: Residue(source.randrange(1, prime), prime) for name in field.names}
+        with suppress(ZeroDivisionError):
+            yield prime, _residues(field, rows, point, partial(residue, prime=prime))
+
+
+def _residues(
+    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, Residue], number: Any
+) -> list[dict[int, int]]:
+    """The matrix at a point."""
+    factors: dict[int, Residue] = {}
+    return [
+        {j: field.evaluate(e, point, number, _no_call, factors).value for j, e in row.items()}
+        for row in rows
+    ]
+
+
+def _no_call(function: str, argument: Residue) -> Residue:
+    raise AssertionError(f"{function}({argument}) in a function-free element")
+
+
+# -- at real points -------------------------------------------------------------------------------
+
+
+def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[int]]:
+    """Places of rows that are certainly independent, at several real points.
+
+    Raises:
+        AlgebraError: No real point was found.
+    """
+    found = False
+    for point in points_inside(field, list(_entries(rows))):
+        with suppress(*UNDEFINED):
+            values = [{j: enclosure(field, e, point) for j, e in row.items()} for row in rows]
+            found = True
+            yield _independent(values)
+    if not found:
+        entry = next(e for e in _entries(rows) if not field.function_free(e))
+        text = element_text(field, entry)
+        shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+        raise AlgebraError(
+            f"no point was found where {shown} and what stands with it are real; expected formulas "
+            "that are defined together somewhere. State in [domain] where they are.",
+            found=text,
+        )
+
+
+def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
+    """Places of rows that are independent of those before, by bounds that exclude zero.
+
+    The elimination is one of exact numbers that nobody knows better than their bounds: a pivot is
+    not zero, so that every row that has one raises the rank.
+    """
+    pivots: list[tuple[int, dict[int, Enclosure]]] = []
+    places, minus = [], Enclosure.of(-1)
+    for place, row in enumerate(rows):
+        rest = dict(row)
+        for column, pivot in pivots:
+            if column in rest:
+                factor = rest.pop(column) / pivot[column]
+                for other, value in pivot.items():
+                    if other != column:
+                        taken = minus * factor * value
+                        rest[other] = rest[other] + taken if other in rest else taken
+        largest = _largest(rest)
+        if largest is not None:
+            pivots.append((largest, rest))
+            places.append(place)
+    return places
+
+
+def _largest(row: Mapping[int, Enclosure]) -> int | None:
+    """The place of the entry that is farthest from zero; None if all may be zero."""
+    certain = {column: abs(value.bounds.mid) for column, value in row.items() if value.sign}
+    return max(certain, key=lambda column: mpmath.mpf(certain[column].a), default=None)
+
+
+def _count(places: Sequence[int]) -> int:
+    return len(places)

@@ -1,0 +1,101 @@
+"""Kernel functions: the one table of what a kernel may compute.
+
+Comes in: nothing. Goes out: an entry for each function. Names that a spec may not use, lowering,
+the reference, the checks, the templates, the methods of a System and the documents read it, in this
+order. For another function add an entry here, and in `coadjoint.derive.formulas` the function of
+the same name, which says what it computes.
+Read next: `coadjoint.derive.formulas`.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import Final
+
+from coadjoint.declared import KernelFunction
+
+_ENTRIES: Final = (
+    KernelFunction(
+        name="rhs",
+        summary="Time derivative of the state",
+        shape="(n, *batch)",
+    ),
+    KernelFunction(
+        name="jacobian",
+        summary="Derivative of rhs by the state, one row for each rate",
+        shape="(n, n, *batch)",
+        by="state",
+    ),
+    KernelFunction(
+        name="input_jacobian",
+        summary="Derivative of rhs by the inputs, one row for each rate",
+        shape="(n, m, *batch)",
+        doc="Only systems with inputs have it.",
+        by="inputs",
+    ),
+    KernelFunction(
+        name="parameter_jacobian",
+        summary="Derivative of rhs by the parameters, one row for each rate",
+        shape="(n, k, *batch)",
+        doc="Only systems with parameters have it.",
+        by="parameters",
+    ),
+    KernelFunction(
+        name="energy",
+        summary="Energy",
+        shape="batch",
+    ),
+    KernelFunction(
+        name="observables",
+        summary="Observables, one row for each component",
+        shape="(o, *batch)",
+        doc="Rows are the components of ``OBSERVABLES``.",
+    ),
+    KernelFunction(
+        name="poisson_tensor",
+        summary="Poisson tensor, brackets of the components of the state",
+        constrained="Almost-Poisson tensor, velocities standing for their momenta",
+        shape="(n, n, *batch)",
+        doc="""Of a constrained motion the velocities stand for their momenta,
+``Omega_momentum``: with those and the positions as coordinates, the motion is this matrix times
+the gradient of the energy, which is the velocities and minus the slopes of the constrained
+Lagrangian. It is antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.""",
+    ),
+    KernelFunction(
+        name="constraint_residual",
+        summary="Left minus right sides of the constraints",
+        shape="(c, *batch)",
+        doc="""Rows follow the declared constraints. What a constraint gives a velocity is put in,
+so that its rows are 0; those of other constraints stay at the level of rounding along a
+trajectory that `simulate` follows.""",
+    ),
+    KernelFunction(
+        name="projection",
+        summary="State moved onto the constraints by the least change of velocities",
+        shape="(n, *batch)",
+        doc="""Positions stay. Velocities change by the d of least kinetic energy ``d . M d / 2``
+with which all constraints hold to rounding. Only systems have it that keep a constraint, one that
+gives no velocity outright.""",
+    ),
+    KernelFunction(
+        name="reconstruction",
+        summary="Rates of what is reconstructed; state holds the state, then its rows",
+        shape="(r, *batch)",
+        doc="""Rows are the components of ``RECONSTRUCTED``. In the first argument these follow the
+state: ``(n + r, *batch)``, or a mapping that names them all.""",
+        below=True,
+    ),
+    KernelFunction(
+        name="domain",
+        summary="What is positive where the system is defined, one row for each entry of DOMAIN",
+        shape="(d, *batch)",
+        doc="""Of a declared condition, a row is the side that is to be larger minus the other; of a
+constrained motion there are also the pivots of the solve for its accelerations. A row that is not
+``strict`` may be zero. Where one is violated, the other functions give what arithmetic gives,
+infinities and NaN among it; `simulate` stops there.""",
+    ),
+)
+
+_TABLE: Final = {each.name: each for each in _ENTRIES}
+#: Every function that a kernel may have, by name, in the order in which kernels hold them.
+KERNEL_FUNCTIONS: Final = MappingProxyType(_TABLE)

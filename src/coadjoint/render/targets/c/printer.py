@@ -1,0 +1,41 @@
+"""The target C, printing: expressions and statements.
+
+Read next: `coadjoint.render.printers`, which does the work.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from coadjoint.lower.program import Node
+from coadjoint.render.printers import WIDTH, Printer, indented
+
+C: Final = Printer("")
+
+
+def c_text(node: Node) -> str:
+    """``node`` as a C expression on one line.
+
+    >>> from fractions import Fraction
+    >>> from coadjoint.lower.program import Divide, Multiply, Negate, Number, Symbol
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> c_text(Divide(Negate(Negate(x)), Multiply(Number(Fraction(1, 2)), y)))
+    '-(-x) / (0.5 * y)'
+    """
+    return C.text(node)
+
+
+def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str:
+    """``to = node;`` in C, broken at the operators if it is long; the first line is not indented.
+
+    >>> from coadjoint.lower.program import Symbol
+    >>> c_assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
+    'out[0] = Pi1; /* dPi1/dt */'
+    """
+    note = f" /* {comment} */" if comment else ""
+    line = f"{to} = {c_text(node)};"
+    if column + len(line) + len(note) <= WIDTH:
+        return line + note
+    inner = C.broken(node, WIDTH - column - 4 - 1)
+    inner[-1] += ";"
+    return indented([f"{to} ={note}", *("    " + text for text in inner)], column)

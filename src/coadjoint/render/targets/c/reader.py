@@ -1,0 +1,187 @@
+"""The target C, reading: a function of ``kernel.c`` by the lines that our template prints.
+
+Comes in: the text. Goes out: a `Body` for each branch. This reader shares no code with the printer.
+Read next: `coadjoint.crosscheck.parse_back`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from fractions import Fraction
+from math import isfinite
+
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
+from coadjoint.render.targets.body import Body, failure, joined
+
+_TOKEN = re.compile(
+    r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/()\[\]])",
+    re.DOTALL,
+)
+_ZEROS = re.compile(
+    r"static const unsigned short _zeros\[\] = \{([\d,\s]*)\};\s*"
+    r"for \(size_t _z = 0; _z < sizeof _zeros / sizeof \*_zeros; \+\+_z\)\s*"
+    r"for \(size_t _n = 0; _n < count; \+\+_n\)\s*"
+    r"out\[_zeros\[_z\] \* out_stride \+ _n\] = 0\.0;"
+)
+#: How far apart rows and members of inputs and time are: 1 and 0 where members share them.
+_STEPS = re.compile(
+    r"const size_t _(inputs|time)_row = \1_stride \? \1_stride : 1;\s*"
+    r"const size_t _\1_member = \1_stride != 0;"
+)
+_LOOP = "for (size_t _n = 0; _n < count; ++_n) {"
+
+
+def read_c(text: str, name: str) -> list[Body]:
+    """The branches of a C function: one, or one for shared and one for separate parameters."""
+    found = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
+    if not found:
+        raise failure(f"kernel.c has no function {name!r}", name)
+    body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", found[1], flags=re.DOTALL)
+    zeros, body = _take_zeros(_STEPS.sub("", body))
+    branches = re.fullmatch(
+        r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
+        body,
+        re.DOTALL,
+    )
+    assert branches, "the last alternative matches anything"
+    if branches[3] is not None:
+        return [_read_branch(branches[3], "", zeros, name)]
+    return [
+        _read_branch(branches[1], "", zeros, name),
+        _read_branch(branches[2], " * parameters_stride + _n", zeros, name),
+    ]
+
+
+def _take_zeros(text: str) -> tuple[list[int], str]:
+    """The rows that a table sets to zero, and the text without the table and its loop."""
+    found = _ZEROS.search(text)
+    if not found:
+        return [], text
+    return [int(row) for row in found[1].split(",") if row.strip()], _ZEROS.sub("", text, count=1)
+
+
+def _read_branch(text: str, member: str, zeros: list[int], name: str) -> Body:
+    """The statements of one branch; ``member`` is what a parameter's index ends with."""
+    before, loop, inside = text.partition(_LOOP)
+    if not loop or not inside.rstrip().endswith("}"):
+        raise failure(f"kernel.c: no loop over the members in {text.strip()[:60]!r}", name)
+    body = Body(outputs=[(row, Number(Fraction(0))) for row in zeros])
+    for line in (*_lines(before), *_lines(inside.rstrip()[:-1])):
+        _read_line(line, member, body, name)
+    return body
+
+
+def _lines(text: str) -> Iterator[str]:
+    """Statements up to their semicolons, on one line each."""
+    *lines, rest = text.split(";")
+    yield from (" ".join(line.split()) for line in lines)
+    yield from filter(None, [" ".join(rest.split())])
+
+
+def _read_line(line: str, member: str, body: Body, name: str) -> None:
+    """One statement of C: an input, a statement or an output."""
+    line = line.replace("COADJOINT_INDEPENDENT", "").strip()
+    state = re.fullmatch(r"const double (\w+) = state\[(\d+) \* state_stride \+ _n\]", line)
+    given = re.fullmatch(rf"const double (\w+) = parameters\[(\d+){re.escape(member)}\]", line)
+    driving = re.fullmatch(
+        r"const double (\w+) = (inputs|time)\[(\d+) \* _\2_row \+ _n \* _\2_member\]", line
+    )
+    assigned = re.fullmatch(r"const double (\w+) = ([^\[]*)", line)
+    output = re.fullmatch(r"out\[(\d+) \* out_stride \+ _n\] = ([^\[]*)", line)
+    if state:
+        body.inputs[state[1]] = ("state", int(state[2]))
+    elif given:
+        body.inputs[given[1]] = ("parameters", int(given[2]))
+    elif driving:
+        body.inputs[driving[1]] = (driving[2], int(driving[3]))
+    elif assigned:
+        body.statements.append((assigned[1], read_expression(assigned[2], name)))
+    elif output:
+        body.outputs.append((int(output[1]), read_expression(output[2], name)))
+    elif line:
+        raise failure(f"kernel.c: {line!r} is no line of our template", name)
+
+
+def read_expression(text: str, name: str) -> Node:
+    """A node from a C expression; ``name`` is the function it stands in, for messages.
+
+    >>> read_expression("a - 2.0", "rhs")
+    Add(left=Symbol(name='a'), right=Negate(operand=Number(value=Fraction(2, 1))))
+    """
+    try:
+        return _Reader(text, name).whole()
+    except RecursionError as error:
+        raise failure(f"kernel.c: {text[:60]!r} is nested too deeply", name) from error
+
+
+class _Reader:
+    """Reads one C expression over ``+ - * /``, unary minus, calls and parentheses."""
+
+    def __init__(self, text: str, name: str) -> None:
+        self.text, self.name = text, name
+        self.tokens = list(self._tokens())
+        self.at = 0
+
+    def _tokens(self) -> Iterator[tuple[str, str]]:
+        end = 0
+        for token in _TOKEN.finditer(self.text):
+            if token.start() != end:
+                break
+            end = token.end()
+            if token.lastgroup:
+                yield token.lastgroup, token[0]
+        if end != len(self.text):
+            raise failure(f"kernel.c: {self.text[end:]!r} is no form of a Program", self.name)
+        yield "end", ""
+
+    def whole(self) -> Node:
+        """The expression, to its last token."""
+        node = self.sum()
+        if self.tokens[self.at][0] != "end":
+            raise self.refusal()
+        return node
+
+    def sum(self) -> Node:
+        node = self.product()
+        while self.tokens[self.at][1] in ("+", "-"):
+            node = joined(node, self.take(), self.product())
+        return node
+
+    def product(self) -> Node:
+        node = self.signed()
+        while self.tokens[self.at][1] in ("*", "/"):
+            node = joined(node, self.take(), self.signed())
+        return node
+
+    def signed(self) -> Node:
+        if self.tokens[self.at][1] != "-":
+            return self.atom()
+        self.take()
+        if self.tokens[self.at][1] == "-":
+            raise self.refusal()  # a decrement
+        return Negate(self.signed())
+
+    def atom(self) -> Node:
+        kind, text = self.tokens[self.at]
+        self.at += 1
+        # An integer would divide as integers do, and 1e999 is no number.
+        if kind == "number" and not text.isdigit() and isfinite(float(text)):
+            return Number(Fraction(float(text)))
+        if kind == "name" and self.tokens[self.at][1] != "(":
+            return Symbol(text)
+        if text == "(" or text in FUNCTIONS:
+            self.at += text != "("
+            inner = self.sum()
+            if self.take() != ")":
+                raise self.refusal()
+            return inner if text == "(" else Call(text, inner)
+        raise self.refusal()
+
+    def take(self) -> str:
+        self.at += 1
+        return self.tokens[self.at - 1][1]
+
+    def refusal(self) -> CrossCheckError:
+        return failure(f"kernel.c: {self.text!r} is no form of a Program", self.name)

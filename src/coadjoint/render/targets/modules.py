@@ -1,0 +1,66 @@
+"""Targets, modules: a kernel that is a Python file, executed once.
+
+Comes in: a System and the name of a file in its folder. Goes out: its functions, or an error that
+names the file. Read next: `coadjoint.render.targets.numpy.loader`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from coadjoint.errors import OutputError
+
+if TYPE_CHECKING:
+    from coadjoint.solve.system import System
+
+
+class KernelModule:
+    """The functions of a file.
+
+    Args:
+        system: Whose kernel it is.
+        file: The file in its folder.
+
+    Attributes:
+        source: SHA-256 of the text of the file.
+
+    Raises:
+        OutputError: The file cannot be loaded, or carries another id than the System.
+    """
+
+    def __init__(self, system: System, file: str) -> None:
+        self.system, self.path = system, system.folder / file
+        module = ModuleType(f"_coadjoint_{system.name}_{self.path.stem}")
+        try:
+            content = self.path.read_bytes()
+            exec(compile(content, self.path, "exec"), module.__dict__)  # noqa: S102 (it is a module)
+            found = module.ID
+        except Exception as error:
+            raise self.broken(f"cannot be loaded: {type(error).__name__}: {error}") from error
+        if found != system.id:
+            raise self.broken(
+                f"carries the id {found!r}, its system {system.id!r}; expected one id",
+                found=found,
+                expected=system.id,
+            )
+        self.source = hashlib.sha256(content).hexdigest()
+        self._module = module
+
+    def function(self, name: str) -> Callable[..., Any]:
+        """A function of the file.
+
+        Raises:
+            OutputError: It has none of this name.
+        """
+        found: Callable[..., Any] | None = getattr(self._module, name, None)
+        if found is None:
+            raise self.broken(f"has no function {name}")
+        return found
+
+    def broken(self, problem: str, **parts: Any) -> OutputError:
+        """What is wrong with the file."""
+        path = str(self.path)
+        return OutputError(f"{path} {problem}. Run `coadjoint regenerate`.", path=path, **parts)

@@ -1,0 +1,98 @@
+"""The target NumPy, reading: a function of ``kernel.py`` through a list of allowed forms.
+
+Comes in: the text. Goes out: a `Body`.
+Read next: `coadjoint.render.targets.python_text`.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from fractions import Fraction
+
+from coadjoint.lower.program import Node, Number
+from coadjoint.render.targets.body import Body
+from coadjoint.render.targets.python_text import Functions, Reader
+
+
+def read_numpy(text: str, name: str, arrays: Sequence[str] = ("state", "parameters")) -> Body:
+    """The function ``_name`` of a ``kernel.py``; other forms than our template's fail.
+
+    Args:
+        text: Of the file.
+        name: Of the function.
+        arrays: The arrays that it takes, in order.
+    """
+    reader = _reader(name)
+    functions = reader.functions(text, _is_allowed)
+    for wanted in (name, f"_{name}"):
+        if wanted not in functions:
+            raise reader.refusal(f"there is no function {wanted!r}")
+    _check_calls(reader, functions, arrays)
+    body = Body()
+    for line in functions[f"_{name}"].body:
+        if not _read_zeros(reader, line, body):
+            reader.read(line, body)
+    return body
+
+
+def read_expression(text: str, name: str) -> Node:
+    """A node from a Python expression; ``name`` is the function it stands in, for messages.
+
+    >>> read_expression("-np.sqrt(a)", "rhs")
+    Negate(operand=Call(function='sqrt', argument=Symbol(name='a')))
+    """
+    return _reader(name).node(ast.parse(text.strip(), mode="eval").body)
+
+
+def _reader(name: str) -> Reader:
+    return Reader("kernel.py", name, _called)
+
+
+def _called(function: ast.expr) -> str | None:
+    """``sqrt`` of ``np.sqrt``."""
+    match function:
+        case ast.Attribute(ast.Name("np"), called):
+            return called
+    return None
+
+
+def _is_allowed(item: ast.stmt) -> bool:
+    """Whether a statement may stand between functions."""
+    match item:
+        case ast.Import():
+            return True
+        case ast.Assign(targets=[ast.Name(id="ID" | "CHUNK")], value=ast.Constant()):
+            return True
+    return False
+
+
+def _check_calls(reader: Reader, functions: Functions, arrays: Sequence[str]) -> None:
+    """The public function hands its private twin and all arrays to the loop over members."""
+    name = reader.name
+    twin = functions[f"_{name}"].args
+    match functions[name].body:
+        case [ast.Expr(), ast.Return(value=ast.Call(ast.Name("_over_members"), args, rows))]:
+            given = [ast.unparse(argument) for argument in args]
+            only_rows = [each.arg for each in rows] in ([], ["n"])
+            taken = [each.arg for each in (*twin.posonlyargs, *twin.args, *twin.kwonlyargs)]
+            wanted = [*arrays, "out"]
+            if only_rows and given[:1] + given[2:] == [f"_{name}", *wanted] and taken == wanted:
+                return
+    raise reader.refusal(f"{name} does not evaluate _{name}")
+
+
+def _read_zeros(reader: Reader, line: ast.stmt, body: Body) -> bool:
+    """Whether a line is one of the two that set a table of rows to zero."""
+    match line:
+        case ast.Assign([ast.Name("zeros")], ast.Tuple(elts=rows)):
+            for row in rows:
+                if not isinstance(row, ast.Constant) or type(row.value) is not int:
+                    raise reader.refusal("is no row", row)
+                body.outputs.append((row.value, Number(Fraction(0))))
+            return True
+        case ast.Assign(
+            [ast.Subscript(ast.Name("out"), ast.Tuple([ast.Name("zeros")]))], ast.Constant(0.0)
+        ):
+            return True  # the rows were noted where they are listed
+    return False

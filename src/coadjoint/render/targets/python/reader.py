@@ -1,0 +1,80 @@
+"""The target Python, reading: a function of ``kernel_python.py`` through a list of allowed forms.
+
+Comes in: the text and the Program whose function is read, for its arguments and the shape of its
+result. Goes out: a `Body`.
+Read next: `coadjoint.render.targets.python_text`.
+"""
+
+from __future__ import annotations
+
+import ast
+from fractions import Fraction
+
+from coadjoint.lower.program import FUNCTIONS, Number, Program
+from coadjoint.render.targets.body import Body
+from coadjoint.render.targets.python_text import Functions, Reader
+
+#: What makes a matrix of a list.
+ROWS = "return [out[first:first + size] for first in range(0, len(out), size)]"
+
+
+def read_plain(text: str, program: Program) -> Body:
+    """The function of a Program; other forms than our template's fail."""
+    reader = Reader("kernel_python.py", program.name, _called)
+    functions = reader.functions(text, _is_allowed)
+    if program.name not in functions:
+        raise reader.refusal(f"there is no function {program.name!r}")
+    function = functions[program.name]
+    taken = [each.arg for each in (*function.args.args, *function.args.kwonlyargs)]
+    if taken != list(program.arrays):
+        raise reader.refusal(f"takes {', '.join(taken)}", function.args)
+    body = Body()
+    _, *lines, last = function.body
+    for line in lines:
+        if not _read_start(line, program, body):
+            reader.read(line, body)
+    _check_result(reader, functions, last, program)
+    assigned = {row for row, _ in body.outputs}
+    zeros = (row for row in range(len(program.outputs)) if row not in assigned)
+    body.outputs += [(row, Number(Fraction(0))) for row in zeros]
+    return body
+
+
+def _called(function: ast.expr) -> str | None:
+    """``sqrt`` of ``sqrt``."""
+    return function.id if isinstance(function, ast.Name) else None
+
+
+def _is_allowed(item: ast.stmt) -> bool:
+    """Whether a statement may stand between functions."""
+    match item:
+        case ast.ImportFrom("math", names, 0):
+            return all(each.name in FUNCTIONS and each.asname is None for each in names)
+        case ast.Assign(targets=[ast.Name(id="ID")], value=ast.Constant()):
+            return True
+    return False
+
+
+def _read_start(line: ast.stmt, program: Program, body: Body) -> bool:
+    """Whether a line takes the time, or makes the list of results, with a zero for each."""
+    if ast.unparse(line) == f"out = [0.0] * {len(program.outputs)}":
+        return True
+    for name in program.time:
+        if ast.unparse(line) == f"{name} = time":
+            body.inputs[name] = ("time", 0)
+            return True
+    return False
+
+
+def _check_result(reader: Reader, functions: Functions, last: ast.stmt, program: Program) -> None:
+    """A number, a list, or a list of rows is returned, as the shape has it."""
+    shape = program.shape
+    wanted = ["out[0]", "out", f"_rows(out, {shape[-1]})" if shape else ""][len(shape)]
+    if ast.unparse(last) != f"return {wanted}":
+        raise reader.refusal(f"is not what is returned, {wanted}", last)
+    if len(shape) == 2:
+        helper = functions.get("_rows")
+        if helper is None or ast.unparse(helper.body[-1]) != ROWS or len(helper.body) != 2:
+            raise reader.refusal("_rows does not make rows of a list")
+        if ast.unparse(helper.args) != "out, size":
+            raise reader.refusal("_rows takes other arguments", helper.args)

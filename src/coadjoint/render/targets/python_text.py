@@ -1,0 +1,116 @@
+"""Targets, reading Python: what the readers of two targets share.
+
+Comes in: the text of a module. Goes out: its functions, and a `Body` line by line, through a list
+of allowed forms. The `ast` of the standard library reads, not our printer.
+Read next: `coadjoint.render.targets.numpy.reader`.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from math import isfinite
+
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
+from coadjoint.render.targets.body import Body, failure, joined
+
+Functions = dict[str, ast.FunctionDef]
+
+
+@lru_cache(maxsize=4)  # every function of a file is read from the same text
+def _parsed(text: str) -> ast.Module:
+    """The tree of a text."""
+    return ast.parse(text)
+
+
+class Reader:
+    """Reads one function of a Python kernel.
+
+    Args:
+        file: The name of the file, for messages.
+        name: The function.
+        called: The name of an elementary function as the target writes it, or None.
+    """
+
+    def __init__(self, file: str, name: str, called: Callable[[ast.expr], str | None]) -> None:
+        self.file, self.name, self._called = file, name, called
+
+    def refusal(self, problem: str, tree: ast.AST | None = None) -> CrossCheckError:
+        """The failure of rung 3, with what was found."""
+        shown = "" if tree is None else f"{ast.unparse(tree)[:80]!r} "
+        return failure(f"{self.file}: {shown}{problem}", self.name)
+
+    def functions(self, text: str, allowed: Callable[[ast.stmt], bool]) -> Functions:
+        """The functions of a module that does nothing but define them, each once.
+
+        Args:
+            text: Of the file.
+            allowed: Whether another statement may stand between them.
+        """
+        try:
+            module = _parsed(text)
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            raise failure(f"{self.file} is not Python: {error}", self.name) from error
+        functions: Functions = {}
+        for item in module.body:
+            match item:
+                case ast.FunctionDef(name=defined, decorator_list=[]) if defined not in functions:
+                    functions[defined] = item
+                case ast.Expr(value=ast.Constant()):
+                    pass
+                case _:
+                    if not allowed(item):
+                        raise self.refusal("is out of place", item)
+        return functions
+
+    def read(self, line: ast.stmt, body: Body) -> None:
+        """One line of a function: inputs, a statement or an output."""
+        if not isinstance(line, ast.Assign) or len(line.targets) != 1:
+            raise self.refusal("is not an assignment", line)
+        target, value = line.targets[0], line.value
+        match target, value:
+            case (ast.Tuple(elts=names), ast.Name(id=array)):
+                self._read_names(names, array, 0, body)
+            case (
+                ast.Tuple(elts=names),
+                ast.Subscript(ast.Name(array), ast.Slice(ast.Constant(first))),
+            ):
+                self._read_names(names, array, first, body)
+            case (ast.Name(), ast.Subscript(ast.Name(array), ast.Constant(row))):
+                self._read_names([target], array, row, body)
+            case (ast.Name(id=assigned), _):
+                body.statements.append((assigned, self.node(value)))
+            case (ast.Subscript(ast.Name("out"), ast.Constant(int(row))), _):
+                body.outputs.append((row, self.node(value)))
+            case _:
+                raise self.refusal("is assigned", target)
+
+    def _read_names(self, names: Sequence[ast.expr], array: str, first: object, body: Body) -> None:
+        """Names of consecutive rows; ``_`` is a row that is not read."""
+        for offset, target in enumerate(names):
+            if not isinstance(target, ast.Name) or not isinstance(first, int):
+                raise self.refusal("is an input", target)
+            if target.id != "_":
+                body.inputs[target.id] = (array, first + offset)
+
+    def node(self, tree: ast.expr) -> Node:
+        """A node from the forms that the printer writes, and from no others."""
+        match tree:
+            case ast.Name(id=symbol):
+                return Symbol(symbol)
+            case ast.Constant(value=float(value)) if isfinite(value):
+                return Number(Fraction(value))
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return Negate(self.node(operand))
+            case ast.BinOp(left=left, op=operator, right=right):
+                sign = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}.get(type(operator))
+                if sign:
+                    return joined(self.node(left), sign, self.node(right))
+            case ast.Call(function, [argument], []):
+                called = self._called(function)
+                if called in FUNCTIONS:
+                    return Call(called, self.node(argument))
+        raise self.refusal("is no form of a Program", tree)

@@ -1,0 +1,77 @@
+"""Degrees: the degree of an expression in some names, such as those of an element of an algebra.
+
+Comes in: a parsed tree. Goes out: its degree, or a fault where terms differ.
+Read next: `coadjoint.spec.sections.symmetries`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+from coadjoint.spec.core.faults import fault_at
+from coadjoint.spec.core.tree import (
+    Binary,
+    Call,
+    Index,
+    Name,
+    Negate,
+    Node,
+    Number,
+    Power,
+    children,
+    walk_up,
+)
+
+#: Functions that are linear in each argument, so that degrees add up.
+_MULTILINEAR = ("dot", "cross", "outer", "commutator")
+#: Functions that are linear in all arguments together.
+_LINEAR = ("trace", "transpose", "hat", "diag", "rows", "vector")
+
+
+def degree_in(tree: Node, names: Sequence[str]) -> int | None:
+    """The degree of an expression in some names, if all its terms have the same; None of 0.
+
+    Raises:
+        ExpressionError: They do not, or a name stands in a divisor or a function.
+
+    >>> from coadjoint.spec.core.expressions import read_expression
+    >>> degree_in(read_expression("cross(xi, r) + 2*xi"), ["xi"])
+    1
+    >>> degree_in(read_expression("vector(0, xi)"), ["xi"])
+    1
+    """
+    degrees: dict[int, int | None] = {}
+    for node in walk_up(tree):
+        below = [degrees[id(child)] for child in children(node)]
+        degrees[id(node)] = _degree(node, below, names)
+    return degrees[id(tree)]
+
+
+def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> int | None:
+    """The degree of a node by the degrees of its parts."""
+    known = [degree for degree in below if degree is not None]
+    match node:
+        case Number(value=value):
+            return 0 if value else None
+        case Name(name=found) | Index(name=found):
+            return int(found in names)
+        case Binary(operator="*"):
+            return sum(known) if len(known) == len(below) else None
+        case Call(function=function) if function in _MULTILINEAR:
+            return sum(known) if len(known) == len(below) else None
+        case Power(exponent=exponent) if exponent > 0:
+            return known[0] * exponent if known else None
+    same = all(a == b for a, b in combinations(known, 2))
+    plain = isinstance(node, (Negate, Binary)) or getattr(node, "function", "") in _LINEAR
+    divided = isinstance(node, Binary) and node.operator == "/"
+    if divided and not below[1]:
+        return below[0]
+    if any(known) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
+        raise fault_at(
+            node,
+            f"this is not linear in {names[0]!r}",
+            found=names[0],
+            expected=f"sums of terms that are linear in {names[0]}",
+        )
+    return known[0] if known else None if plain else 0

@@ -1,0 +1,36 @@
+"""Kinds of spec: on an algebra, with a declared bracket, or on coordinates; with a frame or not.
+
+Comes in: the tables of a spec. Goes out: what decides which routes it may list.
+Read next: `coadjoint.spec.consistency`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from coadjoint.spec.routes import ROUTES
+
+
+def is_in_frame(file: Any) -> bool:
+    """Whether the state has velocities along a frame: what constraints bind, or their routes move.
+
+    >>> from coadjoint.spec.schema import SpecFile
+    >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
+    True
+    """
+    return file.constraints is not None or any(ROUTES[route].in_frame for route in file.routes)
+
+
+def kinds_of(file: Any) -> tuple[str, ...]:
+    """The kinds that a spec is of: ``algebra``, ``configuration``, or ``poisson`` and its way.
+
+    >>> from coadjoint.spec.schema import SpecFile
+    >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None))
+    ('configuration',)
+    """
+    if file.algebra is not None:
+        return ("algebra",)
+    if file.poisson is None:
+        return ("configuration",)
+    ways = ("nambu", "brackets", "canonical")
+    return ("poisson", *(way for way in ways if getattr(file.poisson, way) is not None))

@@ -1,0 +1,113 @@
+"""Forces: the table [forces], what acts beside the energy.
+
+Comes in: formulas by the names of what they act along. Goes out: a `Formula` for each.
+Read next: `coadjoint.spec.sections.relaxation`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import Field
+
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.formulas import Formula, Scope, misfit
+from coadjoint.spec.core.parts import Part
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading, Table
+from coadjoint.spec.core.shapes import words
+from coadjoint.spec.core.tree import walk
+from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
+
+
+def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula]:
+    """The declared forces by what they act along.
+
+    Raises:
+        SpecError: There is no such variable, a momentum is named whose velocity has a Lagrangian,
+            or the force has another shape.
+    """
+    scope, forced = reading.scope("a force", motion_roles(reading)), _find_forced(reading)
+    return {
+        name: read_along(reading, ("forces", name), text, scope, forced)
+        for name, text in texts.items()
+    }
+
+
+def _find_forced(reading: Reading) -> Mapping[str, Variable]:
+    """What forces may act along: velocities, and what only a Hamiltonian moves.
+
+    With a Lagrangian a force along a velocity says what it does; with a Hamiltonian momenta and the
+    coordinates of a declared bracket may have no velocities.
+    """
+    roles = {"velocity"}
+    if reading.file.lagrangian is None:
+        roles |= {"momentum"}
+        roles |= {"coordinate"} if reading.file.poisson is not None else set()
+    return {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
+
+
+def read_along(
+    reading: Reading, key: KeyPath, text: str, scope: Scope, velocities: Mapping[str, Variable]
+) -> Formula:
+    """A formula of the shape of the velocity that its key names."""
+    name = str(key[-1])
+    if name not in velocities:
+        roles = {each.role for each in velocities.values()} or {"velocity"}
+        what = "velocity" if roles == {"velocity"} else "variable"
+        raise reading.at_key(
+            key,
+            f"there is no such {what} as {name!a}",
+            name,
+            f"one of {listed(velocities)}" if velocities else "a declared velocity",
+            did_you_mean(name, velocities),
+        )
+    formula = reading.formula(key, text, scope, any_shape=True)
+    wanted = velocities[name].shape
+    if formula.shape != wanted:
+        raise misfit(reading.source, key, formula, f"{words(wanted)}, as {name!r} is")
+    return formula
+
+
+FORCES = Table[dict[str, Formula]](
+    "forces",
+    str,
+    "forces beside the energy, by the names of the velocities they work on",
+    read_forces,
+    many=True,
+    acts=True,
+)
+
+
+class DissipationPart(Part):
+    """Dissipation by a function of the velocities."""
+
+    R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
+
+
+def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
+    """Rayleigh's function.
+
+    Raises:
+        SpecError: It is no formula of velocities.
+    """
+    key: KeyPath = ("dissipation", "R")
+    formula = reading.formula(key, part.R, reading.scope("a dissipation", motion_roles(reading)))
+    velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
+    known = {name for each in velocities for name in (each.name, *each.components)}
+    if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
+        raise reading.source.fault(
+            key,
+            "Rayleigh's function names no velocity",
+            found=part.R,
+            expected="a function of velocities, whose force is -dR/dxi",
+            hint="Declare velocities, or write what acts along a momentum in [forces]."
+            if reading.file.reduction is None
+            else "Write what acts along a momentum in [forces].",
+        )
+    return formula
+
+
+DISSIPATION = Table[Formula | None](
+    "dissipation", DissipationPart, "dissipation by a function R", read_dissipation, acts=True
+)

@@ -1,0 +1,212 @@
+"""Matrices over the basis of an algebra, and the representations that they are.
+
+Comes in: tables of matrices and names of representations. Goes out: exact `Representation` records
+that have been checked to commute like the algebra; or an error with file, line and key.
+Read next: `coadjoint.spec.sections.algebras`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
+
+from coadjoint.algebra.catalogue import REPRESENTATIONS, representation_by_name
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.representation import Representation
+from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.limits import MATRIX_ENTRIES, STATE_COMPONENTS
+from coadjoint.spec.core.coefficients import Scalars, read_coefficient
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.names import NAME
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.source import Source
+
+
+@contextmanager
+def located(source: Source, key: KeyPath) -> Iterator[None]:
+    """Tell where in the file an error about an algebra comes from."""
+    try:
+        yield
+    except (AlgebraError, LimitError) as error:
+        kind, parts = type(error), dict(error.parts)
+        found = parts.pop("found", "")
+        parts.pop("expected", None)  # the message says it already
+        raise source.fault(key, str(error), found=found, kind=kind, **parts) from None
+
+
+def places_of(
+    source: Source, key: KeyPath, names: Sequence[str], basis: Sequence[str]
+) -> tuple[int, ...]:
+    """Places of names in the basis.
+
+    Raises:
+        SpecError: A name is not in it.
+    """
+    for place, name in enumerate(names):
+        if name not in basis:
+            raise source.fault(
+                (*key, place),
+                f"{name!a} is not in the basis",
+                found=name,
+                expected=f"names of the basis: {listed(basis)}",
+                hint=did_you_mean(name, basis),
+            )
+    return tuple(basis.index(name) for name in names)
+
+
+def block_places(
+    source: Source, key: KeyPath, block: str | list[str], algebra: LieAlgebra
+) -> tuple[int, ...]:
+    """Places of a block of an algebra: a named one, or names of its basis.
+
+    Raises:
+        SpecError: There is no such block, or a name stands twice.
+    """
+    if isinstance(block, list):
+        places = places_of(source, key, block, algebra.basis)
+        if len(set(places)) < len(places):
+            raise source.fault(
+                key,
+                "a name of the basis stands twice",
+                found=listed(block),
+                expected="each name once",
+            )
+        return places
+    if block in algebra.blocks:
+        return algebra.blocks[block]
+    if block in algebra.basis:
+        return (algebra.basis.index(block),)
+    known = (*algebra.blocks, *algebra.basis)
+    raise source.fault(
+        key,
+        f"{algebra.name} has no block {block!a}",
+        found=block,
+        expected=f"one of {listed(known)}",
+        hint=did_you_mean(block, known),
+    )
+
+
+def check_basis_names(source: Source, key: KeyPath, names: Sequence[str]) -> None:
+    """Refuse a basis that is too long, and names that are none."""
+    if len(names) > STATE_COMPONENTS:
+        raise source.fault(
+            key,
+            f"the basis has {len(names)} vectors",
+            found=len(names),
+            expected=f"at most {STATE_COMPONENTS} (STATE_COMPONENTS)",
+            kind=LimitError,
+            limit="STATE_COMPONENTS",
+        )
+    for place, name in enumerate(names):
+        if not NAME.fullmatch(name):
+            raise source.fault(
+                (*key, place) if (*key, place) in source.positions.values else key,
+                f"{name!a} is not a name",
+                found=name,
+                expected="a letter, then letters and digits, such as e1",
+            )
+
+
+def read_matrices(
+    source: Source,
+    key: KeyPath,
+    tables: Mapping[str, list[list[Fraction | str]]],
+    basis: Sequence[str],
+    scalars: Scalars,
+) -> tuple[dict[str, SparseMatrix], int]:
+    """Sparse matrices by name of the basis, and their common size.
+
+    Raises:
+        SpecError: A name is not in the basis, a matrix has another size, or an entry is no number.
+        LimitError: There are too many entries.
+    """
+    size = len(next(iter(tables.values()), []))
+    entries = sum(len(row) for rows in tables.values() for row in rows)
+    if entries > MATRIX_ENTRIES:
+        raise source.fault(
+            key,
+            f"the matrices have {entries} numbers",
+            found=entries,
+            expected=f"at most {MATRIX_ENTRIES} (MATRIX_ENTRIES)",
+            hint="Declare the algebra by its brackets.",
+            kind=LimitError,
+            limit="MATRIX_ENTRIES",
+        )
+    for name, rows in tables.items():
+        if name not in basis:
+            raise source.fault(
+                (*key, name),
+                f"{name!a} is not in the basis",
+                found=name,
+                expected=f"names of the basis: {listed(basis)}",
+                hint=did_you_mean(name, basis),
+                at=source.positions.key((*key, name)),
+            )
+        lengths = [len(row) for row in rows]
+        if not size or lengths != [size] * size:
+            raise source.fault(
+                (*key, name),
+                f"the matrix of {name!r} has rows of {listed(map(str, lengths))} numbers",
+                found=listed(map(str, lengths)),
+                expected=f"{size or 1} rows of {size or 1} numbers, like the first matrix",
+            )
+    found = {name: _sparse(source, (*key, name), rows, scalars) for name, rows in tables.items()}
+    return found, size
+
+
+def _sparse(
+    source: Source, key: KeyPath, rows: list[list[Fraction | str]], scalars: Scalars
+) -> SparseMatrix:
+    entries = {
+        (r, c): read_coefficient(source, (*key, r, c), entry, scalars)
+        for r, row in enumerate(rows)
+        for c, entry in enumerate(row)
+    }
+    return {place: value for place, value in entries.items() if value != 0}
+
+
+def by_matrices(
+    source: Source,
+    key: KeyPath,
+    algebra: LieAlgebra,
+    name: str,
+    tables: Mapping[str, list[list[Any]]],
+    scalars: Scalars,
+) -> Representation:
+    """A representation by matrices; those left out act as zero."""
+    matrices, size = read_matrices(source, key, tables, algebra.basis, scalars)
+    with located(source, key):
+        acting = tuple(matrices.get(vector, {}) for vector in algebra.basis)
+        return Representation(algebra, name, size, acting)
+
+
+def representation_of(
+    source: Source,
+    key: KeyPath,
+    algebra: LieAlgebra,
+    name: str,
+    declared: Mapping[str, Representation] | None = None,
+    invariance: str = "left",
+) -> Representation:
+    """The representation of a name: a declared one, or one that every algebra has.
+
+    Raises:
+        AlgebraError: The algebra has none of that name, for want of matrices.
+        SpecError: The name is unknown.
+    """
+    declared = declared or {}
+    known = (*REPRESENTATIONS, *declared)
+    if name not in known:
+        raise source.fault(
+            key,
+            f"there is no representation {name!a}",
+            found=name,
+            expected=f"one of {listed(known)}",
+            hint=did_you_mean(name, known, f"Declare it under [representations.{name}]."),
+        )
+    if name in declared:
+        return declared[name]
+    with located(source, key):
+        return representation_by_name(algebra, name, invariance)

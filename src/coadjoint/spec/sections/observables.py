@@ -1,0 +1,74 @@
+"""Observables: the table [observables], what is emitted beside the dynamics.
+
+Comes in: expressions. Goes out: `Observable` records of scalars, vectors and matrices.
+Read next: `coadjoint.spec.sections.symmetries`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pydantic import Field
+
+from coadjoint.spec.core.components import Shape, component_names
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.parts import TextPart
+from coadjoint.spec.core.reading import Reading, Table, name_each
+from coadjoint.spec.core.values import Prose, Unit
+from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
+from coadjoint.spec.sections.variables import motion_roles
+
+
+class ObservablePart(TextPart):
+    """A scalar, vector or matrix emitted beside the dynamics."""
+
+    alone = "expression"
+
+    expression: str = Field(description="a scalar, vector or matrix of variables and parameters")
+    unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+
+@dataclass(frozen=True)
+class Observable:
+    """A declared scalar, vector or matrix emitted beside the dynamics."""
+
+    name: str
+    formula: Formula
+    unit: str = "1"
+    doc: str = ""
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of its value."""
+        return self.formula.shape
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, row by row."""
+        return component_names(self.name, self.shape)
+
+
+def read_observables(
+    reading: Reading, parts: Mapping[str, ObservablePart]
+) -> tuple[Observable, ...]:
+    """The observables, which may name the multipliers of constraints."""
+    reactions = reaction_shapes(CONSTRAINTS.of(reading))
+    scope = reading.scope("an observable", motion_roles(reading), reactions)
+    found = []
+    for name, part in parts.items():
+        key = reading.source.place_of(("observables", name), "expression")
+        formula = reading.formula(key, part.expression, scope, any_shape=True)
+        found.append(Observable(name, formula, part.unit, part.doc))
+    return tuple(found)
+
+
+OBSERVABLES = Table[tuple[Observable, ...]](
+    "observables",
+    ObservablePart,
+    "what is emitted beside the dynamics",
+    read_observables,
+    many=True,
+    names=name_each,
+)

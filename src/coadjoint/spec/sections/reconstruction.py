@@ -1,0 +1,185 @@
+"""Reconstruction: the table [reconstruction], what follows from the motion and does not act on it.
+
+Comes in: its keys, and how a body rolls. Goes out: one `Reconstructed` for every variable that
+follows: the attitude and point of contact of a body that rolls, and those declared.
+Read next: `coadjoint.derive.mechanics.followed`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from coadjoint.algebra.attitudes import turning_places
+from coadjoint.spec.core.components import Shape, component_names
+from coadjoint.spec.core.definitions import Definition
+from coadjoint.spec.core.formulas import Formula, Scope
+from coadjoint.spec.core.names import derived_names
+from coadjoint.spec.core.parts import TextPart
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Naming, Reading, Table
+from coadjoint.spec.core.units import parse_unit, unit_of, unit_text
+from coadjoint.spec.core.values import Numbers, Prose, Unit, read_default
+from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT, ROLLING, Rolling
+from coadjoint.spec.sections.variables import VARIABLES, motion_roles
+
+
+class ReconstructedPart(TextPart):
+    """A variable that follows from the motion and does not act on it."""
+
+    alone = "rate"
+
+    rate: str | None = Field(None, description="its time derivative")
+    attitude: Literal["quaternion"] | None = Field(
+        None, description="'quaternion' for the attitude that the angular velocity turns"
+    )
+    default: Numbers | None = Field(None, description="where it begins; by default at zero")
+    unit: Unit = Field("1", description="unit, such as 'm'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ReconstructedPart:
+        if (self.rate is None) == (self.attitude is None):
+            raise ValueError("either rate or attitude")
+        return self
+
+
+@dataclass(frozen=True)
+class Reconstructed:
+    """A variable that follows from the motion and does not act on it.
+
+    Attributes:
+        name: As declared.
+        rate: Its time derivative; None for an attitude and for a point of contact.
+        attitude: ``"quaternion"`` if it is the attitude that the angular velocity turns; else "".
+        shape: Shape of its value.
+        default: Where it begins, one exact value per component.
+        unit: Unit text.
+        doc: Free text for documents.
+        of_rolling: Whether it is followed for a body that rolls, and not declared.
+    """
+
+    name: str
+    rate: Formula | None
+    attitude: str = ""
+    shape: Shape = ()
+    default: tuple[Fraction, ...] | None = None
+    unit: str = "1"
+    doc: str = ""
+    of_rolling: bool = False
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, in order."""
+        return component_names(self.name, self.shape, self.attitude)
+
+
+def read_reconstruction(
+    reading: Reading, parts: Mapping[str, ReconstructedPart]
+) -> tuple[Reconstructed, ...]:
+    """The variables that follow from the motion; rates may name all of them.
+
+    Raises:
+        SpecError: A default has another shape, or an attitude has nothing that turns it.
+    """
+    rolling = ROLLING.of(reading)
+    first = () if rolling is None else _follow_rolling(reading, rolling)
+    blank = [
+        Reconstructed(name, None, part.attitude or "", _shape(part)) for name, part in parts.items()
+    ]
+    shapes: dict[str, Shape] = {}
+    for each in (*first, *blank):
+        shapes |= dict.fromkeys(each.components, ()) | {each.name: each.shape}
+    scope = reading.scope("a rate", motion_roles(reading), shapes)
+    return (*first, *(_read_one(reading, name, part, scope) for name, part in parts.items()))
+
+
+def _follow_rolling(reading: Reading, rolling: Rolling) -> tuple[Reconstructed, ...]:
+    """Attitude and point of contact of a rolling body."""
+    declared = (q for q in reading.quantities if not isinstance(q, Definition))
+    units = {
+        name: parse_unit(getattr(each, "unit", ""))
+        for each in declared
+        for name in (each.name, *each.components)
+    }
+    unit = unit_text(unit_of(rolling.arm.tree, units))
+    attitude = Reconstructed(
+        name=ATTITUDE,
+        rate=None,
+        attitude="quaternion",
+        shape=(4,),
+        doc="attitude of the body, a unit quaternion",
+        of_rolling=True,
+    )
+    doc = "of the point of contact on the plane"
+    contact = (Reconstructed(name, None, unit=unit, doc=doc, of_rolling=True) for name in CONTACT)
+    return (attitude, *contact)
+
+
+def _read_one(reading: Reading, name: str, part: ReconstructedPart, scope: Scope) -> Reconstructed:
+    """A declared variable."""
+    key: KeyPath = ("reconstruction", name)
+    if part.attitude is not None:
+        _check_turned(reading, key, name)
+    rate = None
+    if part.rate is not None:
+        rate = reading.formula(reading.source.place_of(key, "rate"), part.rate, scope)
+    default = read_default(reading.source, (*key, "default"), part.default, _shape(part))
+    if part.attitude is not None and default is not None and not any(default):
+        raise reading.source.fault(
+            (*key, "default"),
+            "the quaternion 0 is no attitude",
+            found=[0] * len(default),
+            expected="a quaternion of length 1, such as [1, 0, 0, 0]",
+        )
+    return Reconstructed(
+        name=name,
+        rate=rate,
+        attitude=part.attitude or "",
+        shape=_shape(part),
+        default=default,
+        unit=part.unit,
+        doc=part.doc,
+    )
+
+
+def _check_turned(reading: Reading, key: KeyPath, name: str) -> None:
+    """There is an angular velocity in space, along which the attitude turns."""
+    algebra, variables = ALGEBRA.of(reading).algebra, VARIABLES.of(reading)
+    spanned = {place for v in variables if v.role == "velocity" for place in v.block}
+    places = None if algebra is None else turning_places(algebra)
+    if places is None or not set(places) <= spanned:
+        raise reading.source.fault(
+            key,
+            f"nothing turns the attitude {name!r}",
+            found="no algebra" if algebra is None else algebra.name,
+            expected='a velocity over the rotations of "so(3)" or "se(3)"',
+            hint='Without one, declare an angle: theta = "omega".',
+        )
+
+
+def _shape(part: ReconstructedPart) -> Shape:
+    return (4,) if part.attitude else ()
+
+
+def _name_all(table: str, followed: Iterable[Reconstructed]) -> Iterator[Naming]:
+    """The names of what follows, of its components and of their rates."""
+    for each in followed:
+        key: KeyPath = ("rolling",) if each.of_rolling else (table, each.name)
+        rates = tuple(derived_names(each.components))
+        yield Naming(key, each.name, each.components, rates)
+
+
+RECONSTRUCTION = Table[tuple[Reconstructed, ...]](
+    "reconstruction",
+    ReconstructedPart,
+    "what follows from the motion, as x = 'v'",
+    read_reconstruction,
+    many=True,
+    names=_name_all,
+)

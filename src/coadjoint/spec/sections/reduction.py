@@ -1,0 +1,133 @@
+"""Reduction: the table [reduction], a submanifold that the motion keeps.
+
+Comes in: its section, which says what some variables are there. Goes out: a `Submanifold`, or None.
+That the motion keeps it is proved later. Read next: `coadjoint.derive.reductions`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.formulas import Declared, Formula, make_scope, read_fitting
+from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading, Table
+from coadjoint.spec.sections.variables import VARIABLES, Variable
+
+
+class ReductionPart(Part):
+    """A submanifold that the motion keeps, on which some variables follow from the others."""
+
+    section: Annotated[dict[str, str], Field(min_length=1)] = Field(
+        description="what variables are there, as y = 'cross(x, K*x)'; they are no state any more",
+        json_schema_extra=named(),
+    )
+    where: list[str] = Field([], description="functions of all variables that vanish there")
+
+
+@dataclass(frozen=True)
+class Submanifold:
+    """A submanifold, on which some variables follow from the others.
+
+    Attributes:
+        section: What these variables are, by name.
+        where: Functions of all variables that vanish on the submanifold.
+    """
+
+    section: Mapping[str, Formula]
+    where: tuple[Formula, ...] = ()
+
+
+def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
+    """The declared submanifold.
+
+    Raises:
+        SpecError: What is restricted is no vector or scalar of the state, something is left of no
+            variable, or the spec has what a restricted motion cannot.
+    """
+    variables = VARIABLES.of(reading)
+    _check_alone(reading, variables)
+    known = {variable.name: variable for variable in variables}
+    for name in part.section:
+        _check_eliminated(reading, name, known)
+    if len(part.section) == len(known):
+        raise reading.source.fault(
+            ("reduction", "section"),
+            "no variable is left",
+            found=listed(part.section),
+            expected="a section over at least one variable",
+        )
+    roles = tuple(dict.fromkeys(variable.role for variable in variables))
+    left: list[Declared] = [q for q in reading.quantities if q.name not in part.section]
+    of_left = make_scope("a section", roles, left, driven=())
+    scope = reading.scope("a function that vanishes", roles, driven=())
+    return Submanifold(
+        {
+            name: read_fitting(
+                reading.source,
+                ("reduction", "section", name),
+                text,
+                of_left,
+                known[name].value_shape,
+                name,
+            )
+            for name, text in part.section.items()
+        },
+        tuple(
+            reading.formula(("reduction", "where", place), text, scope, any_shape=True)
+            for place, text in enumerate(part.where)
+        ),
+    )
+
+
+def _check_alone(reading: Reading, variables: Sequence[Variable]) -> None:
+    """There is a Hamiltonian, and nothing that belongs to a bracket of the state."""
+    file = reading.file
+    velocities = [variable.name for variable in variables if variable.role == "velocity"]
+    tables = ("symmetries", "transformations", "lax", "newton", "reconstruction")
+    alien: dict[KeyPath, object] = {
+        ("claims", "casimirs"): file.claims.casimirs,
+        ("claims", "brackets"): file.claims.brackets,
+        **{(table,): getattr(file, table) for table in tables},
+        ("variables", *velocities[:1]): velocities,
+    }
+    for key, found in alien.items():
+        if found:
+            name = str(key[-1])
+            raise reading.source.fault(
+                key,
+                f"{name!r} does not go with [reduction], whose motion has no bracket",
+                found=name,
+                expected="momenta or coordinates, a Hamiltonian, observables and integrals",
+                hint="Declare it in a spec of the whole system.",
+            )
+    if file.hamiltonian is None:
+        raise reading.source.fault(
+            ("reduction",),
+            "there is no Hamiltonian",
+            found="hamiltonian",
+            expected="a table [hamiltonian] beside [reduction]",
+        )
+
+
+def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]) -> None:
+    """What the section gives is a variable, and no matrix kept as a list."""
+    if name not in known or known[name].form:
+        kind = "is a matrix kept as a list" if name in known else "is no variable"
+        raise reading.at_key(
+            ("reduction", "section", name),
+            f"{name!r} {kind}",
+            name,
+            f"one of {listed(n for n, v in known.items() if not v.form)}",
+            did_you_mean(name, known),
+        )
+
+
+REDUCTION = Table[Submanifold | None](
+    "reduction", ReductionPart, "the submanifold to which the motion is restricted", read_reduction
+)

@@ -1,0 +1,121 @@
+"""Relaxation: the tables [double_bracket] and [metriplectic], dissipation by a symmetric bracket.
+
+Comes in: their keys. Goes out: a `Relaxation`, or None. That G is symmetric and positive
+semidefinite is proved later. Read next: `coadjoint.spec.sections.domain`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pydantic import Field
+
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.parts import Accept, Part
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Reading, Table
+from coadjoint.spec.core.shapes import words
+from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_of, state_roles
+
+
+class DoubleBracketPart(Part):
+    """Dissipation along the symplectic leaves: Casimirs are kept, the energy falls."""
+
+    G: str = Field(description="symmetric, positive semidefinite: a number, or a matrix")
+    accept: Accept = None
+
+
+class MetriplecticPart(Part):
+    """Dissipation along level sets of the energy: it is kept, the entropy S grows."""
+
+    S: str = Field(description="the entropy, a Casimir")
+    G: str = Field(description="symmetric, positive semidefinite, with G dh = 0")
+    accept: Accept = None
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """Dissipation by a symmetric bracket beside the Poisson bracket P.
+
+    Attributes:
+        G: Symmetric and positive semidefinite: a scalar, times the unit matrix, or a matrix with a
+            row for each component of the state.
+        S: The entropy of a metriplectic motion, ``dx/dt = P dh + G dS``; None for a double
+            bracket, ``dx/dt = P dh + P G P dh``.
+    """
+
+    G: Formula
+    S: Formula | None = None
+
+    @property
+    def table(self) -> str:
+        """The table of a spec that declares it."""
+        return "double_bracket" if self.S is None else "metriplectic"
+
+    @property
+    def added(self) -> str:
+        """What it adds to the rates of the state."""
+        return "P G P dh" if self.S is None else "G dS"
+
+
+def read_double_bracket(reading: Reading, part: DoubleBracketPart) -> Relaxation:
+    """Dissipation that keeps Casimirs.
+
+    Raises:
+        SpecError: G has another size than the state.
+    """
+    return Relaxation(_read_metric(reading, "double_bracket", part.G))
+
+
+def read_metriplectic(reading: Reading, part: MetriplecticPart) -> Relaxation:
+    """Dissipation that keeps the energy.
+
+    Raises:
+        SpecError: As `read_double_bracket`, or both are declared.
+    """
+    if reading.file.double_bracket is not None:
+        raise reading.source.fault(
+            ("metriplectic",),
+            "there are both [double_bracket] and [metriplectic]",
+            found="metriplectic",
+            expected="one of them: the first keeps Casimirs, the second the energy",
+            hint="Remove [metriplectic] or [double_bracket].",
+        )
+    G = _read_metric(reading, "metriplectic", part.G)
+    scope = reading.scope("an entropy", state_roles(reading), driven=())
+    return Relaxation(G, reading.formula(("metriplectic", "S"), part.S, scope))
+
+
+def _read_metric(reading: Reading, table: str, text: str) -> Formula:
+    """G: a scalar, or a matrix with a row for each component of the state."""
+    key: KeyPath = (table, "G")
+    scope = reading.scope("a metric", motion_roles(reading))
+    G = reading.formula(key, text, scope, any_shape=True)
+    size = sum(len(each.components) for each in state_of(VARIABLES.of(reading)))
+    if G.shape not in ((), (size, size)):
+        raise reading.source.fault(
+            key,
+            f"G is {words(G.shape)}",
+            found=words(G.shape),
+            expected=f"a number, or a {size} x {size} matrix with a row for each component of "
+            "the state",
+        )
+    return G
+
+
+DOUBLE_BRACKET = Table[Relaxation | None](
+    "double_bracket",
+    DoubleBracketPart,
+    "dissipation that keeps Casimirs, dx/dt = P dh + P G P dh",
+    read_double_bracket,
+    attribute="relaxation",
+    acts=True,
+)
+METRIPLECTIC = Table[Relaxation | None](
+    "metriplectic",
+    MetriplecticPart,
+    "dissipation that keeps the energy, dx/dt = P dh + G dS",
+    read_metriplectic,
+    attribute="relaxation",
+    acts=True,
+)

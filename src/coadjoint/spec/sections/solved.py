@@ -1,0 +1,85 @@
+"""Solved velocities: those that a constraint gives, and which are no part of the state.
+
+Comes in: the checked tables, before there are variables, since this decides what the state is. Goes
+out: the velocities with their constraints. Read next: `coadjoint.spec.sections.variables`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.tree import Index, Name, Node, walk
+from coadjoint.spec.kinds import is_in_frame
+
+_COMPONENT = re.compile(r"(?P<name>.*?)_?\d+(_\d+)?")
+_SIDES = 2
+
+
+def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
+    """The velocities that constraints give, each with its constraint and the side it stands on.
+
+    A constraint gives a velocity if one side is that velocity alone and the other one does not
+    depend on it, also not through velocities that earlier constraints give.
+
+    Args:
+        file: The validated tables; formulas that cannot be read yet are passed over.
+
+    Returns:
+        Constraint and side (1 for left, -1 for right) by velocity; None where the state has none
+        along a frame.
+    """
+    if not is_in_frame(file):
+        return None
+    velocities = {name for name, part in file.variables.items() if part.role == "velocity"}
+    found: dict[str, tuple[str, int]] = {}
+    reached: dict[str, set[str]] = {}
+    for constraint, text in (file.constraints or {}).items():
+        sides = [_parse(side, file) for side in text.split("==")]
+        if len(sides) != _SIDES:
+            continue
+        left, right = sides
+        for own, other, sign in ((left, right, 1), (right, left, -1)):
+            free = isinstance(own, Name) and own.name in velocities - set(found)
+            if not isinstance(own, Name) or not free or other is None:
+                continue
+            names = _find_names(other, file) & velocities
+            names = names.union(*(reached[name] for name in names if name in reached))
+            if own.name not in names:
+                found[own.name] = constraint, sign
+                reached = {
+                    name: {*rest, *names} if own.name in rest else rest
+                    for name, rest in reached.items()
+                }
+                reached[own.name] = names
+                break
+    return found
+
+
+def _parse(text: str, file: Any) -> Node | None:
+    """A tree that may call the definitions with arguments; None where it cannot be read yet."""
+    called = [key.split("(")[0].strip() for key in file.definitions if "(" in key]
+    try:
+        return read_expression(text, called)
+    except ExpressionError:
+        return None
+
+
+def _find_names(node: Node, file: Any) -> set[str]:
+    """Variables that an expression names, whole or by component, also through definitions."""
+    defined = {key.split("(")[0].strip(): text for key, text in file.definitions.items()}
+    pending, seen, found = [node], set[str](), set[str]()
+    while pending:
+        for part in walk(pending.pop()):
+            name = str(getattr(part, "name", "") or getattr(part, "function", ""))
+            if name in defined and name not in seen:
+                seen.add(name)
+                inner = _parse(defined[name], file)
+                pending += [] if inner is None else [inner]
+            elif isinstance(part, Name | Index):
+                match = _COMPONENT.fullmatch(name)
+                found |= {name, match["name"]} if match else {name}
+    return found

@@ -1,0 +1,427 @@
+"""Variables: the table [variables], with shapes, blocks of the algebra and the state.
+
+Comes in: its keys, and the algebra where there is one. Goes out: `Variable` records.
+Read next: `coadjoint.spec.sections.definitions`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import prod
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from coadjoint.algebra.catalogue import ATTITUDES
+from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
+from coadjoint.algebra.families import so_indefinite
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.matrices import size
+from coadjoint.algebra.representation import Representation
+from coadjoint.errors import CoadjointError
+from coadjoint.limits import STATE_COMPONENTS
+from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
+from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.names import derived_names
+from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.reading import Naming, Reading, Table
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.values import (
+    Block,
+    Length,
+    Numbers,
+    Prose,
+    Unit,
+    misfit_form,
+    read_default,
+)
+from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.matrices import block_places, representation_of
+from coadjoint.spec.sections.representations import REPRESENTATIONS
+from coadjoint.spec.sections.solved import find_solved_velocities
+
+#: Keys that say how large a variable is, and the variables that each is for.
+_OWN_KEYS = {
+    "block": "velocities and momenta",
+    "representation": "advected quantities",
+    "shape": "coordinates",
+    "of": "velocities and momenta of coordinates",
+    "default": "quantities of the state",
+}
+_KEYS_OF = {
+    "velocity": ("block", "of", "default"),
+    "momentum": ("block", "of", "default"),
+    "advected": ("representation", "default"),
+    "coordinate": ("shape", "default"),
+}
+
+
+class VariablePart(Part):
+    """A velocity, a momentum, an advected quantity or a coordinate."""
+
+    role: Literal["velocity", "momentum", "advected", "coordinate"] = Field(
+        description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
+        "with a 'velocity' or 'momentum' of it"
+    )
+    block: Block | None = Field(
+        None, description="the block of the algebra that it spans; by default all of it"
+    )
+    representation: str | None = Field(
+        None,
+        description="how the algebra acts on an advected quantity: 'vector', 'adjoint', "
+        "'coadjoint' and others, or a declared one",
+    )
+    shape: Annotated[list[Length], Field(max_length=1)] | None = Field(
+        None, description="of a coordinate: [] for a scalar (the default), [n] for n components"
+    )
+    of: str | None = Field(
+        None,
+        description="the coordinate whose velocity, or conjugate momentum, it is; its shape and "
+        "form are those of the coordinate",
+    )
+    form: Literal["antisymmetric", "symmetric", "matrix"] | None = Field(
+        None,
+        description="the square matrix that it is in formulas: its components are the entries "
+        "above the diagonal, those with the diagonal, or all, row by row",
+    )
+    default: Numbers | None = Field(
+        None,
+        description="where `coadjoint simulate` begins unless told otherwise: a number for all "
+        "components, or a list of them",
+    )
+    unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
+
+
+@dataclass(frozen=True)
+class Variable(Components):
+    """A velocity, momentum or advected quantity, or a coordinate of a space with a bracket.
+
+    Attributes:
+        name: As declared, e.g. ``Omega``.
+        role: ``"velocity"``, ``"momentum"``, ``"advected"`` or ``"coordinate"``.
+        shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
+        block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
+        representation: How the algebra acts on an advected quantity; None otherwise.
+        unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
+        doc: Free text for documents.
+        form: One of `FORMS` if the components are the entries of a matrix, else "".
+        of: The coordinate whose velocity or momentum it is; "" over an algebra.
+        elements: Matrices of which a velocity is the sum, weighted by its components, in formulas;
+            empty where the form says it all.
+        default: Where a simulation begins, one exact value per component; None if nothing is said.
+        independent: Under constraints, whether a velocity is part of the state; None without any.
+    """
+
+    name: str
+    role: str
+    shape: Shape
+    block: tuple[int, ...] = ()
+    representation: Representation | None = None
+    unit: str = "1"
+    doc: str = ""
+    form: str = ""
+    of: str = ""
+    elements: tuple[SparseMatrix, ...] = ()
+    default: tuple[Fraction, ...] | None = None
+    independent: bool | None = None
+
+
+def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """The variables that make the state, in declared order; see `Spec.state`."""
+    given = {variable.of for variable in variables if variable.role == "momentum"}
+    return tuple(
+        variable
+        for variable in variables
+        if variable.independent
+        or variable.role != "velocity"
+        or (variable.independent is None and variable.of and variable.of not in given)
+    )
+
+
+def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple[Variable, ...]:
+    """The variables, each with its place in the algebra, or its shape where there is none.
+
+    Raises:
+        SpecError: A key does not go with the role, the role not with the spec, the block or the
+            representation is unknown, or the components fill no matrix of the form.
+        LimitError: The state has too many components.
+    """
+    solved = find_solved_velocities(reading.file)
+    found = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
+    limit = "STATE_COMPONENTS", STATE_COMPONENTS
+    reading.check_count("state", "variables", state_of(found), *limit)
+    return found
+
+
+def _read_variable(
+    reading: Reading, name: str, part: VariablePart, solved: Collection[str] | None
+) -> Variable:
+    """One variable; velocities that constraints give are no part of the state."""
+    source, parts = reading.source, reading.file.variables
+    algebra, invariance = ALGEBRA.of(reading).algebra, ALGEBRA.of(reading).invariance
+    key: KeyPath = ("variables", name)
+    for alien in _OWN_KEYS:
+        if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
+            raise _alien_key(source, (*key, alien), part)
+    if part.default is not None and not _is_state(name, part, parts, solved):
+        raise _alien_key(source, (*key, "default"), part)
+    block: tuple[int, ...] = ()
+    representation = None
+    constrained = solved is not None
+    if part.role == "momentum" and constrained:
+        raise _constrained_momentum(source, key)
+    if part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
+        if not constrained or part.role == "advected":
+            _check_role(source, key, part, algebra)
+        if part.role != "coordinate":
+            part = _as_partner(source, key, part, parts)
+        count = prod(part.shape or [1])
+        flat = bool(part.shape)
+    elif part.of is not None:
+        raise _alien_key(source, (*key, "of"), part)
+    elif part.role == "advected":
+        representation = _representation(
+            source, key, part, algebra, REPRESENTATIONS.of(reading), invariance
+        )
+        count = representation.dimension
+        flat = count > 1
+    else:
+        block = tuple(range(algebra.dimension))
+        if part.block is not None:
+            block = block_places(source, (*key, "block"), part.block, algebra)
+        count, flat = len(block), len(block) > 1
+    form = part.form or _own_form(representation)
+    if form in FORMS and matrix_size(count, form) is None:
+        raise misfit_form(source, (*key, "form"), count, form)
+    elements: tuple[SparseMatrix, ...] = ()
+    if form and block and algebra is not None and algebra.elements:
+        check_elements(source, (*key, "form"), algebra, block, form)
+        elements = algebra.elements if part.role == "velocity" else ()
+    elif form == "antisymmetric" and block and algebra is not None:
+        check_planes(source, (*key, "form"), algebra, block)
+    shape: Shape = (count,) if flat or form else ()
+    return Variable(
+        name=name,
+        role=part.role,
+        shape=shape,
+        block=block,
+        representation=representation,
+        unit=part.unit,
+        doc=part.doc,
+        form=form,
+        of=part.of or "",
+        elements=elements,
+        default=read_default(source, (*key, "default"), part.default, shape),
+        independent=name not in solved if solved is not None and part.role == "velocity" else None,
+    )
+
+
+def _is_state(
+    name: str,
+    part: VariablePart,
+    parts: Mapping[str, VariablePart],
+    solved: Collection[str] | None,
+) -> bool:
+    """Whether a variable is part of the state; see `quantities.state_of`."""
+    if solved is not None:
+        return name not in solved
+    given = {each.of for each in parts.values() if each.role == "momentum"}
+    return part.role != "velocity" or (part.of is not None and part.of not in given)
+
+
+def _constrained_momentum(source: Source, key: KeyPath) -> CoadjointError:
+    return source.fault(
+        (*key, "role"),
+        f"{key[-1]!r} is a momentum, and the state has velocities on these routes",
+        found="momentum",
+        expected="velocities, which are the state on the routes nonholonomic and hamel",
+        hint="Remove it; the velocities that no constraint gives are the state.",
+    )
+
+
+def _as_partner(
+    source: Source, key: KeyPath, part: VariablePart, parts: Mapping[str, VariablePart]
+) -> VariablePart:
+    """A velocity or momentum with the shape and form of its coordinate."""
+    coordinates = [name for name, each in parts.items() if each.role == "coordinate"]
+    if part.of is None:
+        raise source.fault(
+            (*key, "role"),
+            f"the {part.role} {key[-1]!r} belongs to no coordinate",
+            found=part.role,
+            expected=f"of = one of {listed(coordinates)}" if coordinates else "a coordinate",
+            hint="Add for instance " + f'of = "{coordinates[0] if coordinates else "q"}".',
+        )
+    if part.of not in coordinates:
+        raise source.fault(
+            (*key, "of"),
+            f"there is no coordinate {part.of!a}",
+            found=part.of,
+            expected=f"one of {listed(coordinates)}" if coordinates else "a declared coordinate",
+            hint=did_you_mean(part.of, coordinates),
+        )
+    rivals = [n for n, each in parts.items() if (each.role, each.of) == (part.role, part.of)]
+    if rivals[0] != key[-1]:
+        raise source.fault(
+            (*key, "of"),
+            f"{rivals[0]!r} is the {part.role} of {part.of!r} already",
+            found=part.of,
+            expected=f"one {part.role} for each coordinate",
+        )
+    whole = parts[part.of]
+    return part.model_copy(update={"shape": whole.shape, "form": whole.form})
+
+
+def _alien_key(source: Source, key: KeyPath, part: VariablePart) -> CoadjointError:
+    *_, name, alien = key
+    return source.fault(
+        key,
+        f"the {part.role} {name!r} has a {alien}",
+        found=str(getattr(part, str(alien))),
+        expected=f"{alien} for {_OWN_KEYS[str(alien)]} alone",
+        hint=f"Remove {alien}.",
+    )
+
+
+def _check_role(
+    source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
+) -> None:
+    """Coordinates do without an algebra, advected quantities do not."""
+    if part.role == "coordinate" and algebra is not None:
+        place, roles = "beside [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
+    elif part.role == "advected" and algebra is None:
+        place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
+    else:
+        return
+    raise source.fault(
+        (*key, "role"),
+        f"{key[-1]!r} has the role {part.role!r} {place}",
+        found=part.role,
+        expected=f"{roles} {place}",
+    )
+
+
+def check_elements(
+    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
+) -> None:
+    """The matrices of an algebra with a bracket of its own are of the form that is declared."""
+    rows = matrix_size(len(block), form)
+    sign = -1 if form == "antisymmetric" else 1
+    for i in block:
+        matrix = algebra.elements[i]
+        turned = {(c, r): sign * value for (r, c), value in matrix.items()}
+        if form == "matrix" or len(block) < algebra.dimension:
+            turned = {}
+        if size(algebra.elements) != rows or turned != dict(matrix):
+            raise source.fault(
+                key,
+                f"the matrix of {algebra.basis[i]} is not of the form {form!r}",
+                found=algebra.basis[i],
+                expected=f"a basis of all {form} matrices with {rows} rows",
+                hint="Remove form, or declare the algebra by such matrices.",
+            )
+
+
+def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
+    """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
+
+    Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
+    and no invariant would show it.
+    """
+    size = matrix_size(len(block), "antisymmetric")
+    assert size is not None, block
+    place = {b: n for n, b in enumerate(block)}
+    found: dict[tuple[int, int], dict[int | None, object]] = {}
+    for (i, j), row in algebra.constants.items():
+        if i in place and j in place:
+            a, b = place[i], place[j]
+            sign = 1 if a < b else -1
+            found[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
+    if size > 2 and found != dict(so_indefinite(size, 0).constants):
+        names = listed(algebra.basis[b] for b in block)
+        raise source.fault(
+            key,
+            f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
+            found=names,
+            expected="a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
+            hint="Leave form out, and write hat(...) where a matrix is meant."
+            if size == 3
+            else "Leave form out, or declare the algebra by these matrices.",
+        )
+
+
+def _representation(
+    source: Source,
+    key: KeyPath,
+    part: VariablePart,
+    algebra: LieAlgebra,
+    declared: Mapping[str, Representation],
+    invariance: str,
+) -> Representation:
+    """The action on an advected quantity."""
+    if part.representation is None:
+        raise source.fault(
+            key,
+            f"the advected quantity {key[-1]!r} has no representation",
+            found=str(key[-1]),
+            expected=f"representation = one of {listed((*KNOWN, *declared))}",
+            hint='Write representation = "vector".',
+        )
+    inner = (*key, "representation")
+    name = part.representation
+    return representation_of(source, inner, algebra, name, declared, invariance)
+
+
+def _own_form(representation: Representation | None) -> str:
+    """The form that an attitude has by itself: a unit quaternion, or a square matrix."""
+    if representation is None or representation.name not in ATTITUDES:
+        return ""
+    if representation.name == "quaternion":
+        return "quaternion"
+    count = representation.dimension
+    return "matrix" if count > 1 and matrix_size(count, "matrix") else ""
+
+
+def _name_all(table: str, variables: Sequence[Variable]) -> Iterator[Naming]:
+    """The names of variables, of their components, and of the rates of the state."""
+    state = state_of(variables)
+    for each in variables:
+        rates = tuple(derived_names(each.components)) if each in state else ()
+        yield Naming((table, each.name), each.name, each.components, rates)
+
+
+def state_roles(reading: Reading) -> tuple[str, ...]:
+    """Roles of the state: momenta or, of coordinates without them, velocities, and positions."""
+    return tuple(dict.fromkeys(each.role for each in state_of(VARIABLES.of(reading))))
+
+
+def motion_roles(reading: Reading) -> tuple[str, ...]:
+    """Roles of the state and of the velocities."""
+    return tuple(dict.fromkeys(("velocity", *(each.role for each in VARIABLES.of(reading)))))
+
+
+def position_roles(reading: Reading) -> tuple[str, ...]:
+    """Roles of the positions: what a Lagrangian is a function of beside the velocities."""
+    roles = motion_roles(reading)
+    default = "coordinate" if ALGEBRA.of(reading).algebra is None else "advected"
+    return tuple(each for each in roles if each not in ("velocity", "momentum")) or (default,)
+
+
+VARIABLES = Table[tuple[Variable, ...]](
+    "variables",
+    VariablePart,
+    "the variables by name",
+    read_variables,
+    many=True,
+    field=(
+        dict[str, VariablePart],
+        Field(min_length=1, description="the variables by name", json_schema_extra=named()),
+    ),
+    quantities=True,
+    names=_name_all,
+    example='Pi = { role = "momentum" }',
+)

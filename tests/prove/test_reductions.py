@@ -1,0 +1,130 @@
+"""Restricted motions on which forces act: the section is kept, or a point shows that it is not."""
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.derive.mechanics import external
+from coadjoint.errors import ClaimError, SpecError
+from coadjoint.prove import Verdict, prove
+from tests.specs import spec
+
+#: Two oscillators with a spring of any kind between them, driven alike, which move as one.
+IN_STEP = """
+title = "Two oscillators in step"
+routes = ["canonical", "poisson"]
+[poisson]
+canonical = [["q1", "p1"], ["q2", "p2"]]
+[variables]
+q1 = { role = "coordinate" }
+p1 = { role = "coordinate" }
+q2 = { role = "coordinate" }
+p2 = { role = "coordinate" }
+[parameters]
+k = { positive = true, default = 1 }
+c = { positive = true, default = "0.1" }
+[inputs]
+u = { default = 0 }
+[time]
+name = "t"
+[hamiltonian]
+h = "(p1^2 + p2^2)/2 + (q1^2 + q2^2)/2 + k*(q1 - q2)^4"
+[forces]
+p1 = "-c*p1 + u*sin(t)"
+p2 = "-c*p2 + u*sin(t)"
+[reduction]
+where = ["q1 - q2", "p1 - p2"]
+section = { q2 = "q1", p2 = "p1" }
+"""
+#: A body that turns about one of its axes.
+ABOUT_AN_AXIS = """
+title = "Body about its third axis"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+across = { role = "momentum", block = ["J1", "J2"] }
+along = { role = "momentum", block = ["J3"] }
+[parameters]
+I = { shape = [3], positive = true, default = [1, 2, 3] }
+c = { positive = true, default = 1 }
+[hamiltonian]
+h = "across1^2/(2*I1) + across2^2/(2*I2) + along^2/(2*I3)"
+[forces]
+along = "-c*along"
+[reduction]
+where = ["across"]
+section = { across = "vector(0, 0)" }
+"""
+FRICTION = ('p2 = "-c*p2 + u*sin(t)"', 'p2 = "-c*p2"')
+TORQUE = ('along = "-c*along"', 'across = "vector(c, 0)"\nalong = "-c*along"')
+UNFORCED = ('[forces]\np1 = "-c*p1 + u*sin(t)"\np2 = "-c*p2 + u*sin(t)"', "")
+LAW = "the energy changes by the power of the forces"
+
+
+def verdicts(text, *changes):
+    """Verdict by statement."""
+    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+
+
+@pytest.mark.parametrize("text", [IN_STEP, ABOUT_AN_AXIS])
+def test_a_section_that_forces_keep_is_proved(text):
+    """For all inputs and at all times; the energy is that on the section, and so is its balance."""
+    found = verdicts(text)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert sum(each.startswith(("the motion keeps", "the whole motion")) for each in found) == 2
+    assert LAW in found
+    assert "the energy is conserved" not in found
+
+
+def test_the_motion_on_the_section_is_typed_by_hand():
+    """A driven oscillator with friction, ``q'' = -q - c q' + u sin t``, by both routes."""
+    q, p, c, u, t = sympy.symbols("q1 p1 c u t")
+    declared = spec(IN_STEP)
+    for route in declared.routes:
+        found = derive(declared, route)
+        assert tuple(map(str, found.state)) == ("q1", "p1")
+        assert list(found.rates) == [p, -q - c * p + u * sympy.sin(t)]
+        assert sympy.expand(found.energy - p**2 - q**2) == 0
+
+
+@pytest.mark.parametrize(("text", "change"), [(IN_STEP, FRICTION), (ABOUT_AN_AXIS, TORQUE)])
+def test_a_force_that_leaves_the_section_is_refuted(text, change):
+    """With a point; the same motion without that force keeps it."""
+    certificate = prove(spec(text, change))
+    false = {each.statement for each in certificate.claims if each.verdict is Verdict.REFUTED}
+    assert any(each.startswith("the whole motion keeps") for each in false)
+    assert any(each.startswith("the motion keeps") for each in false)
+    with pytest.raises(ClaimError, match=r"refuted: the whole motion keeps .* At "):
+        certificate.require()
+
+
+@pytest.mark.parametrize("factor", [0, 2, -1])
+def test_spoiled_forces_break_the_balance_on_the_section(factor, monkeypatch):
+    """The power is taken from the spec, not from what the route has added."""
+    added = external.added_rates
+    spoiled = lambda setting: [factor * force for force in added(setting)]  # noqa: E731
+    monkeypatch.setattr(external, "added_rates", spoiled)
+    found = verdicts(IN_STEP)
+    assert found[LAW] is Verdict.REFUTED
+    assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.PROVED
+
+
+def test_a_double_bracket_acts_on_the_whole():
+    """Its conditions are claims about the whole system; one that pulls a single body leaves."""
+    change = (UNFORCED, ('["canonical", "poisson"]', '["poisson"]'), ('[time]\nname = "t"\n', ""))
+    along = '[double_bracket]\nG = "c*u^2"\n[reduction]'
+    found = verdicts(IN_STEP, *change, ("[reduction]", along))
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "G is positive semidefinite (of the whole system)" in found
+    assert "the energy changes by -<P dh, G P dh>" in found
+    single = '[double_bracket]\nG = "u^2*diag(vector(c, c, 0, 0))"\n[reduction]'
+    found = verdicts(IN_STEP, *change, ("[reduction]", single))
+    assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.REFUTED
+
+
+def test_friction_by_rayleighs_function_leads_to_forces():
+    """A restricted motion has no velocities; the advice names what works, as above."""
+    rayleigh = ("[forces]", '[dissipation]\nR = "p1^2"\n[forces]')
+    with pytest.raises(SpecError, match=r"names no velocity.*along a momentum in \[forces\]"):
+        spec(IN_STEP, rayleigh)
