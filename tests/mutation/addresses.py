@@ -68,6 +68,29 @@ def find_edit(tree: ast.Module, line: str) -> Edit:
     Raises:
         AddressError: The line fits nowhere, or at several places.
     """
+    fitting, candidates = _fitting(tree, line)
+    inner = [each for each in fitting if not any(_contains(each, other) for other in fitting)]
+    if len(inner) != 1:
+        listed = "\n".join(f"  {each.label}" for each in inner or candidates)
+        raise AddressError(f"{line!r} fits {len(inner)} places:\n{listed}")
+    return inner[0]
+
+
+def find_edits(tree: ast.Module, line: str) -> list[Edit]:
+    """All edits that a line fits.
+
+    Raises:
+        AddressError: It fits none.
+    """
+    fitting, candidates = _fitting(tree, line)
+    if not fitting:
+        listed = "\n".join(f"  {each.label}" for each in candidates)
+        raise AddressError(f"{line!r} fits no place:\n{listed}")
+    return fitting
+
+
+def _fitting(tree: ast.Module, line: str) -> tuple[list[Edit], list[Edit]]:
+    """The edits that a line fits, and those with its operator in its function."""
     name, _, what = line.partition(": ")
     operator, _, rest = what.partition(" ")
     function = function_of(tree, name)
@@ -88,11 +111,7 @@ def find_edit(tree: ast.Module, line: str) -> Edit:
         for each in candidates
         if each.words >= set(words.split()) and each.places >= set(places.split())
     ]
-    inner = [each for each in fitting if not any(_contains(each, other) for other in fitting)]
-    if len(inner) != 1:
-        listed = "\n".join(f"  {each.label}" for each in inner or candidates)
-        raise AddressError(f"{line!r} fits {len(inner)} places:\n{listed}")
-    return inner[0]
+    return fitting, candidates
 
 
 def split_once(text: str, mark: str) -> tuple[str, str]:

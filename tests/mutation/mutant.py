@@ -6,12 +6,21 @@ Read next: `tests.mutation.addresses`, how a line names a change, then `tests.mu
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
-from tests.mutation.addresses import AddressError, find_edit, source_with, tree_of
+from tests.mutation.addresses import (
+    AddressError,
+    find_edit,
+    find_edits,
+    function_of,
+    source_with,
+    tree_of,
+)
+from tests.mutation.operators import Edit, core
 from tests.mutation.texts import changed_spec, changed_template
 
 ROOT = Path(__file__).parents[2]
@@ -32,6 +41,7 @@ class Mutant:
         fallacy: The mistake that the change is, where it has a name.
         equivalent: Why no check can see it, if so.
         always: Whether it is tried in every run of the tests, not only in campaigns.
+        edit: The change itself, where no line names it since it is one of all.
     """
 
     file: str
@@ -42,6 +52,7 @@ class Mutant:
     fallacy: str = ""
     equivalent: str = ""
     always: bool = False
+    edit: Edit | None = None
 
     @property
     def name(self) -> str:
@@ -55,6 +66,8 @@ class Mutant:
         Raises:
             AddressError: The line fits nowhere, or at several places.
         """
+        if self.edit is not None:
+            return source_with(tree_of(ROOT / self.file), self.edit)
         return _text(self.file, self.line)
 
 
@@ -116,6 +129,45 @@ def of(
         Mutant(module(f"derive/{name}"), line, route, systems, tests, fallacy)
         for line, fallacy in map(_with_fallacy, changes)
     )
+
+
+def core_of(
+    route: str,
+    name: str,
+    names: str,
+    *,
+    systems: tuple[str, ...],
+    tests: tuple[str, ...] = (),
+    equivalent: Mapping[str, str] = MappingProxyType({}),
+) -> tuple[Mutant, ...]:
+    """All changes of signs, terms, factors and the order of arguments in functions of a route.
+
+    The first by each operator is tried in every run, the others in campaigns.
+
+    Args:
+        route: The route.
+        name: The module in ``derive/``.
+        names: Its functions.
+        systems: Whose certificates judge them.
+        tests: The tests that judge what those let pass.
+        equivalent: Why changes move nothing, by lines that may fit several.
+    """
+    file = module(f"derive/{name}")
+    tree = tree_of(ROOT / file)
+    reasons = {
+        edit.place: reason for line, reason in equivalent.items() for edit in find_edits(tree, line)
+    }
+    found, tried, texts = list[Mutant](), set[str](), dict[str, int]()
+    for function in names.split():
+        for edit in core(function_of(tree, function)):
+            reason = reasons.get(edit.place, "")
+            line = f"{function}: {edit.label}"
+            texts[line] = texts.get(line, 0) + 1
+            line += f" ({texts[line]})" if texts[line] > 1 else ""
+            first = edit.operator not in tried and not reason
+            found.append(Mutant(file, line, route, systems, tests, "", reason, first, edit))
+            tried |= {edit.operator} if first else set()
+    return tuple(found)
 
 
 def of_spec(system: str, *changes: Change) -> tuple[Mutant, ...]:

@@ -48,6 +48,11 @@ class Edit:
         return names_in(self.acts_on)
 
     @property
+    def place(self) -> tuple[str, int, int]:
+        """What distinguishes it from all other edits of its tree."""
+        return self.operator, id(self.acts_on), id(self.old)
+
+    @property
     def label(self) -> str:
         """The edit for a reader."""
         return f"{self.operator} {ast.unparse(self.acts_on)}"
@@ -301,12 +306,33 @@ COUNTING = frozenset(["[]", "range", "len", "enumerate", "islice", "combinations
 def core(function: Function) -> Iterator[Edit]:
     """The edits of the quantities that a function computes: signs, terms, factors, arguments.
 
-    Words for a reader are left out: functions that return steps of a derivation or text, messages.
+    Words for a reader are left out, and what only refuses: functions that return steps of a
+    derivation, text or nothing, messages. So are zeros, which have no sign.
     """
     returned = ast.unparse(function.returns) if getattr(function, "returns", None) else ""
-    if "Step" in returned or "str" in returned:
+    if "Step" in returned or "str" in returned or returned == "None":
         return
     for each in edits(function):
         text = any(isinstance(node, ast.JoinedStr) for node in ast.walk(each.old))
-        if each.operator in GENERATED and not text and not each.places & {*COUNTING, "raise"}:
+        zero = each.operator in ("flip", "drop") and _is_zero(each.acts_on)
+        counts = each.places & {*COUNTING, "raise"} or _counts(each.old)
+        if each.operator in GENERATED and not (text or zero or counts):
             yield each
+
+
+def _counts(node: ast.AST) -> bool:
+    """Whether it is a place as ``n + 1`` or a length is."""
+    return "len" in names_in(node) or (
+        _is_sum(node)
+        and any(
+            isinstance(term, ast.Constant) and isinstance(term.value, int)
+            for _, term in terms_of(node)
+        )
+    )
+
+
+def _is_zero(node: ast.AST) -> bool:
+    """Whether it is ``field.zero``, or what a table holds where it has no entry."""
+    return head(node) == "zero" or (
+        isinstance(node, ast.Call) and bool(node.args) and head(node.args[-1]) == "zero"
+    )

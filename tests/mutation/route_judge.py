@@ -55,7 +55,9 @@ def judged(system: str, request: dict[str, str]) -> Spec:
     text = request["text"] if own else path.read_text(encoding="utf-8")
     spec = read_spec_text(text, path)
     kept = tuple(route for route in spec.routes if route in (spec.routes[0], request["route"]))
-    return replace(spec, routes=kept) if len(kept) == 2 else spec
+    if len(kept) < 2:
+        return spec
+    return replace(spec, routes=kept, lax=spec.lax if "lax" in kept else None)
 
 
 def refutation(specs: list[Spec], tests: list[str]) -> str:
@@ -69,6 +71,8 @@ def refutation(specs: list[Spec], tests: list[str]) -> str:
     for spec in specs:
         try:
             refuted = prove(spec).refuted
+        except NameError:  # the change cannot run at all
+            raise
         except Exception as error:  # there is no certificate, whatever went wrong
             return f"{spec.name}: {type(error).__name__}: {error}".splitlines()[0]
         if refuted:

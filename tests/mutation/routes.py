@@ -10,9 +10,11 @@ from tests.mutation import routes_over_algebras as algebras
 from tests.mutation import routes_over_coordinates as coordinates
 from tests.mutation import routes_over_distributions as distributions
 from tests.mutation.changed_specs import SPECS
+from tests.mutation.core_functions import CORE
 from tests.mutation.shared_steps import SHARED
 
 ROUTE_MUTANTS = (
+    *CORE,
     *algebras.REDUCED,
     *algebras.BODY_ROUTES,
     *algebras.PAIRS,

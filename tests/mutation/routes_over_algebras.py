@@ -34,7 +34,7 @@ REDUCED = (
         "matrix_euler_poincare",
         ("quadratic_potential_so3",),
         "_rates: unwrap transpose",
-        "_rates: use subtract for add",
+        "_rates: rewrite add(torque, push) -> add(torque, scale(-1, push))",
         "_rates: unwrap add",
         "_symmetric: unwrap add",
         "_symmetric: use 1 for 2",

@@ -139,7 +139,7 @@ def test_a_mutant_is_killed(mutant, judge, tmp_path):
 @pytest.mark.campaign
 @pytest.mark.parametrize("mutant", **names([m for m in MUTANTS if m.equivalent]))
 def test_an_equivalent_mutant_survives(mutant, judge, tmp_path):
-    """No test fails, as the reason beside it says; one that does is no longer equivalent."""
+    """No test fails; if one does, the mutant is not equivalent and its reason is wrong."""
     mutate(tmp_path, mutant)
     assert judge(tmp_path, judges_of(mutant)) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
 
@@ -154,7 +154,7 @@ def unchanged():
 
 @pytest.mark.parametrize("tests", unchanged())
 def test_the_unchanged_tree_survives(tests, judge, tmp_path):
-    """The judge passes without a mutation: what kills is the change."""
+    """The unchanged tree passes, so it is the change that a test detects."""
     copy_tree(tmp_path)
     assert judge(tmp_path, tests) == 0, (tmp_path / OUTPUT).read_text()[-2000:]
 

@@ -1,0 +1,175 @@
+"""Functions that carry the mechanics of a route: each of their signs, terms and factors is tried.
+
+No line names these changes; operators make them from what the functions hold. Those that change
+nothing are listed with the reason.
+Read next: `tests.mutation.routes_over_algebras`, changes that operators do not make.
+"""
+
+from __future__ import annotations
+
+from tests.mutation import routes_over_algebras as algebras
+from tests.mutation import routes_over_coordinates as coordinates
+from tests.mutation import routes_over_distributions as distributions
+from tests.mutation import shared_steps as shared
+from tests.mutation.mutant import core_of
+
+#: Right-invariant motions; all that ship are left-invariant.
+RIGHT = ("tests/derive/test_routes.py -k 'routes_agree and right'",)
+ON_BOTH_SIDES = ("tests/sources/test_principles.py -k '9_1_9_2 and right and so and vector'",)
+TURNED_RIGHT = ("tests/derive/test_group_routes.py -k 'quaternions_turn and right'",)
+ADVECTED = ("affine_line", "heavy_top")
+
+CORE = (
+    *core_of("euler-poincare", "euler_poincare", "_rates", systems=ADVECTED, tests=RIGHT),
+    *core_of(
+        "matrix-euler-poincare",
+        "matrix_euler_poincare",
+        "_rates _symmetric _slope_matrix",
+        systems=("quadratic_potential_so3",),
+        tests=(f"{algebras.LAX} -k move_advected",),
+    ),
+    *core_of(
+        "hamilton-pontryagin",
+        "hamilton_pontryagin",
+        "_action _at_the_motion _momentum_equation _advection",
+        systems=ADVECTED,
+        tests=ON_BOTH_SIDES,
+        equivalent=dict.fromkeys(
+            (
+                "_action: flip rate in constraint",
+                "_action: drop rate in constraint",
+                "_action: flip xi in constraint",
+                "_action: drop xi in constraint",
+            ),
+            "the momentum equation takes no slope of <mu, deps/dt - xi> but those that hold eps",
+        ),
+    ),
+    *core_of("clebsch", "clebsch", "derive _pairing", systems=ADVECTED, tests=ON_BOTH_SIDES),
+    *core_of(
+        "poincare",
+        "poincare",
+        "_vector_fields _inertial derive",
+        systems=ADVECTED,
+        tests=ON_BOTH_SIDES,
+    ),
+    *core_of(
+        "cayley-klein",
+        "cayley_klein",
+        "q_rate _momentum_rate _slopes _body",
+        systems=("rigid_body_attitude", "heavy_top"),
+        tests=TURNED_RIGHT,
+    ),
+    *core_of(
+        "newton-euler",
+        "newton_euler",
+        "_rates _forces weighed squared mass_points",
+        systems=("heavy_top",),
+        tests=(f"{algebras.TOPS} -k 2_1_2",),
+        equivalent={
+            "mass_points: transpose mass": "the mass matrix is symmetric",
+            "squared: transpose second": "the matrix of second moments is symmetric",
+        },
+    ),
+    *core_of(
+        "kaluza-klein",
+        "kaluza_klein",
+        "_rates",
+        systems=("heavy_top",),
+        tests=(f"{algebras.BODIES} -k 'kaluza_klein_follows and right'",),
+    ),
+    *core_of(
+        "complexification",
+        "complexification",
+        "_momenta _paired _continued",
+        systems=("complex_rigid_body",),
+        tests=("tests/sources/test_complex.py -k complex_velocities",),
+    ),
+    *core_of("lax", "pairs", "rates_of", systems=("bloch_iserles_3", "quadratic_potential_so3")),
+    *core_of(
+        "manakov",
+        "planes",
+        "_by_sums _antisymmetric",
+        systems=("rigid_body",),
+        tests=algebras.MANAKOV,
+        equivalent=dict.fromkeys(
+            (f"_by_sums: {operator} in half" for operator in ("flip", "omit", "transpose")),
+            "a body in the plane turns uniformly, and any pair says so",
+        ),
+    ),
+    *core_of(
+        "lie-poisson",
+        "poisson",
+        "hamiltonian_equations",
+        systems=("nambu_body", "sp2_momentum", "kepler", "heavy_top"),
+        tests=coordinates.PAIRED_TWICE,
+        equivalent={
+            "hamiltonian_equations: swap bracket": "the step that shows the bracket",
+            "hamiltonian_equations: transpose tensor": "the step that shows the bracket",
+        },
+    ),
+    *core_of(
+        "nambu",
+        "nambu",
+        "derive generalised_cross_product _from_casimir distinguished_function",
+        systems=("nambu_body", "rigid_body"),
+        tests=coordinates.FOUND,
+    ),
+    *core_of(
+        "euler-lagrange",
+        "euler_lagrange",
+        "_in_velocities _in_momenta",
+        systems=("rocking_disk",),
+        tests=(*coordinates.DRIVEN, *coordinates.PAIRED_TWICE),
+    ),
+    *core_of(
+        "canonical",
+        "canonical",
+        "_hamilton _magnetic _in_own_momenta",
+        systems=("kepler", "monopole_kepler", "rocking_disk", "spd_motion"),
+        tests=("tests/derive/test_external.py",),
+    ),
+    *core_of(
+        "newton",
+        "forces",
+        "_acceleration",
+        systems=("kepler",),
+        tests=("tests/derive/test_configuration.py",),
+    ),
+    *core_of("alignment", "alignment", "derive", systems=("kepler", "monopole_kepler")),
+    *core_of(
+        "nonholonomic",
+        "nonholonomic",
+        "_forces _projected _known",
+        systems=("chaplygin_sleigh", "chaplygin_ball_centred"),
+        tests=(*distributions.PARTICLE, *distributions.MOVING_MASS, *distributions.FORCED),
+    ),
+    *core_of(
+        "hamel",
+        "hamel",
+        "_known",
+        systems=("chaplygin_sleigh", "chaplygin_ball_centred", "knife_edge_cvt"),
+        tests=(*distributions.FORCED, *distributions.DRIVEN, "tests/prove/test_driven.py"),
+    ),
+    *core_of(
+        "projection",
+        "projection",
+        "nearest_state _residuals",
+        systems=("suslov",),
+        tests=distributions.PROJECTION,
+    ),
+    *core_of(
+        "frames",
+        "frames",
+        "along bracket structure inertial rates",
+        systems=(),
+        tests=distributions.FRAMES,
+    ),
+    *core_of(
+        "solver",
+        "solver",
+        "_eliminate _rest definitions",
+        systems=(),
+        tests=shared.SOLVER,
+        equivalent={"_rest: transpose matrix": "the matrix of a solve is symmetric"},
+    ),
+)
