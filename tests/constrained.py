@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 from coadjoint.derive import Equations, derive, make_setting
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.agreement import about_equality
+from coadjoint.prove.constrained import ConstrainedRates, about_constraints, about_kept
+from coadjoint.prove.integrals import about_energy
+from coadjoint.prove.zero import Examined
 from tests.specs import spec
 
 #: The constraint of many books, dz - y dx = 0.
 PARTICLE = """
 title = "A particle whose height follows its way"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [variables]
 x = { role = "coordinate" }
 y = { role = "coordinate" }
@@ -32,7 +36,7 @@ conserved = ["energy"]
 #: Chaplygin's: v along the blade, u across it, a from the blade to the centre of mass.
 SLEIGH = """
 title = "A sleigh"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [algebra]
 name = "se(2)"
 [variables]
@@ -52,7 +56,7 @@ blade = "u == 0"
 #: Suslov's, with the products of inertia b; one direction of the body does not turn.
 SUSLOV = """
 title = "A body that does not turn about its third axis"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [algebra]
 name = "so(3)"
 [variables]
@@ -69,7 +73,7 @@ wheel = "spin == 0"
 #: A pendulum as a particle that keeps its distance: no constraint gives a velocity.
 PENDULUM = """
 title = "A particle on a rod"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [variables]
 x = { role = "coordinate" }
 y = { role = "coordinate" }
@@ -86,7 +90,7 @@ rod = "x*u + y*v == 0"
 #: se(3) with a vector that the body carries, and a ball that is not centred.
 BALL = """
 title = "A ball on a plane"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [algebra]
 name = "se(3)"
 [variables]
@@ -109,7 +113,7 @@ rolling = "Y == cross(Omega, s)"
 #: Constraints that are kept where free motion has no acceleration: no force acts on them.
 STRAIGHT = """
 title = "A free particle on a line"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [variables]
 x = { role = "coordinate" }
 y = { role = "coordinate" }
@@ -126,7 +130,7 @@ line = "u + k*v == 0"
 #: Every axis of the body is principal, so that it turns uniformly about any.
 ROUND = """
 title = "A body of unit inertia"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [algebra]
 name = "so(3)"
 [variables]
@@ -139,7 +143,7 @@ gear = "3*w1 == 2*w2"
 #: Its centre on a cylinder of radius R, the radius of the ball r, no slip; upright, weight along z.
 CYLINDER = """
 title = "A ball in an upright cylinder"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [variables]
 theta = { role = "coordinate" }
 z = { role = "coordinate" }
@@ -162,7 +166,7 @@ along = "w - r*(-sin(theta)*s1 + cos(theta)*s2) == 0"
 #: Appell's: a weight on a thread that a rolling wheel winds up; a mass at rho before the wheel.
 APPELL = """
 title = "Appell's machine"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [variables]
 x = { role = "coordinate" }
 y = { role = "coordinate" }
@@ -193,6 +197,35 @@ along = "vx == a*cos(psi)*vphi"
 across = "vy == a*sin(psi)*vphi"
 thread = "vz == b*vphi"
 """
+#: Painleve's (1895): a rod slides with one end on a rough floor, its slip speed regularised by eps.
+ROD = """
+title = "A rod on a rough floor"
+routes = ["nonholonomic", "hamel"]
+[variables]
+x = { role = "coordinate" }
+y = { role = "coordinate" }
+theta = { role = "coordinate" }
+u = { role = "velocity", of = "x" }
+w = { role = "velocity", of = "y" }
+om = { role = "velocity", of = "theta" }
+[parameters]
+m = { positive = true, default = 1 }
+I = { positive = true, default = "1/3" }
+l = { positive = true, default = 1 }
+g = { default = 1 }
+mu = { positive = true, default = 3 }
+eps = { positive = true, default = 1 }
+[definitions]
+slip = "u + l*sin(theta)*om"
+F = "-mu*floor_reaction*slip/sqrt(slip^2 + eps^2)"
+[lagrangian]
+l = "m*(u^2 + w^2)/2 + I*om^2/2 - m*g*y"
+[constraints]
+floor = "w - l*cos(theta)*om == 0"
+[forces]
+u = "F"
+om = "F*l*sin(theta)"
+"""
 
 
 @cache
@@ -206,3 +239,12 @@ def derived(text: str, *changes: tuple[str, str]) -> dict[str, Equations]:
 def motion(text: str, *changes: tuple[str, str], route: str = "nonholonomic") -> ConstrainedRates:
     """The motion of a changed text by one route."""
     return ConstrainedRates(derived(text, *changes)[route])
+
+
+def about_routes(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """The claims about constrained motions that need no search."""
+    along = ConstrainedRates(routes[0])
+    yield from about_constraints(along)
+    yield from about_equality(routes)
+    yield from about_energy(along)
+    yield from about_kept(along)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 from fractions import Fraction
 
-from coadjoint.declared import Quantity
+from coadjoint.declared import KernelContext, Quantity
 from coadjoint.lower.program import (
     Add,
     Call,
@@ -23,7 +23,6 @@ from coadjoint.lower.program import (
     Symbol,
     walk,
 )
-from coadjoint.render.kernels import KernelContext
 
 KINDS = {ast.Add: Add, ast.Mult: Multiply, ast.Div: Divide}
 
@@ -124,7 +123,6 @@ TOP_POISSON = program(
 HEAVY_TOP = KernelContext(
     name="heavy_top",
     spec="derivations/heavy_top.toml",
-    spec_sha256="0" * 64,
     license="BSD-3-Clause",
     routes=("Route: euler-poincare on so(3), left invariant.",),
     equations=("Omega1 = Pi1/I1", "dPi1/dt = Omega3*Pi2 - Omega2*Pi3 + m*g*(chi3*Gamma2 - ...)"),
@@ -150,7 +148,6 @@ HEAVY_TOP = KernelContext(
 PENDULUM = KernelContext(
     name="pendulum",
     spec="derivations/pendulum.toml",
-    spec_sha256="1" * 64,
     license="",
     routes=("Route: typed by hand.",),
     equations=("dq/dt = p", "dp/dt = -k*sin(q) - exp(-q*q)*p"),

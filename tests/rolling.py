@@ -8,7 +8,7 @@ from tempfile import mkdtemp
 
 from coadjoint.derive import Equations, derive
 from coadjoint.lower.lowering import lower
-from coadjoint.pipeline import kernel_context
+from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.system import System, load_folder
 from tests.constrained import SLEIGH

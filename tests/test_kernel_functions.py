@@ -13,12 +13,14 @@ from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
+from coadjoint.render.targets import BUILDS
 from coadjoint.solve.functions import Functions, make_method
 from coadjoint.solve.system import load_folder
 from coadjoint.spec.core.names import refusal
 from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER
 from tests.specs import spec
+from tests.trees_of_files import ROOT
 
 #: A function that no system has: the squares of the rates, and their sum.
 SQUARES = KernelFunction("squares", "Squares of the rates, and their sum", "(n + 1, *batch)")
@@ -89,6 +91,17 @@ def test_every_reader_agrees_with_the_table():
         assert text.startswith(f"{entry.summary}; shape ``{entry.shape}``.")
         assert refusal(name), name
     assert not any(hasattr(Functions, name) for name in ("squares", "SQUARES"))
+
+
+def test_the_page_on_functions_lists_the_table():
+    """docs/python.md has a row for each entry, in the same order, and no other."""
+    text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    rows = [line for line in text.split("## Targets")[0].splitlines() if line.startswith("| `")]
+    entries = KERNEL_FUNCTIONS.values()
+    assert rows == [f"| `{e.name}` | `{e.shape}` | {e.summary} |" for e in entries]
+    targets = [line for line in text.split("## Targets")[1].splitlines() if line.startswith("| `")]
+    shown = [tuple(cell.strip(" `") for cell in row.split("|")[1:3]) for row in targets]
+    assert {(f'"{b}"', target.kernel) for b, target in BUILDS.items()} == set(shown)
 
 
 def test_a_function_that_a_system_lacks_is_refused_with_those_it_has():

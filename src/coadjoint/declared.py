@@ -8,7 +8,10 @@ Read next: `coadjoint.kernel_functions`, the table of all functions of the kerne
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from coadjoint.lower.program import Program
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,8 @@ class Quantity:
     Attributes:
         name: As in the spec, e.g. ``Pi``.
         shape: ``()``, ``(n,)`` or ``(n, m)``.
-        unit: Unit text, ``"1"`` if dimensionless, ``""`` if not stated.
+        unit: Unit text, ``"1"`` if dimensionless, ``""`` if not stated; of components with units
+            of their own those of all, as ``"1, 1, m"``.
         components: Name of each row, row by row.
         default: One value for each row, or None.
         positive: Whether every value must be positive.
@@ -36,6 +40,22 @@ class Quantity:
     conserved: bool = False
     while_constant: bool = False
     upright: str = ""
+
+    def unit_of(self, name: str) -> str:
+        """The unit of a component; by the name of the whole, that of the whole.
+
+        >>> a = Quantity("a", (2,), "1, m", ("a1", "a2"))
+        >>> a.unit_of("a2"), a.unit_of("a")
+        ('m', '1, m')
+        """
+        return dict(zip(self.components, component_units(self), strict=True)).get(name, self.unit)
+
+
+def component_units(quantity: Any) -> list[str]:
+    """The unit of each component of anything with a unit and components."""
+    units = [part.strip() for part in quantity.unit.split(",")]
+    count = len(quantity.components)
+    return units if len(units) == count else [quantity.unit] * count
 
 
 @dataclass(frozen=True)
@@ -84,3 +104,41 @@ class KernelFunction:
     constrained: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
     below: bool = False
+
+
+@dataclass(frozen=True)
+class KernelContext:
+    """All that the generated files of one system say.
+
+    Attributes:
+        name: Name of the system, the prefix of its C functions.
+        spec: Path of the spec for readers, relative: ``derivations/heavy_top.toml``.
+        license: SPDX expression of the spec's licence, or "".
+        routes: How the equations were derived, one line each.
+        equations: The equations, one line each, in safe names and operators only.
+        state: Quantities of the state, in order.
+        parameters: Quantities of the parameters, in order.
+        observables: Quantities that the function ``observables`` returns, in order.
+        programs: The functions, in order.
+        supported: How many claims are numerically supported and not proved, as the spec accepts.
+        domain: What the rows of the function ``domain`` are; empty where there is none.
+        reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
+            where there is none.
+        inputs: Quantities of the inputs, in order; empty where there are none.
+        time: The time, if the functions take it.
+    """
+
+    name: str
+    spec: str
+    license: str
+    routes: tuple[str, ...]
+    equations: tuple[str, ...]
+    state: tuple[Quantity, ...]
+    parameters: tuple[Quantity, ...]
+    observables: tuple[Quantity, ...]
+    programs: tuple[Program, ...]
+    supported: int = 0
+    domain: tuple[Bound, ...] = ()
+    reconstructed: tuple[Quantity, ...] = ()
+    inputs: tuple[Quantity, ...] = ()
+    time: tuple[Quantity, ...] = ()

@@ -4,7 +4,7 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.derive.records import Kept
-from coadjoint.pipeline import kernel_context
+from coadjoint.prove.declaration import kernel_context
 from coadjoint.prove.energy import is_conserved
 from tests.derive.test_observables import SHAPED
 from tests.specs import shipped, spec

@@ -6,7 +6,9 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from coadjoint.errors import SpecError
-from coadjoint.pipeline import certificate_json, kernel_context, render
+from coadjoint.pipeline import render
+from coadjoint.prove.declaration import kernel_context
+from coadjoint.prove.record import certificate_json
 from coadjoint.solve.system import load_folder
 from tests.specs import RIGID_BODY, spec
 

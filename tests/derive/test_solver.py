@@ -66,13 +66,7 @@ def test_definitions_solve_the_equations():
     field, solve = sample()
     definitions = solve_in_kernel(field, solve)
     assert not any(map(bool, solution_defects(field, solve, dict(definitions))))
-    numbers = {name: Fraction(n * n + 2, n + 1) for n, name in enumerate(field.names)}
-    for name, value in definitions:
-        numbers[name] = field.evaluate(value, numbers, Fraction, None)
-    for row, b in zip(solve.matrix, solve.known, strict=True):
-        parts = [field.evaluate(entry, numbers, Fraction, None) for entry in row]
-        total = sum(a * numbers[x] for a, x in zip(parts, NAMES, strict=True))
-        assert total == field.evaluate(b, numbers, Fraction, None)
+    check_solved(field, solve, definitions)
 
 
 @pytest.mark.parametrize("place", range(17))
@@ -82,6 +76,49 @@ def test_every_spoiled_definition_is_seen(place):
     definitions = solve_in_kernel(field, solve)
     name, value = definitions[place]
     assert any(map(bool, solution_defects(field, solve, {**dict(definitions), name: 2 * value})))
+
+
+def unsymmetric():
+    """A matrix of symbols that is not symmetric, with a zero on each side."""
+    entries = [f"a{i}{j}" for i in BLOCK for j in BLOCK]
+    known = [f"b{i}" for i in BLOCK]
+    field = Field([*entries, *known, *NAMES, *solver_names(BLOCK)])
+    none = {(0, 2), (3, 1)}
+    matrix = [[field.zero if (i, j) in none else field[f"a{i}{j}"] for j in BLOCK] for i in BLOCK]
+    sides = [field[name] for name in known]
+    return field, Solve(matrix=matrix, known=sides, block=BLOCK, names=NAMES, symmetric=False)
+
+
+def check_solved(field, solve, definitions):
+    """A x = b at exact numbers, which are no solution of anything else."""
+    numbers = {name: Fraction(n * n + 2, n + 1) for n, name in enumerate(field.names)}
+    for name, value in definitions:
+        numbers[name] = field.evaluate(value, numbers, Fraction, None)
+    for row, b in zip(solve.matrix, solve.known, strict=True):
+        parts = [field.evaluate(entry, numbers, Fraction, None) for entry in row]
+        total = sum(a * numbers[x] for a, x in zip(parts, NAMES, strict=True))
+        assert total == field.evaluate(b, numbers, Fraction, None)
+
+
+def test_a_matrix_that_is_not_symmetric_is_solved_too():
+    """W U = A has the solution of A x = b; its symmetric part has another one."""
+    field, solve = unsymmetric()
+    definitions = solve_in_kernel(field, solve)
+    check_solved(field, solve, definitions)
+    assert not any(map(bool, solution_defects(field, solve, dict(definitions))))
+    other = solve_in_kernel(field, dataclasses.replace(solve, symmetric=True))
+    with pytest.raises(AssertionError):
+        check_solved(field, solve, other)
+
+
+def test_every_spoiled_definition_of_an_unsymmetric_solve_is_seen():
+    """Doubling any one definition leaves a defect; pivots, both factors and the rest."""
+    field, solve = unsymmetric()
+    definitions = dict(solve_in_kernel(field, solve))
+    assert len(definitions) > 25
+    for name, value in definitions.items():
+        spoiled = solution_defects(field, solve, {**definitions, name: 2 * value})
+        assert any(map(bool, spoiled)), name
 
 
 def test_only_coupled_velocities_are_solved_for():

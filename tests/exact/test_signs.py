@@ -7,7 +7,7 @@ import mpmath
 import pytest
 
 from coadjoint.exact import Condition, Field
-from coadjoint.exact.signs import sign
+from coadjoint.exact.signs import Signs, sign
 from coadjoint.exact.witness import UNDEFINED, Domain, enclosure
 
 NAMES = ("m", "k", "q", "v")
@@ -111,7 +111,7 @@ def test_points_of_a_domain_keep_declared_signs():
     """A point outside is moved inside, with positive symbols left positive."""
     field = Field(NAMES, slots=2, positive=["m"])
     domain = Domain(field, (field.call("sqrt", field["q"] - field["m"] - 50),))
-    point = domain.moved_inside({"m": Fraction(1), "q": Fraction(1)})
+    point = domain.move_inside({"m": Fraction(1), "q": Fraction(1)})
     assert point["m"] > 0
     assert point["q"] > point["m"] + 50
     assert mpmath.sqrt(mpmath.mpf(float(point["q"] - point["m"] - 50))) > 0
@@ -140,3 +140,52 @@ def test_what_exceeds_a_condition_has_its_sign(condition, strict, text, expected
     field.assume([Condition(written(field, condition), strict)])
     element = written(field, text)
     assert (sign(field, element), sign(field, element, strict=False)) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("q**3 - 5", 1),  # (3 + x)^3 - 5 for positive x
+        ("q**3 - 28", 0),
+        ("4 - q*q + v", -1),
+        ("v**2 - 2*v + m", 1),  # (-1 - x)^2 + 2*(1 + x) + m, since v < -1
+        ("v**3 + 1", -1),
+        ("v**3 + 2", 0),
+        ("cos(q) + q**3 + 2", 1),  # q is positive, and not measured from 3 beside cos(q)
+        ("cos(q) - q**3 + 27", 0),
+    ],
+)
+def test_symbols_are_measured_from_their_bounds(text, expected):
+    """Where q > 3 and v < -1 polynomials have signs that they have not everywhere."""
+    field = Field(NAMES, slots=2, positive=["m"])
+    q, v = field["q"], field["v"]
+    conditions = [Condition(q - 3, strict=True), Condition(-v - 1, strict=True)]
+    element = written(field, text)
+    assert Signs(field, strict=True, more=conditions).of(element.combined()) == expected
+    assert Signs(field, strict=True).of(element.combined()) == 0
+
+
+def test_numerators_vanish_nowhere_by_their_terms_or_as_factors():
+    """M + q^2 has one sign; q divides q*v, which is given; q - v has no reason."""
+    field = Field(NAMES, slots=2, positive=["m"])
+    m, q, v = (field[name] for name in "mqv")
+    signs = Signs(field, strict=True)
+    assert signs.is_nonzero(m + q**2)
+    assert signs.is_nonzero(q, [q * v])
+    assert not signs.is_nonzero(q, [v])
+    assert not signs.is_nonzero(q - v, [q * v])
+    given = Signs(field, strict=True, more=[Condition(q - v, strict=True)])
+    assert given.is_nonzero(q - v)
+    assert given.is_nonzero(2 * q - 2 * v + 1)
+
+
+def test_sums_of_squares_vanish_where_each_square_does():
+    """Addends of one sign, or a definite form; nothing where a term has another sign."""
+    field = Field(NAMES, slots=2, positive=["m"])
+    m, q, v = (field[name] for name in "mqv")
+    signs = Signs(field, strict=True)
+    assert signs.squares(q**4 + m * v**2) == [m * v**2, q**4]
+    assert len(signs.squares(q**2 + q * v + v**2)) == 2
+    assert signs.squares(q**2 + 3 * q * v + v**2) == []
+    assert signs.squares(q**4 - 2 * q**2 * v + v**2) == []  # zero on a parabola
+    assert signs.squares(q**2 + v**2 + 1) != []

@@ -3,7 +3,8 @@
 from fractions import Fraction
 
 from coadjoint.exact import Field
-from coadjoint.groups.lifts import compose, cotangent_lift, jacobian, tangent_lift
+from coadjoint.groups.lifts import cotangent_lift, jacobian
+from coadjoint.theory.vector_fields import compose, tangent_lift
 
 
 def test_tangent_lift_is_the_first_order_of_the_map():

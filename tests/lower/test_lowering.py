@@ -159,6 +159,12 @@ BY_HAND = {
     # h, s; dGamma/dt; h' and s' = (c Gamma' - s h')/h; Y, ds/dt turned, the force of both;
     # I + m (s^2 - s s^T), L D L^T, solves; I Omega x Omega, I full; weight; torque; sums
     "rolling_ellipsoid": 9 + 7 + 9 + 6 + 3 * 4 + 10 + 10 + 15 + 21 + 15 + 15 + 36 + 9 + 9 + 6,
+    # as there, with two entries of I Omega less
+    "rattleback": 9 + 7 + 9 + 6 + 3 * 4 + 10 + 10 + 15 + 21 + 15 + 15 + 32 + 9 + 9 + 6,
+    # s; v = Y - Omega x s, its square, root and drag; drag v; s x it; dGamma/dt; I Omega x Omega
+    # and weight; Omega x Y; forces, with and without the reaction, over the masses; the row of the
+    # constraint and its rate; pivot and side; accelerations
+    "tippe_top": 4 + 12 + 7 + 2 + 3 + 9 + 9 + 4 + 4 + 9 + 3 * 3 + 3 * 3 + 12 + 4 + 11 + 9 + 13 + 12,
     # h, s; h' and s' as there, with l in one entry; signs of -m s_i s_j; the rest, with I1 = I2
     "body_of_revolution": 4 + 7 + 9 + 3 + 12 + 2 + 20 + 15 + 21 + 3 + 15 + 15 + 4 + 4 + 9 + 6,
     # squares; I Omega x Omega written out; L D L^T of 4 x 4

@@ -8,8 +8,8 @@ from coadjoint.derive import derive
 from coadjoint.errors import KernelArgumentError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
-from coadjoint.pipeline import kernel_context
 from coadjoint.prove import prove
+from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.system import load_folder
 from tests.specs import spec
@@ -19,10 +19,10 @@ from tests.specs import spec
 def bare():
     """A rigid body of which only the rates are known, and its velocities."""
     equations = derive(spec())
-    kept = tuple(pair for pair in equations.exact.observables if pair[0].startswith("Omega"))
+    kept = tuple(each for each in equations.exact.emitted if each.name == "Omega")
     declared = dataclasses.replace(equations.spec, casimirs=(), lagrangian=None, conserved=())
     setting = dataclasses.replace(equations.setting, spec=declared)
-    exact = dataclasses.replace(equations.exact, energy=None, poisson_tensor=None, observables=kept)
+    exact = dataclasses.replace(equations.exact, energy=None, poisson_tensor=None, emitted=kept)
     return dataclasses.replace(equations, setting=setting, exact=exact)
 
 

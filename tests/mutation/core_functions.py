@@ -31,15 +31,15 @@ CORE = (
     *core_of(
         "hamilton-pontryagin",
         "hamilton_pontryagin",
-        "_action _at_the_motion _momentum_equation _advection",
+        "action_near _at_the_motion momentum_equation advection",
         systems=ADVECTED,
         tests=ON_BOTH_SIDES,
         equivalent=dict.fromkeys(
             (
-                "_action: flip rate in constraint",
-                "_action: drop rate in constraint",
-                "_action: flip xi in constraint",
-                "_action: drop xi in constraint",
+                "action_near: flip rate in constraint",
+                "action_near: drop rate in constraint",
+                "action_near: flip xi in constraint",
+                "action_near: drop xi in constraint",
             ),
             "the momentum equation takes no slope of <mu, deps/dt - xi> but those that hold eps",
         ),

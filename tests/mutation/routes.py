@@ -24,6 +24,7 @@ ROUTE_MUTANTS = (
     *coordinates.NEWTON,
     *distributions.PROJECTED,
     *distributions.CONSTRAINED_LAGRANGIAN,
+    *distributions.VARIED,
     *distributions.DISTRIBUTED,
     *distributions.SLIPS,
     *SHARED,

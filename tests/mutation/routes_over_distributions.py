@@ -15,6 +15,7 @@ DISTRIBUTIONS = ("tests/derive/test_distribution.py -k 'annihilate or affine or 
 SLEIGH, BALL = ("chaplygin_sleigh",), ("chaplygin_ball_centred",)
 #: Systems that depend on time, with rates typed by hand.
 DRIVEN = ("tests/derive/test_driving.py",)
+PRINCIPLE = "nonholonomic-hamilton-pontryagin"
 PARTICLE = (f"{BY_HAND} -k particle",)
 AFFINE = (f"{BY_HAND} -k constraint_that_moves",)
 MOVING_MASS = (f"{BY_HAND} -k mass_that_moves",)
@@ -65,7 +66,7 @@ PROJECTED = (
         "nonholonomic",
         "nonholonomic",
         (),
-        ("_forces: flip force", "an external force of the other sign"),
+        ("_forces: flip force in value", "an external force of the other sign"),
         tests=FORCED,
     ),
 )
@@ -106,6 +107,40 @@ CONSTRAINED_LAGRANGIAN = (
         "hamel",
         (),
         "_known: flip driven",
+        tests=FORCED,
+    ),
+)
+
+#: The principle with momenta and multipliers.
+VARIED = (
+    *of(
+        PRINCIPLE,
+        "nonholonomic_hamilton_pontryagin",
+        BALL,
+        ("_momentum_equations: flip force", "F of the other sign"),
+        ("_momentum_equations: flip reaction", "reactions of the other sign"),
+        (
+            "_eliminated: rewrite _1(left[name], multipliers)"
+            " -> _1(left[name], dict.fromkeys(multipliers, field.zero))",
+            "reactions that turn nothing",
+        ),
+        (
+            "_varied: rewrite _1.momenta[:own] -> _1.momenta[:3] + (setting.field.zero,) * 3",
+            "momenta of given velocities put in before varying",
+        ),
+        "_rate: flip slope",
+    ),
+    *of(
+        PRINCIPLE,
+        "nonholonomic_hamilton_pontryagin",
+        ("suslov",),
+        "_eliminated: flip multiplier_name",
+    ),
+    *of(
+        PRINCIPLE,
+        "nonholonomic_hamilton_pontryagin",
+        (),
+        "_momentum_equations: flip outer",
         tests=FORCED,
     ),
 )

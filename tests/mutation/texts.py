@@ -21,7 +21,7 @@ import re
 import tomllib
 
 from coadjoint.spec.core.positions import scan
-from coadjoint.spec.core.source import dotted
+from coadjoint.spec.core.source import write_key
 from tests.mutation.addresses import AddressError, find_edit, source_with, split_once
 
 _WORD = re.compile(r"\w+|[^\w\s]+")
@@ -33,7 +33,7 @@ def changed_spec(text: str, line: str) -> str:
     for each in line.split("; "):
         path, change = split_once(each, ": ")
         positions = scan(text)
-        named = {dotted(found): found for found in positions.characters}
+        named = {write_key(found): found for found in positions.characters}
         if path not in named:
             raise AddressError(f"no formula stands at {path!r}; there are: {', '.join(named)}")
         value: object = tomllib.loads(text)

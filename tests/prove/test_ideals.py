@@ -1,17 +1,13 @@
 """Ideals: what vanishes where relations hold is told from what does not."""
 
-import random
 from fractions import Fraction
-from math import prod
 
 import pytest
-from sympy import QQ, symbols
-from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyElement, PolyRing
+from sympy.polys.rings import PolyElement
 
 from coadjoint.exact import Field
 from coadjoint.prove import Verdict
-from coadjoint.prove.ideals import Ideal, factors_of
+from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
 
 NAMES = ("P1", "P2", "P3", "G1", "G2", "G3")
@@ -148,27 +144,3 @@ def test_quadratic_products_are_factored_without_luck(monkeypatch):
     assert {"P1": 0} in [dict(root) for root in roots]
     values = {str(field.substitute(energy, root)) for root in roots if "P1" not in root}
     assert values == {"3", "9/2"}
-
-
-def test_factors_are_those_of_sympy():
-    """Random products of small polynomials, with squares and common factors."""
-    ring = PolyRing(symbols("x y z w"), QQ, lex)
-    source = random.Random(5)
-
-    def small():
-        addends = [
-            prod(source.choices(ring.gens, k=source.randint(0, 2)), start=ring.one)
-            * source.choice([-3, -1, 1, 2, QQ(1, 2)])
-            for _ in range(source.randint(1, 4))
-        ]
-        return sum(addends, ring.zero)
-
-    several = 0
-    for _ in range(60):
-        product = prod((small() ** source.randint(1, 2) for _ in range(2)), start=ring.one)
-        if product:
-            known = sorted(str(factor) for factor, _ in product.factor_list()[1])
-            found = {str(factor) for factor in factors_of(product)}
-            assert known == sorted(found), product
-            several += len(known) > 1
-    assert several > 20

@@ -7,7 +7,7 @@ import pytest
 
 from coadjoint.exact import element_text
 from coadjoint.prove import Verdict
-from coadjoint.prove.invariant_factors import InvariantFactors, factors
+from coadjoint.prove.invariant_factors import InvariantFactors
 from coadjoint.prove.measures import Measure, about_measure
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Discovery, decide_zero
@@ -137,7 +137,7 @@ def test_the_exceptions_have_one(name, changes, volume):
     ("force", "reason", "power"),
     [
         ("-r*vtheta", "what it asks for at rest contradicts itself", "-1"),
-        ("-r*vtheta^3", "div X is not affine in the velocities", "-3"),
+        ("-r*vtheta^3", "div X is not affine in velocities", "-3"),
     ],
 )
 def test_friction_has_no_measure_of_positions(force, reason, power):
@@ -245,12 +245,3 @@ def test_the_divergence_is_the_trace_of_the_jacobian():
     slopes = chaplygin_ball.jacobian(np.array(state, dtype=float), parameters, target="numpy")
     assert found != 0
     assert np.trace(slopes) == pytest.approx(float(found), rel=1e-12)  # a few roundings
-
-
-def test_factors_are_found_among_the_symbols_that_occur():
-    """a(a + b) has two factors; a sum that does not factor has one; a number none."""
-    ring = motion("chaplygin_ball").field
-    a, b = ring["Gamma1"], ring["Gamma2"]
-    assert len(factors(ring, a**2 + a * b)) == 2
-    assert factors(ring, a**2 + b**2) == [a**2 + b**2]
-    assert factors(ring, ring.number(3)) == factors(ring, ring.zero) == []

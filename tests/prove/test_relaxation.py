@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 import pytest
+import sympy
 
+from coadjoint.derive import derive
 from coadjoint.derive.mechanics import external
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.exact import Condition, Field, Region
@@ -207,4 +209,158 @@ def test_a_body_falls_onto_its_largest_axis():
 def test_shipped_motions_name_what_they_lose():
     """The heads of generated files and the certificate agree."""
     found = {c.statement for c in prove(shipped("landau_lifshitz_gilbert")).claims}
-    assert "the energy changes by -<P dh, G P dh>" in found
+    assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
+
+
+#: A particle in a potential, whose phase space has a canonical bracket.
+PARTICLE = """
+title = "Particle in a quartic potential"
+routes = ["canonical", "euler-lagrange"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "q" }
+p = { role = "momentum", of = "q" }
+[parameters]
+m = { positive = true, default = 2 }
+k = { positive = true, default = 1 }
+a = { positive = true, default = "0.1" }
+[lagrangian]
+l = "m*dot(v, v)/2 - k*dot(q, q)^2/4"
+[double_bracket]
+G = "a"
+"""
+#: Friction c v that heats a bath of the temperature T by c v^2.
+HEATING = """
+title = "Oscillator that heats a bath"
+routes = ["canonical", "poisson"]
+[poisson]
+canonical = [["q", "p"]]
+[variables]
+q = { role = "coordinate" }
+p = { role = "coordinate" }
+s = { role = "coordinate" }
+[parameters]
+m = { positive = true, default = 1 }
+k = { positive = true, default = 1 }
+T = { positive = true, default = 300 }
+c = { positive = true, default = "0.1" }
+[hamiltonian]
+h = "p^2/(2*m) + k*q^2/2 + T*s"
+[metriplectic]
+S = "s"
+G = "c*rows(vector(0, 0, 0), vector(0, T, -p/m), vector(0, -p/m, p^2/(m^2*T)))"
+[claims]
+casimirs = ["s"]
+conserved = ["energy"]
+"""
+ON_POSITIONS = ('G = "a"', 'G = "diag(vector(a, a, 0, 0))"')
+
+
+def rates(text, *changes):
+    """The rates by every route, as text, which must agree."""
+    declared = spec(text, *changes)
+    (found,) = {tuple(derive(declared, route).rates) for route in declared.routes}
+    return found
+
+
+def statements(text, *changes):
+    """Verdict by statement."""
+    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+
+
+@pytest.mark.parametrize(
+    ("change", "descends"),
+    [((), 1), ((ON_POSITIONS,), 0)],
+    ids=["all", "positions"],
+)
+def test_a_double_bracket_on_a_canonical_phase_space(change, descends):
+    """With G = a it descends the energy; with G on positions alone it is friction -a v."""
+    q1, q2, p1, p2, m, k, a = sympy.symbols("q1 q2 p1 p2 m k a")
+    down = [k * (q1**2 + q2**2) * q for q in (q1, q2)]
+    along = [p / m - descends * a * f for p, f in zip((p1, p2), down, strict=True)]
+    across = [-f - a * p / m for p, f in zip((p1, p2), down, strict=True)]
+    for found, expected in zip(rates(PARTICLE, *change), (*along, *across), strict=True):
+        assert sympy.simplify(found - expected) == 0
+    found = statements(PARTICLE, *change)
+    assert set(found.values()) == {Verdict.PROVED}
+    law = "dh/dt = -<P dh, G P dh>: the energy never grows"
+    same = "canonical and euler-lagrange give the same motion, through the Legendre transform"
+    assert {law, same} <= set(found)
+
+
+def test_friction_is_a_double_bracket_on_positions():
+    """The same equations as Rayleigh's function gives, which is another road to them."""
+    rayleigh = ('[double_bracket]\nG = "a"', '[dissipation]\nR = "a*dot(v, v)/2"')
+    pairs = zip(rates(PARTICLE, ON_POSITIONS), rates(PARTICLE, rayleigh), strict=True)
+    assert all(sympy.simplify(a - b) == 0 for a, b in pairs)
+
+
+@pytest.mark.parametrize(
+    "bracket", [(), (('canonical = [["q", "p"]]', 'brackets = { "{q, p}" = "1" }'),)]
+)
+def test_friction_heats_a_bath(bracket):
+    """The energy is kept, entropy grows by ``c v^2/T``; a variable of its own holds it."""
+    changes = (*bracket, *([('"canonical", "poisson"', '"poisson"')] if bracket else []))
+    q, p, m, k, T, c = sympy.symbols("q p m k T c")
+    expected = p / m, -k * q - c * p / m, c * (p / m) ** 2 / T
+    for found, typed in zip(rates(HEATING, *changes), expected, strict=True):
+        assert sympy.simplify(found - typed) == 0
+    found = statements(HEATING, *changes)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert {"the energy is conserved", "dS/dt = <dS, G dS>: the entropy never falls"} <= set(found)
+
+
+@pytest.mark.parametrize(
+    ("change", "statement"),
+    [
+        (("vector(0, -p/m, p^2/(m^2*T))", "vector(0, 0, p^2/(m^2*T))"), "G is symmetric"),
+        (("p^2/(m^2*T)", "p^2/(2*m^2*T)"), "G is positive semidefinite"),
+        (("c*rows", "-c*rows"), "G is positive semidefinite"),
+        (("T*s", "2*T*s"), "G dh = 0"),
+        (('S = "s"', 'S = "s + q"'), "P dS = 0: S is a Casimir"),
+    ],
+)
+def test_wrong_baths_are_refuted(change, statement):
+    """Each condition can fail."""
+    assert statements(HEATING, change)[statement] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("spoil", [-1, 2, 0])
+@pytest.mark.parametrize(
+    ("text", "laws"),
+    [
+        (
+            PARTICLE,
+            (
+                "beside {x, h} the rates are P G P dh",
+                "dh/dt = -<P dh, G P dh>: the energy never grows",
+            ),
+        ),
+        (HEATING, ("beside {x, h} the rates are G dS",)),
+    ],
+)
+def test_spoiled_brackets_on_phase_spaces_are_caught(text, laws, spoil, monkeypatch):
+    """On every route, since they share what is added; the claims take it from the spec."""
+    relaxed = external.relaxed_rates
+    monkeypatch.setattr(external, "relaxed_rates", lambda free: [spoil * x for x in relaxed(free)])
+    found = statements(text)
+    assert all(found[law] is Verdict.REFUTED for law in laws)
+
+
+def test_momenta_are_asked_for_where_the_state_has_velocities():
+    """And the advice works: it is the spec above."""
+    momenta = 'p = { role = "momentum", of = "q" }\n'
+    with pytest.raises(SpecError, match=r"the state has the velocity 'v'.*Declare them") as caught:
+        spec(PARTICLE, (momenta, ""), ('"canonical", "euler-lagrange"', '"euler-lagrange"'))
+    assert momenta.strip() in str(caught.value)
+
+
+def test_a_coordinate_without_a_partner_is_moved_by_more_than_the_bracket():
+    """By [metriplectic] as above, or a force; else it would be constant."""
+    alone = HEATING.replace("[metriplectic]", "[claims]").partition("[claims]")[0]
+    with pytest.raises(SpecError, match=r"in no pair.*let a force or \[metriplectic\] move it"):
+        spec(alone)
+    c, p, m = sympy.symbols("c p m")
+    found = rates(f'{alone}[forces]\ns = "c*p"\np = "-c*p/m"\n')
+    assert found[2] == c * p
+    assert sympy.simplify(found[1] + sympy.Symbol("k") * sympy.Symbol("q") + c * p / m) == 0

@@ -8,8 +8,8 @@ import pytest
 
 from coadjoint.exact import Field
 from coadjoint.exact.linear import PRIME, primes
-from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint, echelon_of_integers
-from coadjoint.prove.samples import AtNumbers, Samples, leading
+from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
+from coadjoint.prove.samples import Samples, leading
 from tests.prove.rolling import motion
 
 #: A slope that does not move.
@@ -51,7 +51,7 @@ def test_given_parameters_are_taken():
     numbers = dict.fromkeys(along.equations.setting.parameters, Fraction(1)) | {"chi1": Fraction(0)}
     point = next(Samples(along, numbers).points())
     assert [point.values[name].value for name in ("I1", "chi1")] == [1, 0]
-    rate = AtNumbers(along, numbers).rate(along.field["Omega1"])
+    rate = along.at(numbers).rate(along.field["Omega1"])
     assert along.field.reach(rate) <= set(along.equations.setting.state)
     assert rate != 0
 
@@ -178,13 +178,6 @@ def test_relations_that_may_be_missed_are_named(functions, reason):
     ring = Field(["x", "y"], slots=8)
     elements = functions(ring.call, ring["x"], ring["y"])
     assert reason in Functions(ring, elements, ["x", "y"], [], {}).obstacle
-
-
-def test_a_basis_of_whole_combinations():
-    """Of (4, 2), (6, 3) and (0, 5) it is (2, 1), (0, 5), in which each is whole."""
-    basis = echelon_of_integers([[4, 2], [6, 3], [0, 5]])
-    assert [[abs(x) for x in row] for row in basis] == [[2, 1], [0, 5]]
-    assert echelon_of_integers([[0, 0]]) == []
 
 
 def test_roots_that_are_made_of_others_are_an_obstacle():

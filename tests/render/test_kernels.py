@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coadjoint.declared import Quantity
+from coadjoint.declared import KernelContext, Quantity
 from coadjoint.lower.program import Program
-from coadjoint.render.kernels import NO_LICENSE, KernelContext, fingerprint, render_system
+from coadjoint.render.kernels import NO_LICENSE, fingerprint, render_system
 from tests.kernels import COMPILER, EXACT, STRICT, TextSystem, compile_text
 from tests.programs import HEAVY_TOP, PENDULUM, program
 from tests.render.test_printers import check_formatted
@@ -24,7 +24,6 @@ LONG_NAMES = " ".join(f"momentum_of_body_{i}" for i in range(12))
 CROWD = KernelContext(
     name="crowd",
     spec="derivations/crowd.toml",
-    spec_sha256="2" * 64,
     license="MIT",
     routes=("Typed by hand.",),
     equations=("x" * 60 + " + " + "y" * 60,),
@@ -247,33 +246,29 @@ def test_a_unit_that_ends_a_comment_is_refused():
         render_system(spoiled)
 
 
-def identity(context, extra=None):
+def identity(context):
     """The id of a rendering."""
-    return re.search(r'ID = "(\w+)"', render_system(context, extra)["kernel.py"])[1]
+    return re.search(r'ID = "(\w+)"', render_system(context)["kernel.py"])[1]
 
 
-def test_the_id_changes_with_everything():
-    """Spec bytes, units, licence, certificate: a change of any gives another id."""
+def test_the_id_changes_with_everything_that_is_rendered():
+    """Units, licence, equations, functions, defaults: a change of any gives another id."""
+    first, *others = HEAVY_TOP.parameters
     contexts = [
         HEAVY_TOP,
-        replace(HEAVY_TOP, spec_sha256="3" * 64),
         replace(HEAVY_TOP, license=""),
         replace(HEAVY_TOP, equations=()),
         replace(HEAVY_TOP, programs=HEAVY_TOP.programs[:2]),
+        replace(HEAVY_TOP, parameters=(replace(first, unit="g m^2"), *others)),
+        replace(HEAVY_TOP, parameters=(replace(first, default=(1.0, 2.0, 4.0)), *others)),
     ]
     ids = [identity(context) for context in contexts]
-    ids += [identity(HEAVY_TOP, {"certificate.json": text}) for text in ("{}\n", "[]\n")]
-    assert len(set(ids)) == len(ids) == 7
-
-
-def test_extra_texts_come_back_as_they_are():
-    """The certificate is carried along, byte for byte."""
-    assert render_system(HEAVY_TOP, {"certificate.json": "{}\n"})["certificate.json"] == "{}\n"
+    assert len(set(ids)) == len(ids) == 6
 
 
 def test_fingerprints_tell_names_from_texts():
     """Moving a text from one file to another changes the fingerprint."""
-    assert fingerprint("", {"a": "x", "b": "y"}) != fingerprint("", {"a": "y", "b": "x"})
+    assert fingerprint({"a": "x", "b": "y"}) != fingerprint({"a": "y", "b": "x"})
 
 
 def test_rendering_is_the_same_in_every_process():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from coadjoint.declared import Quantity
+from coadjoint.declared import KernelContext, Quantity
 from coadjoint.lower.program import Program
-from coadjoint.render.kernels import KernelContext, render_system
+from coadjoint.render.kernels import render_system
 from coadjoint.solve.system import System, load_folder
 from tests.programs import PENDULUM, program
 
@@ -20,7 +20,6 @@ def one_variable(name: str, rate: str, slope: str) -> KernelContext:
     return KernelContext(
         name=name,
         spec=f"derivations/{name}.toml",
-        spec_sha256="3" * 64,
         license="",
         routes=("Typed by hand.",),
         equations=(f"dy/dt = {rate}",),

@@ -152,6 +152,13 @@ def ellipsoid(state: Vector, parameters: Vector) -> Body:
     return Body(state[:3], state[3:], inertia, m, g, ellipsoid_shape(state[3:], axes))
 
 
+def rattleback(state: Vector, parameters: Vector) -> Body:
+    """The same with a product of inertia between the first two axes of the surface."""
+    A, B, C, skew, m, g, *axes = parameters
+    inertia = [[A, skew, 0], [skew, B, 0], [0, 0, C]]
+    return Body(state[:3], state[3:], inertia, m, g, ellipsoid_shape(state[3:], axes))
+
+
 def egg(state: Vector, parameters: Vector) -> Body:
     """A spheroid with its centre of mass on the axis."""
     I1, I3, m, g, A, C, offset = parameters
@@ -163,6 +170,7 @@ ROLLING: dict[str, Callable[[Vector, Vector], Body]] = {
     "rolling_disk": disk,
     "euler_disk": disk,
     "rolling_ellipsoid": ellipsoid,
+    "rattleback": rattleback,
     "body_of_revolution": egg,
 }
 
@@ -201,7 +209,7 @@ def body_observables(name: str, state: Vector, parameters: Vector) -> dict[str, 
         "height": body.shape.height,
         "normal_force": dot(push, Gamma) + body.m * body.g,
     }
-    if name == "rolling_ellipsoid":
+    if name in ("rolling_ellipsoid", "rattleback"):
         return found | {"spin": dot(Omega, Gamma)}
     found |= {"L_axis": M[2], "L_vertical": dot(M, Gamma)}
     if name != "body_of_revolution":

@@ -1,6 +1,6 @@
 """Small matrices and products as Holm (2011) writes them, for the tests of group actions."""
 
-from tests.groups.exactly import block, mul, on, plus, times, turned
+from tests.theory.exactly import block, mul, on, plus, times, turned
 
 R2, R3 = range(2), range(3)
 #: The book's matrix of section 6.4.

@@ -8,14 +8,23 @@ wrong sign into the formula (``s`` in place of 1) and demands that it is noticed
 import pytest
 
 from coadjoint.exact.dense import product
-from coadjoint.groups import matrix_group, trace_pairing
-from coadjoint.groups.actions import (
+from coadjoint.theory import matrix_group, trace_pairing
+from coadjoint.theory.actions import (
     element_rates,
     matrix_rate,
     rate,
     space_velocity,
 )
-from tests.groups.exactly import (
+from tests.sources.forms import (
+    R3,
+    column,
+    galilean,
+    galilean_inverse,
+    galilean_product,
+    hat,
+    minus,
+)
+from tests.theory.exactly import (
     block,
     check_agrees,
     cross,
@@ -26,15 +35,6 @@ from tests.groups.exactly import (
     same,
     times,
     turned,
-)
-from tests.sources.forms import (
-    R3,
-    column,
-    galilean,
-    galilean_inverse,
-    galilean_product,
-    hat,
-    minus,
 )
 
 # -- chapter 1: Galileo -----------------------------------------------------------------------

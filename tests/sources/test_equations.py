@@ -97,7 +97,10 @@ def in_chart(equations, name, count):
     relations = [relation.element for relation in chart.relations]
     domain = Ideal(field, relations, variables=chart.variables)
     for free in rational_points((*chart.variables, *parameters), count):
-        point = domain.completed(free) if domain.is_solved else free | UNIT
+        point = free | UNIT
+        if domain.is_solved:
+            pairs = domain.solved.items()
+            point = free | {name: field.evaluate(x, free, Fraction, None) for name, x in pairs}
         assert not any(values(map(field.to_sympy, relations), point))
         x = values(map(field.to_sympy, chart.state), point)
         yield point, x, [point[n] for n in parameters]

@@ -9,19 +9,15 @@ from scipy.integrate import solve_ivp
 
 from coadjoint.errors import ClaimError
 from coadjoint.exact.dense import add, cross, dot, scale, subtract
-from coadjoint.groups.galilean import (
-    Galilean,
+from coadjoint.groups.galilean import Galilean, particles, subgroups, transformation_defects
+from coadjoint.groups.quaternions import Quaternion, euler_rodrigues
+from coadjoint.theory.relativity import (
     check_galilean,
     classify,
     conserved_quantities,
     drifts,
     pair_forces,
-    particles,
-    subgroups,
-    transformation_defects,
 )
-from coadjoint.groups.quaternions import Quaternion
-from coadjoint.groups.rotations import euler_rodrigues
 
 EVERY_SYMMETRY = {"rotation", "boost", "translation", "time shift"}
 EVERY_QUANTITY = {"E", "P", "J", "K"}

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from coadjoint.derive import derive
 from coadjoint.resources import derivations_folder
-from coadjoint.systems import euler_disk, rolling_disk, rolling_ellipsoid
+from coadjoint.systems import euler_disk, rattleback, rolling_disk
 from tests.sources.components import cross, dot, hat, plus, times
 from tests.sources.disks import ROLLING
 from tests.sources.test_equations import emitted, values
@@ -35,12 +35,13 @@ AT = {
     },
 }
 AT["euler_disk"] = AT["rolling_disk"]
+AT["rattleback"] = AT["rolling_ellipsoid"]
 
 
 def arm(name):
     """From the point of contact to the centre of mass, in symbols."""
     A, C, offset, *axes = sympy.symbols("A C l axes1:4")
-    if name == "rolling_ellipsoid":
+    if name in ("rolling_ellipsoid", "rattleback"):
         bent = [a**2 * x for a, x in zip(axes, GAMMA, strict=True)]
         return times(1 / sympy.sqrt(dot(bent, GAMMA)), bent)
     if name == "body_of_revolution":
@@ -72,6 +73,9 @@ def inertia_of(name):
     if name == "rolling_ellipsoid":
         a, b, c, d, e, f = sympy.symbols("I11 I12 I13 I22 I23 I33")
         return [[a, b, c], [b, d, e], [c, e, f]]
+    if name == "rattleback":
+        I2, skew = sympy.symbols("I2 skew")
+        return [[I1, skew, 0], [skew, I2, 0], [0, 0, I3]]
     return [[I1, 0, 0], [0, I1, 0], [0, 0, I3]]
 
 
@@ -274,31 +278,48 @@ def test_12_2_3_the_disk_is_a_case():
 
 
 @pytest.mark.parametrize("turned", [True, False])
-def test_12_2_a_rattleback_and_its_mirror_image_move_alike(turned):
+@pytest.mark.parametrize("name", ["rolling_ellipsoid", "rattleback"])
+def test_12_2_a_rattleback_and_its_mirror_image_move_alike(name, turned):
     """At Gamma1 -> -Gamma1, Omega2,3 -> -Omega2,3 with I12, I13 -> -I12, -I13; not with I12 kept.
 
     So it is the sign of I12 that chooses the spin that turns round.
     """
-    equations = emitted("rolling_ellipsoid")
+    equations, chiral = emitted(name), "skew" if name == "rattleback" else "I12"
     inputs = [str(x) for x in (*equations.state, *equations.parameters)]
-    point, rates = motion_at(equations, AT["rolling_ellipsoid"])
-    odd = ["Gamma1", "Omega2", "Omega3", "I13", *(["I12"] if turned else [])]
+    point, rates = motion_at(equations, AT[name])
+    odd = ["Gamma1", "Omega2", "Omega3", "I13", *([chiral] if turned else [])]
     mirrored = {name: -point[name] if name in odd else point[name] for name in inputs}
     _, found = followed(equations, mirrored)
     expected = {x: -rate if str(x) in odd else rate for x, rate in rates.items()}
     assert (found == expected) == turned
 
 
-def test_12_2_a_rattleback_turns_its_spin_round():
-    """Of two opposite spins one is reversed within five seconds and the other goes on."""
-    found = []
+@pytest.mark.parametrize("sense", [1, -1])
+def test_12_2_a_rattleback_turns_its_spin_round(sense):
+    """A spin of -5/s comes back as one of 4.997/s, its opposite stays; the mirror image mirrors.
+
+    The inertia has the moments 0.0025, 0.02 and 0.0225, turned by 0.1 about the third axis.
+    """
+    (c, s), (A, B) = (np.cos(0.1), np.sin(0.1)), (0.0025, 0.02)
+    inertia = {"I": [A * c**2 + B * s**2, A * s**2 + B * c**2, 0.0225]}
+    skew = {"skew": sense * (A - B) * c * s}
+    ends = {}
     for spin in (-5.0, 5.0):
-        start = {"Omega": [0.0, 0.0, spin], "Gamma": [0.0, 0.07584, 0.99712]}
-        run = rolling_ellipsoid.simulate(start, (0, 5), rtol=1e-7, atol=1e-8)
-        found.append(run["Omega"][2][-1] / spin)
-    reversed_, kept = found
-    assert reversed_ < -0.2
-    assert kept > 0.9
+        start = {"Omega": [0.01, sense * 0.01, sense * spin], "Gamma": [0.0, 0.0, 1.0]}
+        run = rattleback.simulate(start, (0, 8), parameters=inertia | skew, rtol=1e-8, atol=1e-9)
+        ends[spin] = sense * run["Omega"][2][-1]
+        assert run["normal_force"].min() > 4
+    # within what the rattling that is left and the tolerance take of 5
+    assert ends[-5.0] == pytest.approx(5, abs=0.01)
+    assert ends[5.0] == pytest.approx(5, abs=0.01)
+
+
+def test_12_2_without_skew_no_spin_is_preferred():
+    """A body with axes of inertia along those of its surface keeps either spin."""
+    for spin in (-5.0, 5.0):
+        start = {"Omega": [0.01, 0.01, spin], "Gamma": [0.0, 0.0, 1.0]}
+        run = rattleback.simulate(start, (0, 8), parameters={"skew": 0.0}, rtol=1e-8, atol=1e-9)
+        assert run["Omega"][2][-1] == pytest.approx(spin, abs=0.01)
 
 
 def test_12_2_3_euler_s_disk_keeps_its_energy():

@@ -7,25 +7,13 @@ that must be noticed.
 import pytest
 
 from coadjoint.exact.dense import product
-from coadjoint.groups import matrix_group, trace_pairing
-from coadjoint.groups.actions import (
+from coadjoint.theory import matrix_group, trace_pairing
+from coadjoint.theory.actions import (
     body_velocity,
     element_rates,
     matrix_rate,
     rate,
     space_velocity,
-)
-from tests.groups.exactly import (
-    block,
-    check_agrees,
-    cross,
-    dot,
-    mul,
-    on,
-    plus,
-    same,
-    times,
-    turned,
 )
 from tests.sources.forms import (
     JJ,
@@ -37,6 +25,18 @@ from tests.sources.forms import (
     galilean_product,
     hat,
     minus,
+)
+from tests.theory.exactly import (
+    block,
+    check_agrees,
+    cross,
+    dot,
+    mul,
+    on,
+    plus,
+    same,
+    times,
+    turned,
 )
 
 # -- chapter 6: semidirect products -----------------------------------------------------------

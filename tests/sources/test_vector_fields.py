@@ -11,9 +11,12 @@ import pytest
 from scipy.linalg import expm
 
 from coadjoint.algebra import algebra_by_name
-from coadjoint.exact import Field, JetField
+from coadjoint.exact import Field
 from coadjoint.exact.dense import add, apply, cross, dot, product, scale, subtract, transpose
-from coadjoint.groups.charts import (
+from coadjoint.groups.complex_numbers import Complex
+from coadjoint.groups.lifts import cotangent_lift, jacobian
+from coadjoint.groups.vector_fields import VectorField, exterior_derivative, lie_derivative
+from coadjoint.theory.charts import (
     chart_velocity,
     north_chart,
     north_point,
@@ -22,20 +25,18 @@ from coadjoint.groups.charts import (
     spherical_differential,
     spherical_point,
 )
-from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.lifts import compose, cotangent_lift, jacobian, tangent_lift
-from coadjoint.groups.vector_fields import (
-    VectorField,
+from coadjoint.theory.jets import JetField
+from coadjoint.theory.vector_fields import (
+    compose,
     curl,
     divergence,
-    exterior_derivative,
     flow,
     jacobi_lie_bracket,
-    lie_derivative,
     lie_derivative_of_one_form,
     lie_series,
     pull_back,
     push_forward,
+    tangent_lift,
     vorticity_rate,
 )
 

@@ -103,6 +103,7 @@ from tests.sources.points import (
     particles_rates,
     particles_tensor,
 )
+from tests.sources.sliding import tippe_observables, tippe_rates
 from tests.sources.tops import (
     clebsch_as_kirchhoff,
     clebsch_observables,
@@ -122,10 +123,13 @@ from tests.sources.tops import (
 def within(name: str, point: dict[str, Any]) -> dict[str, Any]:
     """A point moved to where the system is defined.
 
-    The height of a spheroid is real for every Gamma3 if it is longer than wide.
+    The height of a spheroid is real for every Gamma3 if it is longer than wide. Large friction jams
+    a top that slides.
     """
     if name == "body_of_revolution":
         return point | {"C": abs(point["A"]) + abs(point["C"])}
+    if name == "tippe_top":
+        return point | {each: point[each] / 1024 for each in ("viscous", "coulomb")}
     return point
 
 
@@ -137,7 +141,7 @@ def rational(name: str, point: dict[str, Any]) -> dict[str, Any]:
     """
     if name in ("rolling_disk", "euler_disk"):
         return point | {"Gamma2": point["Gamma1"] * 4 / 3}
-    if name == "rolling_ellipsoid":
+    if name in ("rolling_ellipsoid", "rattleback"):
         long = 2 * point["axes1"] * point["Gamma1"]
         return point | {f"axes{n}": long / point[f"Gamma{n}"] for n in (2, 3)}
     if name == "body_of_revolution":
@@ -178,6 +182,7 @@ CONFIGURATIONS = (
     "rocking_disk",
     *classical.CONFIGURATIONS,
     *ROLLING,
+    "tippe_top",
 )
 #: Systems whose rates are quotients, which no central difference meets exactly.
 QUOTIENTS = (
@@ -234,6 +239,7 @@ RATES = {
     **driven.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
+    "tippe_top": tippe_rates,
 }
 OBSERVABLES = {
     "rigid_body": rigid_body_observables,
@@ -273,6 +279,7 @@ OBSERVABLES = {
     **driven.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
+    "tippe_top": tippe_observables,
 }
 #: Brackets by the state; that of the pendulum on a cylinder knows the parameters too.
 TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
@@ -349,6 +356,7 @@ STATES = {
     **classical.STATES,
     **driven.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
+    "tippe_top": (*numbered("Omega", 3), *numbered("Y", 3), *numbered("Gamma", 3)),
 }
 INERTIAS = (*numbered("I", 3), *numbered("A", 3), *numbered("B", 3), "c")
 PARAMETERS = {
@@ -392,6 +400,8 @@ PARAMETERS = {
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),
     **dict.fromkeys(("rolling_disk", "euler_disk"), ("I1", "I3", "m", "r", "g")),
     "rolling_ellipsoid": (*kept("I", 3), "m", "g", *numbered("axes", 3)),
+    "rattleback": (*numbered("I", 3), "skew", "m", "g", *numbered("axes", 3)),
+    "tippe_top": ("I1", "I3", "m", "r", "g", "e", "viscous", "coulomb", "slow"),
     "body_of_revolution": ("I1", "I3", "m", "g", "A", "C", "l"),
 }
 DRIVING = driven.DRIVING

@@ -124,13 +124,13 @@ def test_blocks_that_do_not_tile_are_refused(change, found, said):
         (
             RIGID_BODY,
             [('[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"', "")],
-            "routes",
+            "routes[1]",
             "the route euler-poincare has no Lagrangian",
         ),
         (
             MOMENTA_ONLY,
             [('[hamiltonian]\nh = "dot(Pi, Pi)/2"', "")],
-            "routes",
+            "routes[1]",
             "neither a Hamiltonian nor a Lagrangian",
         ),
         (

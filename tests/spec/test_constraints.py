@@ -81,7 +81,7 @@ def test_forces_sections_and_dissipation_are_read():
     assert (section.name, list(section.section), section.unit) == ("J", ["u", "v"], "kg")
 
 
-ROUTES = 'routes = ["nonholonomic", "hamel"]'
+ROUTES = 'routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]'
 CLAIMS = "[claims]"
 FAULTS = [
     ((BLADE, ""), "constraints", "an empty table", "expected at least 1 item."),
@@ -93,13 +93,13 @@ FAULTS = [
         "knows no constraints",
     ),
     (
-        ('"hamel"]', '"euler-lagrange"]'),
-        "routes[2]",
+        ('"nonholonomic-hamilton-pontryagin"]', '"euler-lagrange"]'),
+        "routes[3]",
         "euler-lagrange",
-        'Write "nonholonomic" in its place, or remove [constraints].',
+        'Remove "euler-lagrange", or remove [constraints].',
     ),
-    ((ROUTES, 'routes = ["hamel"]'), "routes[1]", "hamel", 'Write "nonholonomic" before it.'),
-    (("[lagrangian]\nl", "[hamiltonian]\nh"), "routes", "lagrangian", "has no Lagrangian"),
+    ((ROUTES, 'routes = ["hamel"]'), "routes[1]", "hamel", 'Put "nonholonomic" first.'),
+    (("[lagrangian]\nl", "[hamiltonian]\nh"), "routes[1]", "nonholonomic", "has no Lagrangian"),
     (
         ("[parameters]", 'p = { role = "momentum", of = "x" }\n[parameters]'),
         "variables.p.role",
@@ -107,7 +107,12 @@ FAULTS = [
         "'p' is a momentum, and the state has velocities on these routes",
     ),
     ((CLAIMS, '[forces]\nq = "3"\n[claims]'), "forces.q", "q", "expected one of u, v, w"),
-    ((CLAIMS, '[forces]\nx = "3"\n[claims]'), "forces.x", "x", "no such velocity as 'x'"),
+    (
+        (CLAIMS, '[forces]\nx = "3"\n[claims]'),
+        "forces.x",
+        "x",
+        "'x' is a coordinate; expected one of u, v, w. Write u in its place.",
+    ),
     (
         (CLAIMS, '[forces]\nu = "vector(u, v)"\n[claims]'),
         "forces.u",
@@ -115,10 +120,16 @@ FAULTS = [
         "expected a scalar, as 'u' is",
     ),
     (
-        (CLAIMS, '[forces]\nu = "blade_reaction"\n[claims]'),
+        (CLAIMS, '[forces]\nu = "edge_reaction"\n[claims]'),
         "forces.u",
-        "blade_reaction",
-        "'blade_reaction' is not declared",
+        "edge_reaction",
+        "'edge_reaction' is not declared",
+    ),
+    (
+        (BLADE, BLADE + '\nslow = "u == pull*v"\n[definitions]\npull = "blade_reaction"'),
+        "constraints.slow",
+        "pull",
+        "Write pull without reactions, or use it in [forces] alone.",
     ),
     (
         (CLAIMS, '[dissipation]\nR = "vector(u, v)"\n[claims]'),
@@ -180,26 +191,26 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
     with pytest.raises(SpecError, match="cannot be the first") as caught:
         spec(RIGID_BODY, ('["euler-poincare", "lie-poisson"]', f'["{route}", "lie-poisson"]'))
     assert caught.value.parts["found"] == route
-    assert 'Write "euler-poincare" before it.' in str(caught.value)
+    assert 'Put "euler-poincare" first.' in str(caught.value)
     assert listed(["euler-poincare", "lie-poisson"]) in str(caught.value)
 
 
+SYMMETRY = '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }'
+KEPT = ('"w == y*u"', '"2*w == y*u"')
+
+
 @pytest.mark.parametrize(
-    ("table", "found"),
+    ("text", "changes", "table", "found"),
     [
-        ('[claims]\ncasimirs = ["k*m"]', "claims of Casimirs"),
-        ('[claims]\nbrackets = { "{omega, v}" = "k" }', "claims of brackets"),
-        ('[transformations.P]\nmap = { v = "-v" }', "[transformations]"),
-        (
-            '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }',
-            "[symmetries]",
-        ),
+        (PARTICLE, (KEPT,), 'casimirs = ["k*m"]', "claims of Casimirs"),
+        (PARTICLE, (KEPT,), 'brackets = { "{u, v}" = "k" }', "claims of brackets"),
+        (SLEIGH, (), SYMMETRY, "[symmetries]"),
     ],
 )
-def test_what_rests_on_a_bracket_is_refused(table, found):
-    """Casimirs, brackets, symmetries and transformations have no place; [momenta] is named."""
+def test_what_rests_on_a_bracket_is_refused(text, changes, table, found):
+    """Casimirs and brackets where constraints give no velocity, symmetries; [momenta] is named."""
     with pytest.raises(SpecError, match="beside \\[constraints\\]") as caught:
-        spec(SLEIGH + table)
+        spec(text + table, *changes)
     assert f"there are {found} beside [constraints]" in str(caught.value)
     assert "Declare momenta along the constraints in [momenta]" in str(caught.value)
 

@@ -151,13 +151,13 @@ def test_slip_in_a_bracket_is_refused_at_its_place(text, change, key, found, sai
             "poisson",
             "starts from [poisson]",
         ),
-        (NAMBU, ('h = "x[3]^2/2 + k*x1"', ""), "hamiltonian", "h", "Write h ="),
+        (NAMBU, ('h = "x[3]^2/2 + k*x1"', ""), "hamiltonian", "h", "Write for instance h ="),
         (
             NAMBU,
             ('[hamiltonian]\nh = "x[3]^2/2 + k*x1"', ""),
-            "routes",
-            "hamiltonian",
-            "no Hamiltonian",
+            "routes[1]",
+            "nambu",
+            "Hamiltonian",
         ),
         (
             NAMBU,

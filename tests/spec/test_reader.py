@@ -44,7 +44,8 @@ ADVECTING = (*TWO, "hamilton-pontryagin", "clebsch", "poincare")
 ROTATING = (*ADVECTING, "cayley-klein")
 TOPS = (*TWO, "hamilton-pontryagin", "newton-euler", "kaluza-klein")
 COMPLEX = ("lie-poisson", "complexification")
-CONSTRAINED, TURNING = ("nonholonomic", "hamel"), "Omega1 Omega2 Omega3 Gamma1 Gamma2 Gamma3"
+BOTH, TURNING = ("nonholonomic", "hamel"), "Omega1 Omega2 Omega3 Gamma1 Gamma2 Gamma3"
+CONSTRAINED = (*BOTH, "nonholonomic-hamilton-pontryagin")
 CANONICAL = ("canonical", "poisson")
 GALILEI = "J1 J2 J3 K1 K2 K3 P1 P2 P3 E"
 INERTIA = "I1 I2 I3 A1 A2 A3 B1 B2 B3 c"
@@ -109,9 +110,15 @@ SHIPPED = {
     "rolling_ellipsoid": (
         TURNING,
         "I11 I12 I13 I22 I23 I33 m g axes1 axes2 axes3",
-        CONSTRAINED,
+        BOTH,
     ),
-    "body_of_revolution": (TURNING, "I1 I3 m g A C l", CONSTRAINED),
+    "body_of_revolution": (TURNING, "I1 I3 m g A C l", BOTH),
+    "rattleback": (TURNING, "I1 I2 I3 skew m g axes1 axes2 axes3", BOTH),
+    "tippe_top": (
+        "Omega1 Omega2 Omega3 Y1 Y2 Y3 Gamma1 Gamma2 Gamma3",
+        "I1 I3 m r g e viscous coulomb slow",
+        BOTH,
+    ),
     "kepler": (ONE_POINT, "mu", ("poisson", "canonical", "euler-lagrange", "newton", "alignment")),
     "monopole_kepler": (ONE_POINT, "mu lam", ("poisson", "canonical", "newton", "alignment")),
     "n_particles": (

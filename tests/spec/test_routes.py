@@ -128,8 +128,14 @@ def test_state_is_declared_order_without_what_follows():
             "without [algebra]",
         ),
         (OSCILLATOR, ('"canonical"', '"clebsch"'), "routes[1]", "clebsch", "[algebra]"),
-        (OSCILLATOR, ('"canonical"', '"newton"'), "routes", "newton", "[newton]"),
-        (OSCILLATOR, ('"canonical"', '"euler-lagrange"'), "routes", "lagrangian", "no Lagrangian"),
+        (OSCILLATOR, ('"canonical"', '"newton"'), "routes[1]", "newton", "[newton]"),
+        (
+            OSCILLATOR,
+            ('"canonical"', '"euler-lagrange"'),
+            "routes[1]",
+            "euler-lagrange",
+            "no Lagrangian",
+        ),
         (
             RIGID_BODY,
             ('role = "momentum"', 'role = "momentum", of = "Omega"'),

@@ -36,7 +36,7 @@ def test_parameters_have_exact_defaults():
     ("change", "key", "found", "said"),
     [
         (('n = "shift"', 'n = "shft"'), "variables.a.representation", "shft", "'shift'?"),
-        ((', representation = "shift"', ""), "variables.a", "a", 'representation = "vector"'),
+        ((', representation = "shift"', ""), "variables.a", "a", 'representation = "coadjoint"'),
         (('"plane" }', '"plne" }'), "variables.p.block", "plne", "'plane'?"),
         (('"plane" }', '["e1", "e1"] }'), "variables.p.block", "e1, e1", "each name once"),
         (('"shift" }', '"shift", block = "e1" }'), "variables.a.block", "e1", "Remove block"),

@@ -22,7 +22,7 @@ CHANGES = [
     # missing keys
     (('title = "Free rigid body"\n', ""), "the file", "title", "Write title ="),
     (('{ role = "velocity" }', "{}"), "variables.Omega", "role", "'velocity', 'momentum'"),
-    (('l = "dot(Omega, diag(I)*Omega)/2"', ""), "lagrangian", "l", 'Write l = "'),
+    (('l = "dot(Omega, diag(I)*Omega)/2"', ""), "lagrangian", "l", 'Write for instance l = "'),
     (('[algebra]\nname = "so(3)"', ""), "the file", "algebra", 'name = "so(3)"'),
     # wrong types and values
     (('"Free rigid body"', "7"), "title", 7, "text in quotes"),

@@ -15,6 +15,7 @@ from functools import cached_property
 
 import sympy
 
+from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.projection import nearest_state
@@ -55,6 +56,12 @@ class Equations:
         return self.setting.spec
 
     @property
+    def way(self) -> str:
+        """The route or the declared chart, in words."""
+        declared = self.chart is not None and self.chart.name
+        return f"the chart {declared}" if declared else f"the route {self.route}"
+
+    @property
     def variables(self) -> tuple[str, ...]:
         """Names of what the rates are the rates of: the declared state, or the route's own."""
         return self.setting.state if self.chart is None else self.chart.variables
@@ -71,23 +78,31 @@ class Equations:
 
     @cached_property
     def rates(self) -> tuple[sympy.Expr, ...]:
-        """Time derivative of each variable, in variables and parameters alone."""
+        """Time derivative of each variable, in variables, parameters, inputs and time alone.
+
+        Where more is solved for than can be written out, rates name the unknowns of `unsolved`.
+        """
         return tuple(map(self._sympy, self.exact.rates))
+
+    @property
+    def unsolved(self) -> tuple[LinearEquations, ...]:
+        """Linear equations whose solution is not written out: unknowns, matrix and right side."""
+        return self._closed_forms.unsolved
 
     @cached_property
     def energy(self) -> sympy.Expr | None:
-        """The energy, in state and parameters alone; None where there is none."""
+        """The energy, closed as the rates are; None where there is none."""
         return None if self.exact.energy is None else self._sympy(self.exact.energy)
 
     @cached_property
     def observables(self) -> dict[str, sympy.Expr]:
-        """Scalars emitted beside the dynamics, in state and parameters alone."""
+        """Scalars emitted beside the dynamics, closed as the rates are."""
         return {name: self._sympy(value) for name, value in self.exact.observables}
 
     @cached_property
     def velocities(self) -> dict[str, sympy.Expr]:
         """Velocities in state and parameters alone, or as the kernel solves for them."""
-        return {name: self._sympy(value) for name, value in self.exact.definitions}
+        return {name: self._written(value) for name, value in self.exact.definitions}
 
     @cached_property
     def poisson_tensor(self) -> sympy.ImmutableMatrix | None:
@@ -141,12 +156,6 @@ class Equations:
         """What follows from the motion without acting on it: each variable with its rate."""
         return rates_followed(self.setting, self.distribution)
 
-    @property
-    def keeps_energy(self) -> bool:
-        """Whether nothing acts that could change the energy: no force, no constraint that moves."""
-        free = self.distribution is None or self.distribution.is_linear
-        return free and self.spec.keeps_energy
-
     def work(self, function: Element) -> Element:
         """What external forces add to the rate of a function of the state."""
         field, closed = self.setting.field, self.closed(function)
@@ -176,7 +185,17 @@ class Equations:
         return frozenset(names)
 
     def _sympy(self, element: Element) -> sympy.Expr:
+        """An element in state, parameters, inputs and time, but for the unknowns of `unsolved`."""
+        return self._written(element).xreplace(self._closed_forms.values)
+
+    def _written(self, element: Element) -> sympy.Expr:
+        """An element in these, and in what the kernel solves for."""
         return self.setting.field.to_sympy(self.closed(element))
+
+    @cached_property
+    def _closed_forms(self) -> ClosedForms:
+        named = set(self.kept) - self.intermediates
+        return closed_forms(self.exact, named, self._written)
 
     def latex(self) -> str:
         """The definitions and rates as a LaTeX ``aligned`` block."""

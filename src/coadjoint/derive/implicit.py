@@ -1,6 +1,6 @@
 """Implicit: derivatives of what the kernel solves for, by the rule for implicit functions.
 
-Where ``A x = k``, the derivative of x solves ``A x' = k' - A' x``, with the factors L and D of A.
+Where ``A x = k``, the derivative of x solves ``A x' = k' - A' x``, with A's factors L, D and U.
 Comes in: a solve, and values with their slopes. Goes out: the unknowns with theirs.
 Read next: `coadjoint.derive.reference`.
 """
@@ -28,7 +28,7 @@ class ImplicitSolve:
 
     Attributes:
         solve: A, k and the names of x.
-        factors: L below the diagonal, zeros left out, and one over D on it.
+        factors: L below the diagonal, U above it and one over D on it, zeros left out.
         unknowns: x as symbols.
         last: The name of the unknown that is defined last.
     """
@@ -83,7 +83,7 @@ class ImplicitSolve:
         return found
 
     def _substituted(self, column: list[Any], weights: Mapping[tuple[int, int], Any]) -> list[Any]:
-        """``A^-1 r`` by L and D; None is zero."""
+        """``A^-1 r`` by L, D and U; None is zero."""
         size = range(len(column))
         y: list[Any] = []
         for i in size:
@@ -91,7 +91,7 @@ class ImplicitSolve:
             y.append(_less(column[i], before))
         found: list[Any] = [None] * len(column)
         for i in reversed(size):
-            after = [(weights[k, i], found[k]) for k in size[i + 1 :] if (k, i) in weights]
+            after = [(weights[i, k], found[k]) for k in size[i + 1 :] if (i, k) in weights]
             scaled = None if y[i] is None else mul(y[i], weights[i, i])
             found[i] = _less(scaled, after)
         return found

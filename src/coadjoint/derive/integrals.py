@@ -134,6 +134,8 @@ def _chosen(setting: Setting, coefficients: Iterable[Coefficient]) -> Iterator[C
 def known_integrals(setting: Setting) -> list[Element]:
     """What is emitted and conserved whatever the pair: the claimed Casimirs and the energy."""
     casimirs = [part for casimir in setting.spec.casimirs for part in setting.components(casimir)]
+    if not setting.has_energy:
+        return casimirs
     energy, solves = hamiltonian(setting)
     # where the kernel solves for velocities, the energy names them beside the momenta
     return [*casimirs, *([] if solves else [energy])]

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import (
@@ -19,9 +18,11 @@ from coadjoint.exact.dense import (
     add,
     apply,
     commutator,
+    cross,
     determinant,
     diagonal,
     dot,
+    hat,
     inverse,
     product,
     scale,
@@ -171,16 +172,6 @@ def _power(base: Quantity, exponent: int, field: Field) -> Quantity:
     return result
 
 
-def _cross(a: Quantity, b: Quantity) -> Quantity:
-    """The bracket of so(3), so that one table of signs serves the whole engine."""
-    return algebra_by_name("so(3)").bracket(a, b)
-
-
-def _hat(a: Quantity) -> Matrix:
-    zero = 0 * a[0]
-    return tuple(tuple(x + zero for x in row) for row in algebra_by_name("so(3)").ad(a))
-
-
 _BINARY: dict[str, Callable[..., Quantity]] = {
     "+": add,
     "-": subtract,
@@ -188,8 +179,8 @@ _BINARY: dict[str, Callable[..., Quantity]] = {
 }
 _TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "dot": dot,
-    "cross": _cross,
-    "hat": _hat,
+    "cross": cross,
+    "hat": hat,
     "trace": trace,
     "transpose": transpose,
     "det": determinant,

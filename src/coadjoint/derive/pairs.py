@@ -71,7 +71,7 @@ def declared_pair(setting: Setting) -> LaxPair:
             setting.field.coefficients(entry, lax.spectral)
         except ValueError as error:
             problem, expected = str(error), f"polynomials in {lax.spectral} and its inverse"
-            hint = f"Choose another parameter than {lax.spectral}, or take the route lie-poisson."
+            hint = f"Choose another parameter than {lax.spectral}."
             raise refusal(setting, "lax", problem, lax.spectral, expected, hint) from None
     return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
 
@@ -120,7 +120,7 @@ def rates_of(setting: Setting, pair: LaxPair, route: str) -> tuple[Element, ...]
             f"L does not determine {listed(missing)}",
             listed(missing),
             "an L in which every component of the state occurs, independently of the others",
-            "Put it into L, or take the route lie-poisson.",
+            "Put it into L.",
         )
     return tuple(found[name] for name in setting.state)
 
@@ -138,7 +138,7 @@ def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:
                 f"{name} depends on {listed(sorted(inside))}",
                 listed(sorted(inside)),
                 "an L that is affine in the state",
-                "Choose the entries of L as variables, or take the route lie-poisson.",
+                "Choose the entries of L as variables.",
             )
 
 

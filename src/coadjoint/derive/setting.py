@@ -53,7 +53,7 @@ class Setting:
     field: Field
     values: Mapping[str, Quantity]
     built: dict[Callable[[Setting], object], object] = attribute(
-        default_factory=dict, repr=False, compare=False
+        default_factory=dict, init=False, repr=False, compare=False
     )
 
     # -- names, in the order of the algebra ---------------------------------------------
@@ -98,6 +98,11 @@ class Setting:
     def velocities(self) -> tuple[str, ...]:
         """Name of the velocity along each basis vector, or of each position; empty without any."""
         return self._along_basis("velocity")
+
+    @property
+    def has_energy(self) -> bool:
+        """Whether a Hamiltonian or a Lagrangian is declared."""
+        return self.spec.hamiltonian is not None or self.spec.lagrangian is not None
 
     @cached_property
     def momenta(self) -> tuple[str, ...]:
@@ -387,7 +392,7 @@ def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
 
 def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
     """``sum x_i e_i`` for matrices e_i."""
-    return dense.weighted(parts, matrices, size(matrices), 0 * parts[0])
+    return dense.weighted_sum(parts, matrices, size(matrices), 0 * parts[0])
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

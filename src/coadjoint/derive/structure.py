@@ -51,6 +51,8 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
 def has_structure(setting: Setting) -> bool:
     """Whether a spec says enough for a bracket: velocities have one through a Lagrangian alone."""
     spec = setting.spec
+    if spec.in_frame and spec.kind == "algebra":  # the bracket is one of momenta
+        return False
     return spec.kind != "configuration" or bool(setting.momenta) or spec.lagrangian is not None
 
 
@@ -105,7 +107,15 @@ def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
 
 
 def _reordered(structure: PoissonStructure, names: Sequence[str]) -> PoissonStructure:
-    """The same bracket with its coordinates in another order."""
-    places = [structure.names.index(name) for name in names]
-    tensor = tuple(tuple(structure.tensor[i][j] for j in places) for i in places)
+    """The same bracket with its coordinates in another order; others commute with everything."""
+    places = dict(zip(structure.names, range(len(structure.names)), strict=True))
+    tensor = tuple(
+        tuple(
+            structure.tensor[places[a]][places[b]]
+            if {a, b} <= places.keys()
+            else structure.field.zero
+            for b in names
+        )
+        for a in names
+    )
     return PoissonStructure(structure.field, tuple(names), tensor, structure.name)

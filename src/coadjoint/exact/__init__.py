@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from coadjoint.exact.element import BudgetSpent, Element
     from coadjoint.exact.field import Field
-    from coadjoint.exact.jets import JetField
     from coadjoint.exact.region import Condition, Region
     from coadjoint.exact.text import element_text
 
-__all__ = ["BudgetSpent", "Condition", "Element", "Field", "JetField", "Region", "element_text"]
+__all__ = ["BudgetSpent", "Condition", "Element", "Field", "Region", "element_text"]
 
 #: Module of each name.
 _HOMES = {
@@ -24,7 +23,6 @@ _HOMES = {
     "Condition": "region",
     "Element": "element",
     "Field": "field",
-    "JetField": "jets",
     "Region": "region",
     "element_text": "text",
 }

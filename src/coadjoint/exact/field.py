@@ -9,37 +9,25 @@ Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import replace
 from fractions import Fraction
-from functools import reduce
-from operator import mul, truediv
-from types import MappingProxyType
 from typing import Any, TypeVar
 
 import sympy
-from sympy.polys.domains import QQ
-from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyElement, PolyRing
+from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.dense import total
+from coadjoint.exact.element import Element
+from coadjoint.exact.rationals import Rationals
 from coadjoint.exact.region import Condition, Region
-from coadjoint.exact.written import Adjoined, Monomial, Written
+from coadjoint.exact.written import Adjoined
 
 Value = TypeVar("Value")
 
 _SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")}
 
 
-def _paired(addends: list[Any]) -> Any:
-    """The sum of a nonempty list, neighbours first."""
-    while len(addends) > 1:
-        pairs = [a + b for a, b in zip(addends[::2], addends[1::2], strict=False)]
-        addends = pairs + addends[2 * len(pairs) :]
-    return addends[0]
-
-
-class Field:
+class Field(Rationals):
     """Rational functions over Q in named symbols and in elementary functions of them.
 
     Args:
@@ -59,104 +47,19 @@ class Field:
     """
 
     def __init__(self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()) -> None:
-        self.names = tuple(names)
+        super().__init__(names, 2 * slots)  # sine and cosine come together
         self.positive = frozenset(positive)
         self.region = Region()
-        # A spec name cannot begin with an underscore, so a slot cannot meet one.
-        # Two for each function: sine and cosine come together.
-        self._free = [f"_f{n + 1}" for n in range(2 * slots)]
-        self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
-        self._factors = Factors(self._ring, len(self._free))
         self._factors.is_hidden_zero = self._is_hidden_zero
-        self._names = (*names, *self._free)
-        self._position = {name: n for n, name in enumerate(self._names)}
-        self._generators = {
-            name: self._element(generator)
-            for name, generator in zip(self._names, self._ring.gens, strict=True)
-        }
         self.adjoined: dict[str, Adjoined] = {}
         self.has_called = False
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
-        self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
-
-    def __getitem__(self, name: str) -> Element:
-        return self._generators[name]
 
     def assume(self, conditions: Iterable[Condition]) -> None:
         """Take it that conditions hold, besides those that do."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
-
-    def _element(self, p: PolyElement) -> Element:
-        return Element(self._factors, [(p, {})])
-
-    @property
-    def zero(self) -> Element:
-        """The element 0."""
-        return self._element(self._ring.zero)
-
-    @property
-    def one(self) -> Element:
-        """The element 1."""
-        return self._element(self._ring.one)
-
-    def number(self, value: Fraction | int) -> Element:
-        """A rational number as an element."""
-        return self.zero + Fraction(value)
-
-    def adopt(self, element: Element, names: Mapping[str, str] = MappingProxyType({})) -> Element:
-        """A function-free element of another field, of symbols that this one has too.
-
-        Args:
-            element: What to take over.
-            names: What some of its symbols are called here.
-
-        Raises:
-            KeyError: A symbol that occurs is not known here.
-        """
-        own = [names.get(str(s), str(s)) for s in element.factors.ring.symbols]
-
-        def moved(p: PolyElement) -> Element:
-            return self._element(self._ring.from_dict(self._placed(own, dict(p))))
-
-        def divided(quotient: Quotient) -> Element:
-            factors = element.factors.known
-            return reduce(
-                truediv,
-                (moved(factors[n]) ** exponent for n, exponent in quotient.powers.items()),
-                moved(quotient.numer),
-            )
-
-        return self.sum(map(divided, element.parts))
-
-    def polynomial(
-        self, names: Sequence[str], terms: Mapping[tuple[int, ...], Fraction | int]
-    ) -> Element:
-        """A polynomial in some symbols, by the exponents of its terms in their order."""
-        numbers = {e: QQ(value.numerator, value.denominator) for e, value in terms.items()}
-        return self._element(self._ring.from_dict(self._placed(names, numbers)))
-
-    def _placed(self, names: Sequence[str], terms: Mapping[Any, Any]) -> dict[Any, Any]:
-        """Terms in some symbols as terms of the ring; only symbols that occur must be known."""
-        used = [n for n in range(len(names)) if any(exponents[n] for exponents in terms)]
-        places = [self._position[names[n]] for n in used]
-        result = {}
-        for exponents, number in terms.items():
-            powers = [0] * len(self._names)
-            for place, n in zip(places, used, strict=True):
-                powers[place] = exponents[n]
-            result[tuple(powers)] = number
-        return result
-
-    def sum(self, elements: Iterable[Element]) -> Element:
-        """The sum of elements, added in pairs: a long sum takes no quadratic time."""
-        addends = list(elements)
-        return _paired(addends) if addends else self.zero
-
-    def vector(self, values: Iterable[Element | int]) -> tuple[Element, ...]:
-        """Values that may still be plain numbers, as elements."""
-        return tuple(self.zero + value for value in values)
 
     # -- elementary functions -----------------------------------------------------------
 
@@ -275,8 +178,8 @@ class Field:
         >>> field.coefficients(field["a"] * field["x"] ** 2 + 3 - 1 / field["x"], "x")
         {-1: -1, 0: 3, 2: a}
         """
-        place, found = self._position[name], dict[int, list[Element]]()
-        if any(name in self.reach(self.adjoined[g].argument) for g in self._needed(element)):
+        place, result = self._position[name], dict[int, list[Element]]()
+        if any(name in self.reach(self.adjoined[g].argument) for g in self._calls_in(element)):
             raise ValueError(f"{name} occurs in a function")
         for quotient in element.parts:
             lowered, powers = 0, {}
@@ -294,25 +197,15 @@ class Field:
                 parts.setdefault(monomial[place] - lowered, {})[rest] = number
             for power, part in parts.items():
                 whole = Element(self._factors, [(self._ring.from_dict(part), powers)])
-                found.setdefault(power, []).append(whole)
-        return {power: value for power in sorted(found) if (value := self.sum(found[power]))}
+                result.setdefault(power, []).append(whole)
+        return {power: value for power in sorted(result) if (value := self.sum(result[power]))}
 
     def functions_in(self, element: Element) -> frozenset[str]:
         """Generators of the functions that occur in an element or in their arguments."""
-        found = set(self._needed(element))
-        for generator in self._needed(element):
-            found |= self.functions_in(self.adjoined[generator].argument)
-        return frozenset(found)
-
-    def names_in(self, element: Element) -> frozenset[str]:
-        """Names of the generators that occur in an element."""
-        return frozenset(
-            name
-            for quotient in element.parts
-            for part in (quotient.numer, *map(self._factors.known.__getitem__, quotient.powers))
-            for monomial in self._written(part)
-            for name, _ in monomial.powers
-        )
+        result = set(self._calls_in(element))
+        for generator in self._calls_in(element):
+            result |= self.functions_in(self.adjoined[generator].argument)
+        return frozenset(result)
 
     # -- calculus -----------------------------------------------------------------------
 
@@ -323,7 +216,7 @@ class Field:
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
         result = element.diff(self._position[name])
-        for generator in self._needed(element):
+        for generator in self._calls_in(element):
             result += self.slope(element, generator) * self._derivative_of(
                 self.adjoined[generator], name
             )
@@ -370,59 +263,17 @@ class Field:
         """
         factors = {} if factors is None else factors
         known = dict(values)
-        for generator in self._needed(element):
+        for generator in self._calls_in(element):
             argument = self.adjoined[generator].argument
             inner = self.evaluate(argument, known, number, call, factors)
             known[generator] = call(self.adjoined[generator].function, inner)
         quotients = [self._quotient(q, known, number, factors) for q in element.parts]
-        return _paired(quotients) if quotients else number(Fraction(0))
+        return total(quotients) if quotients else number(Fraction(0))
 
-    def _quotient(
-        self,
-        quotient: Quotient,
-        values: Mapping[str, Value],
-        number: Callable[[Fraction], Value],
-        factors: dict[int, Value],
-    ) -> Value:
-        """Numerator over the product of the factors."""
-        top = self._polynomial(quotient.numer, values, number)
-        if not quotient.powers:
-            return top
-        for factor in quotient.powers:
-            if factor not in factors:
-                factors[factor] = self._polynomial(self._factors.known[factor], values, number)
-        bottom = [factors[n] for n, exponent in quotient.powers.items() for _ in range(exponent)]
-        return top / reduce(mul, bottom)  # type: ignore[operator, no-any-return]
-
-    def _needed(self, element: Element) -> list[str]:
+    def _calls_in(self, element: Element) -> list[str]:
         """Adjoined generators that occur, in the order in which they were adjoined."""
         present = self.names_in(element) if self.adjoined else frozenset()
         return [generator for generator in self.adjoined if generator in present]
-
-    def _polynomial(
-        self, p: PolyElement, values: Mapping[str, Value], number: Callable[[Fraction], Value]
-    ) -> Value:
-        """Sum of coefficient times powers, in the order of the ring."""
-        terms: list[Any] = []
-        self._factors.spend(len(p))
-        for monomial in self._written(p):
-            factors = [values[name] for name, power in monomial.powers for _ in range(power)]
-            if monomial.number != 1 or not factors:
-                factors.insert(0, number(monomial.number))
-            terms.append(reduce(mul, factors))
-        return _paired(terms) if terms else number(Fraction(0))
-
-    def _written(self, p: PolyElement) -> tuple[Monomial, ...]:
-        """The addends of a polynomial by name, remembered: oracles evaluate at many points."""
-        if p not in self._remembered:
-            self._remembered[p] = tuple(
-                Monomial(
-                    Fraction(int(coefficient.numerator), int(coefficient.denominator)),
-                    tuple((self._names[place], e) for place, e in enumerate(exponents) if e),
-                )
-                for exponents, coefficient in p.terms()
-            )
-        return self._remembered[p]
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
         """The element with symbols replaced by elements; symbols not named stay."""
@@ -434,50 +285,9 @@ class Field:
     def reach(self, element: Element) -> frozenset[str]:
         """Symbols that occur in an element or in the arguments of its functions."""
         names = self.names_in(element) - self.adjoined.keys()
-        for generator in self._needed(element):
+        for generator in self._calls_in(element):
             names |= self.reach(self.adjoined[generator].argument)
         return names
-
-    def budget(self, work: int) -> AbstractContextManager[None]:
-        """A block in which arithmetic ends after so much work: see `Factors.budget`."""
-        return self._factors.budget(work)
-
-    # -- parts, for signs and relations -------------------------------------------------
-
-    @property
-    def generators(self) -> tuple[str, ...]:
-        """The symbols and the slots for functions, in the order of the ring."""
-        return self._names
-
-    def fraction(self, element: Element) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
-        """Numerator and factors of the denominator, with exponents, of a nonzero quotient."""
-        (quotient,) = element.parts
-        return quotient.numer, [(self._factors.known[n], e) for n, e in quotient.powers.items()]
-
-    def from_polynomial(self, p: PolyElement) -> Element:
-        """A polynomial of the ring as an element."""
-        return self._element(p)
-
-    def numerators(self, elements: Iterable[Element]) -> tuple[list[PolyElement], Element]:
-        """Numerators over a common denominator, and its reciprocal."""
-        quotients = [each.combined().parts for each in elements]
-        common: dict[int, int] = {}
-        for quotient, *_ in filter(None, quotients):
-            for number, exponent in quotient.powers.items():
-                common[number] = max(common.get(number, 0), exponent)
-        tops = [
-            parts[0].over(common, self._factors) if parts else self._ring.zero
-            for parts in quotients
-        ]
-        return tops, Element(self._factors, [(self._ring.one, common)])
-
-    def rewritten(
-        self, element: Element, values: Mapping[str, Value], number: Callable[[Fraction], Value]
-    ) -> Value:
-        """The value of an element where each generator, also of a function, has a value given."""
-        factors: dict[int, Value] = {}
-        quotients = [self._quotient(q, values, number, factors) for q in element.parts]
-        return _paired(quotients) if quotients else number(Fraction(0))
 
     def in_sines(self, p: PolyElement) -> PolyElement:
         """A polynomial with even powers of cosines written by sines: ``1 - cos^2`` as ``sin^2``."""
@@ -487,57 +297,12 @@ class Field:
                 element = self.reduce_squares(element, name, self.one - self[known.partner] ** 2)
         return element.parts[0].numer if element.parts else self._ring.zero
 
-    # -- parts, for lowering ------------------------------------------------------------
-
-    def as_number(self, element: Element) -> Fraction | None:
-        """The rational number that an element is, or None."""
-        if not element.parts:
-            return Fraction(0)
-        quotient, *others = element.parts
-        if others or quotient.powers or not quotient.numer.is_ground:
-            return None
-        value = quotient.numer.LC
-        return Fraction(int(value.numerator), int(value.denominator))
-
-    def quotients(self, element: Element) -> list[Written]:
-        """The quotients whose sum the element is, in the order of the field."""
-        return [
-            Written(
-                self._written(quotient.numer),
-                tuple((self._factor(n), exponent) for n, exponent in quotient.powers.items()),
-            )
-            for quotient in element.parts
-        ]
-
-    def _factor(self, number: int) -> Element:
-        return self._element(self._factors.known[number])
-
-    def terms(self, element: Element) -> tuple[Element, ...]:
-        """The addends of the numerators, each over the whole denominator of its quotient."""
-        ring = self._ring
-        return tuple(
-            Element(self._factors, [(ring.from_dict({monomial: coefficient}), quotient.powers)])
-            for quotient in element.parts
-            for monomial, coefficient in quotient.numer.terms()
-        )
-
-    def partial_fractions(self, element: Element) -> list[Element]:
-        """Single quotients whose sum is the element, their addends cancelled; zero alone for zero.
-
-        ``(I2 - I3)/(I2*I3)`` is ``1/I3 - 1/I2``.
-        """
-        groups: dict[tuple[tuple[int, int], ...], list[Element]] = {}
-        for term in self.terms(element):
-            key = tuple(sorted(term.parts[0].powers.items()))
-            groups.setdefault(key, []).append(term)
-        return [self.sum(terms) for terms in groups.values()] or [element]
-
     def to_sympy(self, element: Element) -> sympy.Expr:
         """The element as a SymPy expression of plain symbols, for people to read and use."""
         functions = {
             sympy.Symbol(generator): _SYMPY_FUNCTIONS[self.adjoined[generator].function](
                 self.to_sympy(self.adjoined[generator].argument)
             )
-            for generator in self._needed(element)
+            for generator in self._calls_in(element)
         }
         return sympy.sympify(element).xreplace(functions)

@@ -6,6 +6,7 @@ Read next: `coadjoint.exact.ranks`.
 
 from __future__ import annotations
 
+import random
 from fractions import Fraction
 
 from coadjoint.exact.linear import PRIME
@@ -58,3 +59,21 @@ def residue(number: Fraction | int, prime: int = PRIME) -> Residue:
     """
     top, bottom = Residue(number.numerator % prime, prime), number.denominator
     return top if bottom == 1 else top / Residue(bottom % prime, prime)
+
+
+def draw(seed: str, prime: int = PRIME) -> Residue:
+    """A random residue other than 0, the same one for the same seed."""
+    return Residue(random.Random(seed).randrange(1, prime), prime)  # noqa: S311 (not for secrets)
+
+
+def square_root(number: Residue) -> Residue:
+    """A square root modulo a prime that is 3 modulo 4.
+
+    Raises:
+        ZeroDivisionError: There is none.
+    """
+    prime = number.prime
+    root = Residue(pow(number.value, (prime + 1) // 4, prime), prime)
+    if root * root != number:
+        raise ZeroDivisionError(f"no square root of {number.value} modulo {prime}")
+    return root

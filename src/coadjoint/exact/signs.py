@@ -1,23 +1,30 @@
 """Signs that hold at every point of a domain, from declared signs and sums of positive terms.
 
 Comes in: an element, in a field that knows which symbols and elements are positive. Goes out: its
-sign where it is certain. Where none is, the element may have any sign: nothing is guessed.
-Read next: `coadjoint.exact.relations`, `coadjoint.prove.equivalence`.
+sign where it is certain. Where none is, the element may have any sign: nothing is guessed. A sum
+has a sign if its terms have one, also once each symbol is measured from its bound, ``3 + q`` for
+``q > 3``; so has a multiple of what is positive, and more.
+Read next: `coadjoint.exact.relations`, `coadjoint.prove.ideals`, which drops factors that vanish
+nowhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property
 from typing import Any
 
 from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import Element, remove_factor
 from coadjoint.exact.factors import factors_of
 from coadjoint.exact.field import Field
+from coadjoint.exact.region import Condition
 
 #: Terms of the largest sum in which terms are paired.
 LARGEST_SUM = 100
+#: Symbols of a quadratic form that is written as a sum of squares.
+SQUARES = 12
 #: What is known of a generator, by its place in the ring: 2 if it is positive, 1 if it is not
 #: negative, 0 otherwise.
 KnownSign = Callable[[int], int]
@@ -35,7 +42,7 @@ def sign_of_sum(p: PolyElement, known: KnownSign, *, strict: bool) -> int:
         strict: Whether the sum may nowhere be 0: one term at least is a product of positive ones.
     """
     for side in (1, -1):
-        left = _unpaired({e: side * c for e, c in p.terms()}, known)
+        left = _pair_off({e: side * c for e, c in p.terms()}, known)
         if left is None:
             continue
         if not strict or any(
@@ -45,7 +52,7 @@ def sign_of_sum(p: PolyElement, known: KnownSign, *, strict: bool) -> int:
     return 0
 
 
-def _unpaired(terms: dict[tuple[int, ...], Any], known: KnownSign) -> set[tuple[int, ...]] | None:
+def _pair_off(terms: dict[tuple[int, ...], Any], known: KnownSign) -> set[tuple[int, ...]] | None:
     """The positive terms that are left when each of the others has its pair; None without one."""
     positive = {
         e: c
@@ -99,21 +106,35 @@ class Signs:
     Args:
         field: The field.
         strict: Whether values may nowhere be 0.
+        more: What holds besides the conditions of the field.
     """
 
-    def __init__(self, field: Field, *, strict: bool) -> None:
-        self.field, self.strict = field, strict
+    def __init__(self, field: Field, *, strict: bool, more: Sequence[Condition] = ()) -> None:
+        self.field, self.strict, self._more = field, strict, more
         self._of_names: dict[str, int] = {}
         self._given = list(self._conditions())  # each with whether it may nowhere be 0
 
     def of(self, element: Element) -> int:
         """The sign of a nonzero element that is one quotient."""
         top, bottom = self.field.fraction(element)
-        found = self._of_polynomial(top)
+        result = self._of_polynomial(top)
         for factor, exponent in bottom:  # nowhere 0 where the element is defined
             if exponent % 2:
-                found *= Signs(self.field, strict=False)._of_polynomial(factor)
-        return found
+                result *= Signs(self.field, strict=False)._of_polynomial(factor)
+        return result
+
+    def is_nonzero(self, element: Element, given: Sequence[Element] = ()) -> bool:
+        """Whether a numerator is known to vanish nowhere, without a search for its factors.
+
+        Args:
+            element: Not zero.
+            given: What vanishes nowhere.
+        """
+        positive = (p for p, strict in self._given if strict)
+        whole = element.combined()
+        top, _ = self.field.fraction(whole)
+        others = (*map(self.field.from_polynomial, positive), *given)
+        return bool(self._plain(top)) or is_factor(self.field, whole, others)
 
     def known(self, place: int) -> int:
         """What is known of the sign of a generator, as `sign_of_sum` asks."""
@@ -125,14 +146,17 @@ class Signs:
     def _of_generator(self, name: str) -> int:
         known = self.field.adjoined.get(name)
         if known is None:
-            return 2 * (name in self.field.positive)
+            side, bound = self._bounds.get(name, (0, 0))
+            return 2 * (side == 1 and bound >= 0)
         if known.function == "sqrt":
-            return 1 + (sign(self.field, known.argument) == 1)
+            argument = self.field.normal(known.argument)
+            signs = Signs(self.field, strict=True, more=self._more)
+            return 1 + (argument != 0 and signs.of(argument.combined()) == 1)
         return 2 * (known.function == "exp")
 
     def _conditions(self) -> Iterator[tuple[PolyElement, bool]]:
         """What the conditions of the field say is positive: monic, or minus a monic one."""
-        for condition in self.field.region.conditions:
+        for condition in (*self.field.region.conditions, *self._more):
             element = self.field.normal(condition.element).combined()
             if element == 0:
                 continue
@@ -142,25 +166,25 @@ class Signs:
 
     def _of_polynomial(self, p: PolyElement) -> int:
         """The sign of a nonzero polynomial: of the whole, else the product of its factors'."""
-        found = self._plain(p)
-        if found:
-            return found
+        result = self._plain(p)
+        if result:
+            return result
         content, factors = factors_of(p)
-        found = 1 if content > 0 else -1
+        result = 1 if content > 0 else -1
         for factor, exponent in factors:
             if exponent % 2 or self.strict:
                 single = self._plain(factor)
-                found *= single if exponent % 2 else abs(single)
-        return found
+                result *= single if exponent % 2 else abs(single)
+        return result
 
     def _plain(self, p: PolyElement) -> int:
         """The sign of a polynomial that conditions or its terms give."""
         for given, strict in self._given:
-            if found := self._exceeds(p, given, strict=strict):
-                return found
-        for each in self._forms(p):
-            if found := sign_of_sum(each, self.known, strict=self.strict):
-                return found
+            if result := self._exceeds(p, given, strict=strict):
+                return result
+        for each, known in self._forms(p):
+            if result := sign_of_sum(each, known, strict=self.strict):
+                return result
         low, high = (self._bound(p, side) for side in (-1, 1))
         for bound, wanted in ((low, 1), (high, -1)):
             if bound and sign_of_sum(bound, self.known, strict=self.strict) == wanted:
@@ -207,7 +231,103 @@ class Signs:
         known = self.field.adjoined.get(name)
         return known is not None and known.function in ("sin", "cos")
 
-    def _forms(self, p: PolyElement) -> Sequence[PolyElement]:
-        """A polynomial as it is, and with squares of cosines written by those of sines."""
+    def _forms(self, p: PolyElement) -> Iterator[tuple[PolyElement, KnownSign]]:
+        """A polynomial in several forms, each with what is known of its generators.
+
+        It is taken as it is, with squares of cosines written by those of sines, and with each
+        symbol measured from its bound: ``3 + q`` for ``q > 3``.
+        """
+        yield p, self.known
         swapped = self.field.in_sines(p)
-        return [p] if swapped == p else [p, swapped]
+        if swapped != p:
+            yield swapped, self.known
+        moved, measured = p, list[int]()
+        for place, (side, bound) in self._measures(p):
+            generator = p.ring.gens[place]
+            moved = moved.compose(generator, bound + side * generator)
+            measured.append(place)
+        if moved != p:
+            yield moved, lambda place: 2 if place in measured else self.known(place)
+
+    def _measures(self, p: PolyElement) -> Iterator[tuple[int, tuple[int, Any]]]:
+        """The bounds other than ``q > 0`` of the symbols of a polynomial outside of functions."""
+        names = {name for name, d in zip(self.field.generators, p.degrees(), strict=True) if d > 0}
+        called = [self.field.reach(self.field[name]) for name in names & self.field.adjoined.keys()]
+        for name in names.difference(*called) & self._bounds.keys():
+            if self._bounds[name] != (1, 0):
+                yield self.field.generators.index(name), self._bounds[name]
+
+    @cached_property
+    def _bounds(self) -> dict[str, tuple[int, Any]]:
+        """Bounds of symbols: the side on which they lie, and the bound: ``q > 3``, ``q < 3``."""
+        result: dict[str, tuple[int, Any]] = dict.fromkeys(self.field.positive, (1, 0))
+        for given, strict in self._given:
+            places = [n for n, degree in enumerate(given.degrees()) if degree > 0]
+            name = self.field.generators[places[0]]
+            if not strict or len(places) > 1 or max(given.degrees()) > 1:
+                continue
+            if name not in self.field.adjoined:
+                slope, side = given.LC, 1 if given.LC > 0 else -1
+                bound = -given.get(given.ring.zero_monom, 0) / slope
+                known = result.get(name)
+                if known is None or (known[0] == side == 1 and bound > known[1]):
+                    result[name] = side, bound
+        return result
+
+    # -- sums of squares ------------------------------------------------------------------
+
+    def squares(self, element: Element) -> list[Element]:
+        """What vanishes together where a sum of squares does; nothing where it is none.
+
+        Addends of one sign, as in ``x^4 + a*y^2`` for positive a, or those of a quadratic form:
+        ``x^2 + x*y + y^2`` is ``(x + y/2)^2 + 3*y^2/4``. Of one with a constant of the same sign,
+        which vanishes nowhere, that is 1.
+        """
+        addends = self.field.terms(element)
+        if len(addends) > 1 and self._has_addends_of_one_sign(element):
+            return list(addends)
+        return complete_squares(self.field, element)
+
+    def _has_addends_of_one_sign(self, element: Element) -> bool:
+        """Whether no addend of a polynomial is negative, or none positive."""
+        if len(element.parts) != 1 or element.parts[0].powers:
+            return False
+        top, _ = self.field.fraction(element)
+        return len({number > 0 for number in top.values()}) == 1 and all(
+            self.known(n) for exponents in top for n, e in enumerate(exponents) if e % 2
+        )
+
+
+def is_factor(field: Field, element: Element, others: Iterable[Element]) -> bool:
+    """Whether a numerator is a factor of one of those of some others."""
+    own, _ = field.fraction(element.combined())
+    tops = (field.fraction(part)[0] for part in map(Element.combined, others) if part.parts)
+    return any(remove_factor(top, own, 1)[0] > 0 for top in tops)
+
+
+def complete_squares(field: Field, element: Element) -> list[Element]:
+    """The linear polynomials whose squares a definite quadratic one is the sum of."""
+    names = sorted(field.reach(element), key=field.names.index)
+    if not 0 < len(names) <= SQUARES or not field.function_free(element):
+        return []
+    if field.normal(element).combined().parts[0].powers:
+        return []
+    rest, result, sign = element, list[Element](), 0
+    for name in names:
+        slope = field.derivative(rest, name)
+        curve = field.as_number(field.derivative(slope, name))
+        if curve is None:
+            return []
+        if curve == 0:
+            if field.normal(slope) != 0:
+                return []
+            continue
+        if sign * curve < 0:
+            return []
+        sign = 1 if curve > 0 else -1
+        result.append(slope)
+        rest = field.normal(rest - slope**2 / (2 * curve))
+    number = field.as_number(rest)
+    if number is None or not result or number * sign < 0:
+        return []
+    return [field.one] if number else result if len(result) > 1 else []

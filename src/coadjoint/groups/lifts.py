@@ -22,27 +22,6 @@ def jacobian(field: Field, components: Sequence[Element], names: Sequence[str]) 
     return tuple(field.gradient(component, names) for component in components)
 
 
-def compose(
-    field: Field, outer: Sequence[Element], names: Sequence[str], inner: Sequence[Element]
-) -> Vector:
-    """``f o g``: the components of f in the coordinates ``names``, those replaced by g."""
-    values = dict(zip(names, inner, strict=True))
-    return tuple(field.substitute(component, values) for component in outer)
-
-
-def tangent_lift(
-    field: Field, components: Sequence[Element], names: Sequence[str], velocity: Sequence[Any]
-) -> Vector:
-    """``Tf(v) = Df v``, a velocity at f(x).
-
-    >>> field = Field(["x", "v"])
-    >>> x, v = field["x"], field["v"]
-    >>> tangent_lift(field, [x**2], ["x"], [v]) == (2 * x * v,)
-    True
-    """
-    return apply(jacobian(field, components, names), velocity)
-
-
 def cotangent_lift(
     field: Field, components: Sequence[Element], names: Sequence[str], covector: Sequence[Any]
 ) -> Vector:

@@ -5,7 +5,7 @@ Comes in: four components of anything that adds and multiplies. Goes out: `Quate
 
     ``i^2 = -1,  j^2 = k^2 = s,  i j = k,  j k = -s i,  k i = j``;  s = -1 or +1.
 
-Read next: `coadjoint.groups.rotations`.
+Read next: `coadjoint.theory.rotations`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from coadjoint.errors import AlgebraError
-from coadjoint.exact.dense import Matrix, Vector, transpose
+from coadjoint.exact.dense import Matrix, Vector, add, hat, identity, product, scale, transpose
 from coadjoint.groups.complex_numbers import Complex, exact
 
 
@@ -95,7 +95,7 @@ class Hypercomplex:
 
     def __mul__(self, other: Self | Any) -> Self:
         if not isinstance(other, Hypercomplex):
-            return self.scaled(other)
+            return self.scale(other)
         if type(other) is not type(self):
             raise AlgebraError(
                 f"{self} is a {type(self).__name__} and {other} a {type(other).__name__}; "
@@ -113,9 +113,9 @@ class Hypercomplex:
         )
 
     def __rmul__(self, factor: Any) -> Self:
-        return self.scaled(factor)
+        return self.scale(factor)
 
-    def scaled(self, factor: Any) -> Self:
+    def scale(self, factor: Any) -> Self:
         """The product with a real number."""
         return type(self)(*(factor * component for component in self.components))
 
@@ -177,3 +177,16 @@ class Coquaternion(Hypercomplex):
         """``[[u, v], [v*, u*]]`` with u = w + x i and v = y + z i; norm 1 makes SU(1, 1)."""
         u, v = Complex(self.w, self.x), Complex(self.y, self.z)
         return ((u, v), (v.conjugate, u.conjugate))
+
+
+def euler_rodrigues(q: Quaternion) -> Matrix:
+    """The matrix of ``v -> q v q^-1``.
+
+    ``R(q) = 1 + (2 q0 hat(q) + 2 hat(q)^2) / (q q*)``, so that R(q) R(p) = R(q p).
+
+    Source:
+        Holm (2011), Geometric Mechanics II, section 3.2, there for norm 1.
+    """
+    cross_q = hat(q.vector)
+    turn = add(product(cross_q, cross_q), scale(q.w, cross_q))
+    return add(identity(3), scale(2 / exact(q.norm), turn))

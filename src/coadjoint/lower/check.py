@@ -7,7 +7,7 @@ second rung of the ladder: sharing, factoring and naming may not change a single
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -18,7 +18,7 @@ from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.linear import primes
-from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS
 from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
 from coadjoint.lower.vanishing import vanishing
@@ -40,6 +40,18 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
     if not rows.by:
         return values
     return [slope for value in values for slope in equations.setting.field.gradient(value, rows.by)]
+
+
+def check_programs(equations: Equations, programs: Mapping[str, Program]) -> None:
+    """Hold each function to the limits of size, and to the equations that it was lowered from.
+
+    Raises:
+        LimitError: One is too large.
+        CrossCheckError: Lowering changed a value.
+    """
+    for program in programs.values():
+        check_size(equations, program)
+        check_inverse(equations, program)
 
 
 def check_size(equations: Equations, program: Program) -> None:
@@ -135,5 +147,4 @@ def _call(function: str, argument: Residue, prime: int) -> Residue:
 
     Lowering knows no relation between values of functions, so it may not need any.
     """
-    seed = f"{function} {argument.value}"
-    return Residue(random.Random(seed).randrange(1, prime), prime)  # noqa: S311
+    return draw(f"{function} {argument.value}", prime)

@@ -59,7 +59,7 @@ def residual_slopes(equations: Equations, variables: Sequence[str]) -> list[Resi
 
 
 def factors_of_solves(equations: Equations) -> list[dict[tuple[int, int], Element]]:
-    """L and one over D of every solve, by row and column."""
+    """L, U and one over D of every solve, by row and column."""
     field, definitions = equations.setting.field, dict(equations.exact.definitions)
     return [factors(field, solve, definitions) for solve in equations.exact.solves]
 
@@ -166,14 +166,14 @@ def _solved(
     residuals: Sequence[Sequence[int]],
     factors: Mapping[tuple[int, int], int],
 ) -> dict[str, Slopes]:
-    """``x' = A^-1 r`` by L and D for each variable: slopes by unknown.
+    """``x' = A^-1 r`` by L, D and U for each variable: slopes by unknown.
 
     Args:
-        graph: Where L and D are.
+        graph: Where L, D and U are.
         solve: What is solved.
         variables: Their names.
         residuals: r, a row for each unknown, a column for each variable.
-        factors: L below the diagonal, zeros left out, and one over D on it.
+        factors: L below the diagonal, U above it and one over D on it, zeros left out.
     """
     size = range(len(solve.names))
 
@@ -189,7 +189,7 @@ def _solved(
             y.append(less(residuals[i][column], before))
         x: dict[int, int] = {}
         for i in reversed(size):
-            after = [(factors[k, i], x[k]) for k in size[i + 1 :] if (k, i) in factors]
+            after = [(factors[i, k], x[k]) for k in size[i + 1 :] if (i, k) in factors]
             x[i] = less(graph.multiply(y[i], factors[i, i]), after)
             if not graph.is_zero(x[i]):
                 slopes[solve.names[i]][component] = x[i]

@@ -116,23 +116,20 @@ class ReducedBracket:
         Fields that move themselves, ``dD/dt``, add ``<p, dD/dt>``.
         """
         setting, velocities = self.found.setting, self.found.frame.velocities
-        forces = [self.basis.closed(f) for f in external_forces(setting, velocities)]
-        p = [self.basis.closed(slope) for slope in mechanics(setting).momenta]
-        driven = {
-            name: self.field.sum(
-                [
-                    *(a * f for a, f in zip(along, forces, strict=True) if a and f),
-                    *(explicit(setting, a) * x for a, x in zip(along, p, strict=True)),
-                ]
-            )
-            for name, along in self.basis.fields.items()
-        }
-        return [
-            motion.rate(self.momenta.get(name, self.field[name]))
-            - self.field.sum(a * b for a, b in zip(row, self.slopes, strict=True) if a and b)
-            - driven.get(name, self.field.zero)
-            for name, row in zip(self.names, self.tensor, strict=True)
-        ]
+        forces, momenta = external_forces(setting, velocities), mechanics(setting).momenta
+        defects = []
+        for name, row in zip(self.names, self.tensor, strict=True):
+            along = self.basis.fields.get(name, ())  # none of a position
+            driven = [
+                *(a * f for a, f in zip(along, forces, strict=False) if a and f),
+                *(explicit(setting, a) * x for a, x in zip(along, momenta, strict=False)),
+            ]
+            moved = self.field[name]
+            if along:
+                (moved,) = momenta_along(setting, [along])
+            turned = self.field.sum(a * b for a, b in zip(row, self.slopes, strict=True) if a and b)
+            defects.append(motion.balance(moved, self.field.sum(driven), along) - turned)
+        return defects
 
     # -- the Jacobi identity ------------------------------------------------------------
 

@@ -16,7 +16,13 @@ from coadjoint.derive import Setting
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
+from coadjoint.prove.zero import (
+    Decision,
+    Discovery,
+    Examined,
+    decide_zero,
+    refute_at_a_point,
+)
 
 #: Longest value that a statement shows; beyond it a point shows as much.
 SHOWN = 72
@@ -73,6 +79,17 @@ def first_nonzero(
         if own.verdict is Verdict.REFUTED:
             return name, own
     raise AssertionError("one of several values is not zero, and each of them is")
+
+
+def nonzero_at_a_point(
+    values: Mapping[str, Element], field: Field, where: Ideal
+) -> tuple[str, Decision]:
+    """The same, where a point is looked for before any normal form is taken."""
+    for name, value in values.items():
+        refutation = refute_at_a_point(value, field, where)
+        if refutation is not None:
+            return name, refutation
+    return first_nonzero(values, field, where)
 
 
 def shown(field: Field, value: Element) -> str:

@@ -21,13 +21,13 @@ import random
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import lcm
 from typing import Any
 
 from sympy import factorint
 
 from coadjoint.exact import Element, Field
-from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.lattices import coordinates, lattice_basis
+from coadjoint.exact.residues import Residue, residue, square_root
 from coadjoint.exact.written import Adjoined
 
 #: Numbers under square roots up to which prime factors are looked for.
@@ -184,13 +184,13 @@ class Functions:
         """
         present = {key for vector in vectors for key in vector}
         keys = sorted(present, key=lambda key: (not self._moves(key), key))
-        common = lcm(*(x.denominator for vector in vectors for x in vector.values()))
-        rows = [[int(vector.get(key, 0) * common) for key in keys] for vector in vectors]
-        basis = echelon_of_integers(rows)
+        rows = [tuple(vector.get(key, Fraction(0)) for key in keys) for vector in vectors]
+        basis = lattice_basis(rows)
         pivots = [next(n for n, x in enumerate(row) if x) for row in basis]
+        whole = (coordinates(row, basis) for row in rows)
         return Lattice(
             tuple(self._moves(keys[pivot]) for pivot in pivots),
-            tuple(_multiples(row, basis) for row in rows),
+            tuple({n: x for n, x in enumerate(row) if x} for row in whole),
         )
 
     def _moves(self, key: Any) -> bool:
@@ -356,53 +356,6 @@ def _product(a: Turn, b: Turn) -> Turn:
 def _inverse(a: Turn) -> Turn:
     norm = a[0] * a[0] + a[1] * a[1]
     return a[0] / norm, -a[1] / norm
-
-
-def square_root(number: Residue) -> Residue:
-    """A square root modulo a prime that is 3 modulo 4.
-
-    Raises:
-        ZeroDivisionError: There is none.
-    """
-    prime = number.prime
-    root = Residue(pow(number.value, (prime + 1) // 4, prime), prime)
-    if root * root != number:
-        raise ZeroDivisionError(f"no square root of {number.value} modulo {prime}")
-    return root
-
-
-def echelon_of_integers(rows: Iterable[Sequence[int]]) -> list[list[int]]:
-    """A basis of all whole combinations of some rows, in echelon form, zeros left out.
-
-    >>> echelon_of_integers([[4, 0], [6, 1]])
-    [[2, 1], [0, -2]]
-    """
-    waiting = [list(row) for row in rows if any(row)]
-    basis = list[list[int]]()
-    for column in range(len(waiting[0]) if waiting else 0):
-        while len(nonzero := [row for row in waiting if row[column]]) > 1:
-            least = min(nonzero, key=lambda row: abs(row[column]))
-            for row in nonzero:
-                if row is not least:
-                    factor = row[column] // least[column]
-                    row[:] = [x - factor * y for x, y in zip(row, least, strict=True)]
-        for row in nonzero:
-            basis.append(row)
-            waiting = [other for other in waiting if other is not row and any(other)]
-    return basis
-
-
-def _multiples(row: Sequence[int], basis: Sequence[Sequence[int]]) -> Multiples:
-    """A row as whole multiples of those of an echelon form that spans it."""
-    rest, found = list(row), Multiples()
-    for place, member in enumerate(basis):
-        pivot = next(n for n, x in enumerate(member) if x)
-        factor, left = divmod(rest[pivot], member[pivot])
-        assert not left, "the basis spans the row"
-        rest = [x - factor * y for x, y in zip(rest, member, strict=True)]
-        if factor:
-            found[place] = factor
-    return found
 
 
 def _distinct(arguments: Iterable[Element]) -> list[Element]:

@@ -18,29 +18,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from fractions import Fraction
 from functools import cached_property, reduce
-from itertools import combinations, islice
-from math import isqrt
+from itertools import islice
+from operator import mul
 from typing import Any
 
 from sympy.polys.groebnertools import groebner
-from sympy.polys.orderings import grevlex, lex
+from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.prove.points import Branch, Points, Values, real_function
-from coadjoint.prove.signs import Signs
+from coadjoint.exact.irreducible import FACTORED, all_factors, numerator
+from coadjoint.exact.signs import Signs, is_factor
+from coadjoint.prove.points import Branch, Points, Values
 
 #: Branches of a zero set that are told apart; beyond them relations stay as they are.
 BRANCHES = 32
 #: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
 SLOPE = 4
-
-#: Symbols that are eliminated at a time by the relations of functions, to find factors.
-ELIMINATED = 2
-#: Addends of a relation that is factored; larger ones may take minutes.
-FACTORED = 400
 
 _Numerators = dict[tuple[int, ...], PolyElement]
 
@@ -76,7 +71,7 @@ class Ideal:
         self.field = field
         self.text = text
         self.nonzero = tuple(nonzero)
-        self._signs = Signs(field)
+        self._signs = Signs(field, strict=True, more=field.region.bounds)
         parameters = field.region.parameters
         self._variables = frozenset(variables or field.names) - parameters
         self._declared: Sequence[Element] | None = None  # relations of parameters, once these split
@@ -85,8 +80,8 @@ class Ideal:
         self.given = tuple(found)
         self._between_parameters = [each for each in found if self._is_generic(each)]
         self.relations = tuple(map(self._stripped, found))
-        numerators = list(map(_numerator, self.relations))
-        numerators += map(_numerator, self._of_functions())
+        numerators = list(map(numerator, self.relations))
+        numerators += map(numerator, self._of_functions())
         self._places = sorted(
             {n for p in numerators for exponents in p for n, e in enumerate(exponents) if e}
         )
@@ -118,28 +113,28 @@ class Ideal:
         if combined == 0 or not self._basis:
             return combined
         terms: dict[tuple[int, ...], Any] = {}
-        numerator = _numerator(combined)
-        for outer, inner in self._coefficients(numerator).items():
+        top = numerator(combined)
+        for outer, inner in self._coefficients(top).items():
             for exponents, value in inner.rem(self._basis).terms():
                 whole = list(outer)
                 for place, exponent in zip(self._places, exponents, strict=True):
                     whole[place] = exponent
                 terms[tuple(whole)] = value
-        names = [str(symbol) for symbol in numerator.ring.symbols]  # functions among them
+        names = [str(symbol) for symbol in top.ring.symbols]  # functions among them
         return self.field.normal(self.field.polynomial(names, terms))
 
     def contains(self, element: Element) -> bool:
         """Whether an element vanishes wherever the relations do, as the ideal shows."""
         return bool(self.remainder(element) == 0)
 
-    def _coefficients(self, numerator: PolyElement) -> _Numerators:
+    def _coefficients(self, top: PolyElement) -> _Numerators:
         """A polynomial as one in the symbols that no relation has; its coefficients by exponents.
 
         Each is reduced by itself, among the few symbols of the relations: for two coupled bodies,
         one of 30 symbols whole takes a hundred times as long.
         """
         parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-        for exponents, value in numerator.terms():
+        for exponents, value in top.terms():
             outer = [0 if n in self._places else e for n, e in enumerate(exponents)]
             inner = tuple(exponents[n] for n in self._places)
             parts.setdefault(tuple(outer), {})[inner] = value
@@ -167,13 +162,13 @@ class Ideal:
         for factor in factors:
             if factor not in kept:
                 self._exclude(factor)
-        return _product(kept)
+        return reduce(mul, kept)
 
     def may_vanish(self, element: Element) -> bool:
         """Whether a polynomial in what moves may vanish, as far as we know, beside what does."""
         value = self.field.normal(element)  # cos^2 + sin^2 is 1
         moves = not self.field.reach(value) <= self.field.region.parameters
-        factors = list(self._all_factors(value)) or [value]
+        factors = list(all_factors(self.field, value)) or [value]
         return moves and not all(self._signs.is_nonzero(each, self.excluded) for each in factors)
 
     # -- branches of the zero set ---------------------------------------------------------
@@ -212,58 +207,11 @@ class Ideal:
 
     def _vanishing_factor(self, element: Element, branch: Branch, rest: Ideal) -> Element:
         """The factor that makes an element vanish on a branch; all of it if no factor does."""
-        for factor in self._all_factors(element):
+        for factor in all_factors(self.field, element):
             with suppress(ZeroDivisionError):
                 if rest.contains(self._on(branch, factor)):
                     return factor
         return element
-
-    def _all_factors(self, element: Element) -> Iterator[Element]:
-        """The irreducible factors of a numerator that is not too long.
-
-        Modulo the relations of functions one form of it may have factors where another has none:
-        ``x^2 - y^2 c^2`` has two, ``x^2 - y^2 + y^2 s^2`` has one.
-        """
-        numerator = _numerator(element)
-        if len(numerator) > FACTORED:
-            return
-        forms = filter(lambda form: len(form) <= FACTORED, self._other_forms(numerator))
-        split = (list(_irreducible(form)) for form in (numerator, *forms))
-        whole = next(split)
-        found = whole if len(whole) > 1 else next((f for f in split if len(f) > 1), whole)
-        for names, factor in found:
-            part = self.field.normal(self.field.polynomial(names, dict(factor.terms())))
-            yield from self._all_factors(part) if len(found) > 1 else (part,)
-
-    def _other_forms(self, numerator: PolyElement) -> Iterator[PolyElement]:
-        """A numerator with other symbols eliminated by the relations of its functions."""
-        present = numerator.degrees()
-        places = {str(symbol): n for n, symbol in enumerate(numerator.ring.symbols)}
-        choices = [
-            (place, power, value)
-            for relation in self._relations_in(numerator, places)
-            for place, power, value in _eliminations(relation)
-            if present[place] >= power
-        ]
-        for count in range(1, min(len(choices), ELIMINATED) + 1):
-            for chosen in combinations(choices, count):
-                yield reduce(_eliminated, chosen, numerator)
-
-    def _relations_in(
-        self, numerator: PolyElement, places: Mapping[str, int]
-    ) -> Iterator[PolyElement]:
-        """``s^2 + c^2 - 1``, and ``h^2 - u`` of ``h = sqrt(u)``, where a numerator has them."""
-        present, gens = numerator.degrees(), numerator.ring.gens
-        for known in self.field.adjoined.values():
-            own = places[known.generator]
-            if known.function == "sin":
-                other = places[known.partner]
-                if present[own] > 0 or present[other] > 0:
-                    yield gens[own] ** 2 + gens[other] ** 2 - 1
-            if known.function == "sqrt" and present[own] > 0 and known.argument != 0:
-                (argument,) = known.argument.combined().parts
-                if not argument.powers:
-                    yield gens[own] ** 2 - argument.numer
 
     @cached_property
     def some_points(self) -> tuple[tuple[Points, Values], ...]:
@@ -321,7 +269,7 @@ class Ideal:
         field, relation = self.field, left[n]
         # An irreducible relation alone generates a prime ideal, on all of which vanishes what does
         # where the slope is not 0; with functions it need not be irreducible.
-        factored = len(_numerator(relation)) <= FACTORED
+        factored = len(numerator(relation)) <= FACTORED
         alone = len(left) == 1 and factored and field.function_free(relation)
         if divides and not alone and size > SLOPE:
             yield Branch(branch.solved, tuple(left), branch.nonzero)
@@ -366,18 +314,25 @@ class Ideal:
 
     def _factors(self, relation: Element, nonzero: Sequence[Element] = ()) -> list[Element]:
         """The irreducible factors of a numerator that may vanish, each once."""
-        numerator, found = _numerator(relation), list[Element]()
-        if len(numerator) > FACTORED:
+        found = list[Element]()
+        if len(numerator(relation)) > FACTORED:
             return [relation]
-        for element in self._all_factors(relation):
+        for element in all_factors(self.field, relation):
             if self._signs.is_nonzero(element, nonzero):
                 continue
-            if self._signs.is_factor(element, self.nonzero):
+            if is_factor(self.field, element, self.nonzero):
                 self._exclude(element)
                 continue
-            root = self._signs.argument(element)  # sqrt(u) = 0 where u = 0
+            root = self._radicand(element)  # sqrt(u) = 0 where u = 0
             found += self._factors(root, nonzero) if root is not None else [element]
         return [each for n, each in enumerate(found) if each not in found[:n]]
+
+    def _radicand(self, element: Element) -> Element | None:
+        """The argument of an element that is a square root."""
+        for known in self.field.adjoined.values():
+            if known.function == "sqrt" and element == self.field[known.generator]:
+                return known.argument
+        return None
 
     def _may_vanish(self, factor: Element) -> bool:
         """Whether a factor is no relation between parameters that only the others bring about."""
@@ -413,158 +368,6 @@ class Ideal:
     def on_zero_set(self, element: Element) -> Element:
         """An element with the solved symbols replaced."""
         return self.field.substitute(element, self.solved)
-
-    def completed(self, point: Mapping[str, Fraction]) -> dict[str, Fraction]:
-        """A point of the zero set from values of the symbols that are free, without functions.
-
-        Raises:
-            ZeroDivisionError: The solved symbols are not defined there.
-        """
-        values = {
-            name: self.field.evaluate(root, point, Fraction, real_function)
-            for name, root in self.solved.items()
-        }
-        return {**point, **values}
-
-
-def _product(factors: Sequence[Element]) -> Element:
-    first, *others = factors
-    for factor in others:
-        first = first * factor
-    return first
-
-
-def _numerator(element: Element) -> PolyElement:
-    """The numerator of a nonzero element."""
-    (quotient,) = element.combined().parts
-    return quotient.numer
-
-
-def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
-    """The irreducible factors, with the names of their symbols: of those that occur alone."""
-    places = [n for n, degree in enumerate(polynomial.degrees()) if degree > 0]
-    symbols = [polynomial.ring.symbols[n] for n in places]
-    if not symbols:
-        return
-    small = PolyRing(symbols, polynomial.ring.domain, lex)
-    terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
-    for factor in factors_of(small.from_dict(terms)):
-        yield list(map(str, symbols)), factor
-
-
-#: A symbol by its place, a power of it, and what that is.
-Elimination = tuple[int, int, PolyElement]
-
-
-def _eliminations(relation: PolyElement) -> Iterator[Elimination]:
-    """The symbols x of which a relation has ``x`` or ``x^2`` alone, times a number: the root last.
-
-    >>> from sympy import QQ
-    >>> ring = PolyRing(["x", "h"], QQ, lex)
-    >>> x, h = ring.gens
-    >>> list(_eliminations(h**2 - x**2 - 1))
-    [(0, 2, h**2 - 1), (1, 2, x**2 + 1)]
-    """
-    for place, degree in enumerate(relation.degrees()):
-        parts = _powers(relation, place)
-        if degree in (1, 2) and len(parts) - (0 in parts) == 1 and parts[degree].is_ground:
-            yield place, degree, -parts.get(0, relation.ring.zero) / parts[degree].LC
-
-
-def _eliminated(polynomial: PolyElement, elimination: Elimination) -> PolyElement:
-    """A polynomial with a power of a symbol replaced."""
-    place, degree, value = elimination
-    symbol, found = polynomial.ring.gens[place], polynomial.ring.zero
-    for power, part in _powers(polynomial, place).items():
-        found += part * symbol ** (power % degree) * value ** (power // degree)
-    return found
-
-
-def factors_of(polynomial: PolyElement) -> list[PolyElement]:
-    """The irreducible factors of a polynomial with whole coefficients, each once.
-
-    >>> from sympy import QQ
-    >>> ring = PolyRing(["x", "y"], QQ, lex)
-    >>> x, y = ring.gens
-    >>> factors_of(x**2 * (x - y) * (x + y) / 2)
-    [x, x - y, x + y]
-    """
-    found = list[PolyElement]()
-    for factor in _factors_of(polynomial):
-        whole = factor.primitive()[1]
-        whole = -whole if whole.LC < 0 else whole
-        found += [whole] if whole not in found else []
-    return sorted(found, key=_place_of)
-
-
-def _place_of(factor: PolyElement) -> tuple[Any, ...]:
-    """What sorts factors: symbols by themselves come first, in their order."""
-    if len(factor) == 1:
-        return 0, tuple(-degree for degree in factor.degrees())
-    return 1, len(factor.to_dense()), factor.to_dense()
-
-
-def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
-    r"""The irreducible factors of a polynomial, in a time that does not rest on luck.
-
-    One that is linear in a symbol has no factors but those of all its coefficients. Of a quadratic
-    one the discriminant is a square if it has others: ``4 A p = (2 A x + B - D) (2 A x + B + D)``.
-    SymPy lifts factors from random points, and takes minutes where these are badly chosen.
-    """
-    degrees = [(degree, n) for n, degree in enumerate(polynomial.degrees()) if degree > 0]
-    if not degrees:
-        return
-    degree, place = min(degrees)
-    if degree > 2:
-        yield from (factor for factor, _ in polynomial.factor_list()[1])
-        return
-    content, own = _parted(polynomial, place)
-    yield from _factors_of(content)
-    if degree == 1:
-        yield own
-        return
-    symbol, parts = polynomial.ring.gens[place], _powers(own, place)
-    a, b, c = (parts.get(power, polynomial.ring.zero) for power in (2, 1, 0))
-    root = _square_root(b**2 - 4 * a * c)
-    if root is None:
-        yield own
-        return
-    yield _parted(2 * a * symbol + b - root, place)[1]
-    yield _parted(2 * a * symbol + b + root, place)[1]
-
-
-def _powers(polynomial: PolyElement, place: int) -> dict[int, PolyElement]:
-    """The coefficients of the powers of a symbol."""
-    found: dict[int, dict[tuple[int, ...], Any]] = {}
-    for exponents, value in polynomial.terms():
-        rest = (*exponents[:place], 0, *exponents[place + 1 :])
-        found.setdefault(exponents[place], {})[rest] = value
-    return {power: polynomial.ring.from_dict(terms) for power, terms in found.items()}
-
-
-def _parted(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
-    """The greatest factor without a symbol, and the rest."""
-    content = polynomial.ring.zero
-    for part in _powers(polynomial, place).values():
-        content = content.gcd(part)
-    return content, polynomial.exquo(content)
-
-
-def _square_root(polynomial: PolyElement) -> PolyElement | None:
-    """The polynomial whose square is a given one; None if there is none."""
-    if not polynomial:
-        return polynomial
-    number, parts = polynomial.sqf_list()
-    whole = Fraction(int(number.numerator), int(number.denominator))
-    if whole < 0 or any(power % 2 for _, power in parts):
-        return None
-    top, bottom = isqrt(whole.numerator), isqrt(whole.denominator)
-    if Fraction(top, bottom) ** 2 != whole:
-        return None
-    root = polynomial.ring.one * polynomial.ring.domain(top, bottom)
-    for part, power in parts:
-        root *= part ** (power // 2)
-    return root
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:

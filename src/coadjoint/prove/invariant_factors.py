@@ -9,24 +9,20 @@ each point.
 Candidates are the velocities, the factors of their rates, and the factors of the determinant of
 :math:`\eta, \dot\eta, \ddot\eta, \dots`, which every invariant linear function of the velocities
 divides (the extactic polynomial of Lagutinskii; Christopher, Llibre and Pereira 2007).
-Comes in: the rates of a constrained motion. Goes out: factors, each of which passed the test.
+Comes in: a motion. Goes out: factors, each of which passed the test.
 Read next: `coadjoint.prove.measures`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import cached_property, reduce
 
-from sympy.polys.domains import QQ
-from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyElement, PolyRing
-
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.element import remove_factor
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.exact.irreducible import find_factors, numerator
+from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import leading
 
 #: Terms of a polynomial that is factored, and symbols of the state in it: more may take minutes.
@@ -38,45 +34,6 @@ LONGEST = 200
 SIZE = 3
 
 
-def factors(field: Field, element: Element, known: Sequence[Element] = ()) -> list[Element]:
-    """The irreducible factors of the numerator of an element, without numbers and repetition.
-
-    Known ones are divided out first: to find factors of many terms takes far longer.
-
-    >>> field = Field(["x", "y"])
-    >>> x, y = field["x"], field["y"]
-    >>> factors(field, (x**2 - y**2) ** 3 / x)
-    [x - y, x + y]
-    >>> factors(field, (x**2 - y**2) ** 3 / x, [x + y, x - 2])
-    [x + y, x - y]
-    """
-    if element == 0:
-        return []
-    rest, found = _numerator(element), list[Element]()
-    for divisor in (p for p in map(_numerator, known) if not p.is_ground):
-        count, rest = remove_factor(rest, divisor)
-        found += [_polynomial(field, divisor)] * bool(count)
-    places = [n for n, e in enumerate(map(max, zip(*rest, strict=True))) if e]
-    if not places:
-        return found
-    # among the symbols that occur: one nesting for each of a hundred others takes very long
-    ring = PolyRing([rest.ring.symbols[n] for n in places], QQ, lex)
-    whole = ring.from_dict({tuple(e[n] for n in places): x for e, x in rest.items()})
-    return [*found, *(_polynomial(field, factor) for factor, _ in whole.factor_list()[1])]
-
-
-def _polynomial(field: Field, p: PolyElement) -> Element:
-    """A polynomial in some symbols of a field, as an element of it."""
-    names = [str(symbol) for symbol in p.ring.symbols]
-    return field.polynomial(names, {e: Fraction(str(x)) for e, x in p.items()})
-
-
-def _numerator(element: Element) -> PolyElement:
-    """The numerator of a nonzero element."""
-    (quotient,) = element.combined().parts
-    return quotient.numer
-
-
 class InvariantFactors:
     """The search for invariant factors of one motion.
 
@@ -85,9 +42,9 @@ class InvariantFactors:
         allowed: The velocities that kept constraints give in terms of the others.
     """
 
-    def __init__(self, motion: ConstrainedRates, allowed: Mapping[str, Element]) -> None:
+    def __init__(self, motion: Motion, allowed: Mapping[str, Element]) -> None:
         self.motion, self.field, self.allowed = motion, motion.field, allowed
-        self.free = [n for n in motion.distribution.independent if n not in allowed]
+        self.free = [n for n in motion.fibre if n not in allowed]
 
     def short(self) -> list[Element]:
         """Those among the velocities and the factors of the common divisor of their rates."""
@@ -114,7 +71,7 @@ class InvariantFactors:
         Of an integral every power is one, and none of them changes a measure.
         """
         rate = self._rate(factor)
-        return rate != 0 and remove_factor(_numerator(rate), _numerator(factor), 1)[0] == 1
+        return rate != 0 and remove_factor(numerator(rate), numerator(factor), 1)[0] == 1
 
     def _rate(self, function: Element) -> Element:
         """The rate of a function on the constraints that are kept."""
@@ -127,23 +84,23 @@ class InvariantFactors:
 
     def _shared(self, velocities: Sequence[Element]) -> list[Element]:
         """The factors of the greatest common divisor of the rates."""
-        numerators = [_numerator(rate) for rate in self.rates if rate != 0]
+        numerators = [numerator(rate) for rate in self.rates if rate != 0]
         if not numerators or max(map(len, numerators)) > LONGEST:
             return []
         divisor = reduce(lambda p, q: p.gcd(q), numerators)
-        whole = _polynomial(self.field, divisor)
-        return factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
+        whole = self.field.from_polynomial(divisor)
+        return find_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
 
     def _factored(self) -> Iterator[Element]:
         """The factors of the rates and of the determinant."""
         for element in (*self.rates, *self._determinant()):
             if self._is_short(element):
-                yield from factors(self.field, element)
+                yield from find_factors(self.field, element)
 
     def _is_short(self, element: Element) -> bool:
         """Whether a function can be factored in little time."""
         moving = {*self.motion.equations.setting.state} & self.field.reach(element)
-        return element != 0 and len(_numerator(element)) <= TERMS and len(moving) <= SYMBOLS
+        return element != 0 and len(numerator(element)) <= TERMS and len(moving) <= SYMBOLS
 
     def _determinant(self) -> Iterator[Element]:
         """``det(eta, d eta/dt, ...)``, if there are few velocities with short rates."""

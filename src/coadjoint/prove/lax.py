@@ -89,7 +89,7 @@ def _about_integrals(
     spec, names = first.spec, [name for name, _ in found.named]
     rank = _rank(first, [each.value for each in found.coefficients])
     casimirs = [f"casimir{n}" for n in range(1, len(spec.casimirs) + 1)]
-    whole = ", ".join([*casimirs, "energy", *names])
+    whole = ", ".join([*casimirs, *["energy"] * first.setting.has_energy, *names])
     yield (
         f"{rank} independent integrals: the coefficients of tr L^k, k = 1 to {len(found.pair.L)}, "
         f"are functions of {whole}",

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Final
 
-from coadjoint.declared import Bound, Quantity
+from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement, operation, walk
 from coadjoint.render.environment import render_templates
@@ -30,46 +30,6 @@ NO_LICENSE: Final = "The licence of this file is that of its spec; coadjoint cla
 
 #: Members that the NumPy kernel evaluates at a time (measured: docs/decisions/numpy-kernels.md).
 CHUNK: Final = 11_000
-
-
-@dataclass(frozen=True)
-class KernelContext:
-    """All that the generated files of one system say.
-
-    Attributes:
-        name: Name of the system, the prefix of its C functions.
-        spec: Path of the spec for readers, relative: ``derivations/heavy_top.toml``.
-        spec_sha256: Hash of the spec's bytes; part of the id.
-        license: SPDX expression of the spec's licence, or "".
-        routes: How the equations were derived, one line each.
-        equations: The equations, one line each, in safe names and operators only.
-        state: Quantities of the state, in order.
-        parameters: Quantities of the parameters, in order.
-        observables: Quantities that the function ``observables`` returns, in order.
-        programs: The functions, in order.
-        supported: How many claims are numerically supported and not proved, as the spec accepts.
-        domain: What the rows of the function ``domain`` are; empty where there is none.
-        reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
-            where there is none.
-        inputs: Quantities of the inputs, in order; empty where there are none.
-        time: The time, if the functions take it.
-    """
-
-    name: str
-    spec: str
-    spec_sha256: str
-    license: str
-    routes: tuple[str, ...]
-    equations: tuple[str, ...]
-    state: tuple[Quantity, ...]
-    parameters: tuple[Quantity, ...]
-    observables: tuple[Quantity, ...]
-    programs: tuple[Program, ...]
-    supported: int = 0
-    domain: tuple[Bound, ...] = ()
-    reconstructed: tuple[Quantity, ...] = ()
-    inputs: tuple[Quantity, ...] = ()
-    time: tuple[Quantity, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,28 +81,18 @@ class Function:
     zeros: tuple[str, ...]
 
 
-def render_system(context: KernelContext, extra: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The files of one generated folder.
-
-    Args:
-        context: What the files say.
-        extra: Further texts of the folder by file name (``certificate.json``), part of the id.
-
-    Returns:
-        Text by file name, ``extra`` included.
-    """
-    extra = dict(extra or {})
-    identity = fingerprint(context.spec_sha256, {**_render(context, "0" * 16), **extra})
-    return {**_render(context, identity), **extra}
+def render_system(context: KernelContext) -> dict[str, str]:
+    """The kernels of one generated folder and the package that declares them, by file name."""
+    return _render(context, fingerprint(_render(context, "0" * 16)))
 
 
-def fingerprint(spec_sha256: str, texts: Mapping[str, str]) -> str:
-    """Sixteen hexadecimal digits that change with any byte of the spec or of a file.
+def fingerprint(texts: Mapping[str, str]) -> str:
+    """Sixteen hexadecimal digits that change with any byte of a file.
 
-    >>> fingerprint("", {"a": "b"}) == fingerprint("", {"ab": ""})
+    >>> fingerprint({"a": "b"}) == fingerprint({"ab": ""})
     False
     """
-    content = json.dumps([spec_sha256, sorted(texts.items())])
+    content = json.dumps(sorted(texts.items()))
     return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
@@ -249,7 +199,9 @@ def _wrapped(lines: Iterable[str]) -> list[str]:
 
 def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
     """The components of an input array, row by row from ``first`` on."""
-    named = [(name, quantity.unit) for quantity in quantities for name in quantity.components]
+    named = [
+        (name, quantity.unit_of(name)) for quantity in quantities for name in quantity.components
+    ]
     return [Row(index, name, unit) for index, (name, unit) in enumerate(named, first)]
 
 

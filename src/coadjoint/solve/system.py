@@ -10,7 +10,8 @@ computes.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
@@ -312,6 +313,17 @@ def load_folder(folder: Path) -> System:
             path=str(folder),
         )
     return module.system  # type: ignore[no-any-return]
+
+
+@contextmanager
+def load_texts(texts: Mapping[str, str]) -> Iterator[System]:
+    """The System of generated files that are only texts yet, for the length of a block."""
+    from coadjoint.build.cache import working_folder
+
+    with working_folder() as folder:
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        yield load_folder(folder)
 
 
 def _execute(folder: Path, spec: ModuleSpec | None) -> Any:

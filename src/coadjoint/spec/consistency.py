@@ -6,11 +6,11 @@ missing and how to write it. Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
-from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import listed
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
@@ -21,7 +21,7 @@ from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.variables import VARIABLES, Variable
-from coadjoint.spec.tables import TABLES, how_to_write, list_formulas
+from coadjoint.spec.tables import BY_KEY, TABLES, list_formulas
 
 _ENERGIES = ("hamiltonian", "lagrangian")
 #: What a kind of spec has, in words.
@@ -68,127 +68,174 @@ def check_tables(source: Source, file: Any) -> None:
         )
 
 
-def check_routes(source: Source, file: Any) -> None:
-    """Each route starts from tables that are there, and none is there in vain.
+@dataclass(frozen=True)
+class _Obstacle:
+    """Why a route cannot be followed.
+
+    Attributes:
+        problem: A predicate, such as ``has no Lagrangian``.
+        missing: Tables of which one would remove it.
+        cure: What would remove it, as a clause; "" if nothing else does.
+    """
+
+    problem: str
+    missing: tuple[str, ...] = ()
+    cure: str = ""
+
+
+def check_routes(reading: Reading) -> None:
+    """Each route starts from tables that are there, and every table is used by a route.
 
     Raises:
         SpecError: Something is missing for a route, or is used by none.
     """
-    kinds = kinds_of(file)
+    file = reading.file
+    _check_bare(reading)
     for place, route in enumerate(file.routes):
-        start = ROUTES[route]
-        if not set(start.kinds) & set(kinds):
-            others = [name for name, other in ROUTES.items() if set(other.kinds) & set(kinds)]
-            starts = " or ".join(_KINDS[kind] for kind in start.kinds)
-            raise source.fault(
+        obstacles = list(_find_obstacles(file, route))
+        if obstacles:
+            others = _list_fitting(file)
+            raise reading.source.fault(
                 ("routes", place),
-                f"the route {route} starts from {starts}, which is not there",
+                f"the route {route} {obstacles[0].problem}",
                 found=route,
-                expected=f"one of {listed(others)}",
+                expected=f"one of {listed(others)}" if others else "a route that fits the tables",
+                hint=_advise(reading, obstacles, others),
             )
-        if start.table and not getattr(file, start.table):
-            raise _missing(source, f"the route {route} has no table [{start.table}]", start.table)
-        if not start.takes_driving and (file.inputs or file.time):
-            raise source.fault(
-                ("routes", place),
-                f"the route {route} knows neither inputs nor time",
-                found=route,
-                expected="a Lax pair that is the same at all times",
-                hint=f'Remove "{route}", or make the inputs parameters.',
-            )
-        energies = energies_of(route, kinds)
-        if energies and not any(getattr(file, each) for each in energies):
-            names = [each.title() for each in energies]
-            lacks = f"no {names[0]}"
-            if len(names) > 1:
-                lacks = "neither " + " nor ".join(f"a {name}" for name in names)
-            raise _missing(source, f"the route {route} has {lacks}", energies[0])
-        for table in TABLES:
-            if table.acts and getattr(file, table.key) and table.key not in start.options:
-                raise _unknown_to(source, place, route, table.key, kinds)
-    _check_first(source, file)
-    _check_use(source, file)
+    _check_first(reading.source, file)
+    _check_use(reading.source, file)
 
 
-def _unknown_to(
-    source: Source, place: int, route: str, table: str, kinds: tuple[str, ...]
-) -> CoadjointError:
-    """A route that would leave out what acts on the motion, and so derive another one."""
-    others = [
-        name
-        for name, other in ROUTES.items()
-        if table in other.options and set(other.kinds) & set(kinds)
-    ]
-    return source.fault(
-        ("routes", place),
-        f"the route {route} knows no {table}",
-        found=route,
-        expected=f"one of {listed(others)} beside [{table}]",
-        hint=f'Write "{others[0]}" in its place, or remove [{table}].',
-    )
+def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
+    """Why a route cannot be followed with the tables of a spec."""
+    start, kinds = ROUTES[route], kinds_of(file)
+    if not set(start.kinds) & set(kinds):
+        starts = " or ".join(_KINDS[kind] for kind in start.kinds)
+        yield _Obstacle(f"starts from {starts}, which is missing")
+    if start.table and not getattr(file, start.table):
+        yield _Obstacle(f"has no table [{start.table}]", (start.table,))
+    if not start.takes_driving and (file.inputs or file.time):
+        yield _Obstacle("knows neither inputs nor time")
+    energies = energies_of(route, kinds)
+    if not start.needs_energy:
+        if not _is_bare(file) and kinds == ("configuration",):
+            yield _Obstacle(
+                "knows no bracket of coordinates with velocities or momenta",
+                cure="declare the momenta as coordinates, with [poisson] and "
+                'canonical = [["q", "p"]]',
+            )
+    elif energies and not any(getattr(file, each) for each in energies):
+        names = [each.title() for each in energies]
+        one_of = f"no {names[0]}" if len(names) == 1 else f"neither a {' nor a '.join(names)}"
+        yield _Obstacle(f"has {one_of}", energies)
+    for table in TABLES:
+        if table.acts and getattr(file, table.key) and table.key not in start.options:
+            yield _Obstacle(f"knows no {table.key}", cure=f"remove [{table.key}]")
+
+
+def _is_bare(file: Any) -> bool:
+    """Whether a Lax pair alone moves the state."""
+    return bool(file.lax) and not (file.hamiltonian or file.lagrangian or file.newton)
+
+
+def _check_bare(reading: Reading) -> None:
+    """Where a Lax pair alone moves the state, there are no velocities."""
+    velocities = [each.name for each in VARIABLES.of(reading) if each.role == "velocity"]
+    if _is_bare(reading.file) and velocities:
+        raise reading.at_key(
+            ("variables", velocities[0]),
+            f"the velocity {velocities[0]!r} has no energy to follow from",
+            velocities[0],
+            "a Lax pair of the state alone, or a table [hamiltonian] beside it",
+            "Write M in variables of the state, or declare [hamiltonian].",
+        )
+
+
+def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
+    """The routes that can be followed with the tables of a spec, or that can be the first.
+
+    They move the same state: velocities along a frame, or momenta and coordinates.
+    """
+    moves = [name for name, each in ROUTES.items() if each.in_frame == is_in_frame(file)]
+    if first:
+        roles = {part.role for part in file.variables.values()}
+        paired = file.poisson is not None or "momentum" in roles or file.lagrangian is None
+        moves = [name for name in moves if ROUTES[name].emitted]
+        moves = [name for name in moves if name != "canonical" or paired]
+    return [name for name in moves if not any(_find_obstacles(file, name))]
+
+
+def _advise(reading: Reading, obstacles: Sequence[_Obstacle], others: Sequence[str]) -> str:
+    """What to do about a route that cannot be followed; a single obstacle may be removed."""
+    routes = reading.file.routes
+    route = next(each for each in routes if any(_find_obstacles(reading.file, each)))
+    ways = [f'remove "{route}"'] if any(each in others for each in routes) else []
+    if not ways and others:
+        ways = [f'write "{others[0]}" in its place']
+    (obstacle, *more) = obstacles
+    if not more:
+        ways += list(filter(None, (_write_table(reading, each) for each in obstacle.missing)))[:1]
+        ways += [obstacle.cure] if obstacle.cure else []
+    text = ", or ".join(ways)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def _write_table(reading: Reading, table: str) -> str:
+    """How a missing table is written, with the names of the spec; "" if there is no telling."""
+    role = {"lagrangian": "velocity", "hamiltonian": "momentum"}.get(table)
+    example = BY_KEY[table].example
+    if role is not None:
+        squares = [_square(each) for each in VARIABLES.of(reading) if each.role == role]
+        example = f'{example[0]} = "{" + ".join(squares)}"' if squares else ""
+    return f"write [{table}] and below it {example}" if example else ""
+
+
+def _square(variable: Variable) -> str:
+    """Half the square of a variable, as a formula."""
+    name, rank = variable.name, len(variable.value_shape)
+    return (f"{name}^2/2", f"dot({name}, {name})/2", f"trace(transpose({name})*{name})/2")[rank]
 
 
 def _check_first(source: Source, file: Any) -> None:
     """The first route gives the rates of the declared state, and all that is emitted."""
-    first = file.routes[0]
-    if not ROUTES[first].emitted:
-        kinds, own = set(kinds_of(file)), ROUTES[first]
-        others = [
-            name
-            for name, start in ROUTES.items()
-            if start.emitted
-            and set(start.kinds) & kinds
-            and (start.table, start.in_frame) == (own.table, own.in_frame)
-        ]
-        raise source.fault(
-            ("routes", 0),
-            f"the route {first} cannot be the first: it is there to be proved equal to another",
-            found=first,
-            expected=f"one of {listed(others)} before it",
-            hint=f'Write "{others[0]}" before it.',
-        )
-    roles = {part.role for part in file.variables.values()}
-    paired = file.poisson is not None or "momentum" in roles
-    if first == "canonical" and file.lagrangian is not None and not paired:
-        raise source.fault(
-            ("routes", 0),
-            "the route canonical moves momenta, and the state has velocities",
-            found=first,
-            expected="variables with role = 'momentum', or euler-lagrange before it",
-            hint='Write "euler-lagrange" before it.',
-        )
+    first, fitting = file.routes[0], _list_fitting(file, first=True)
+    if first in fitting:
+        return
+    problem = "cannot be the first: it is there to be proved equal to another"
+    if ROUTES[first].emitted:
+        problem = "moves momenta, and the state has velocities"
+    raise source.fault(
+        ("routes", 0),
+        f"the route {first} {problem}",
+        found=first,
+        expected=f"one of {listed(fitting)} before it",
+        hint=f'Put "{fitting[0]}" first.' if fitting else "",
+    )
 
 
 def _check_use(source: Source, file: Any) -> None:
     """A Hamiltonian, a Lagrangian or another table that no route reads is a mistake."""
     kinds = kinds_of(file)
-    used = {table for route in file.routes for table in energies_of(route, kinds)}
-    starts = [ROUTES[route] for route in file.routes]
-    used |= {name for start in starts for name in (start.table, *start.options)}
-    for table in (each.key for each in TABLES if each.routed):
-        if getattr(file, table) and table not in used:
-            readers = [
-                name
-                for name, start in ROUTES.items()
-                if table in (*energies_of(name, kinds), start.table, *start.options)
-                and set(start.kinds) & set(kinds)
-            ]
+    takes = {
+        name: {*energies_of(name, kinds), each.table, *each.options}
+        for name, each in ROUTES.items()
+    }
+    for table in TABLES:
+        if table.routed and getattr(file, table.key):
+            key = table.key
+            if any(key in takes[route] for route in file.routes):
+                continue
+            readers = [name for name in _list_fitting(file) if key in takes[name]]
+            add = f'Add "{readers[0]}" to routes, or remove' if readers else "Remove"
             raise source.fault(
-                (table,),
-                f"no route uses the {table.title()}"
-                if table in _ENERGIES
-                else f"no route uses the table [{table}]",
-                found=table,
+                (key,),
+                f"no route uses the {key.title() if key in _ENERGIES else f'table [{key}]'}",
+                found=key,
                 expected=f"one of the routes {listed(readers)} beside it"
                 if readers
-                else f"no table [{table}] here",
-                hint=f'Add "{readers[0]}" to routes, or remove [{table}].' if readers else "",
+                else f"no table [{key}] here",
+                hint=f"{add} [{key}].",
             )
-
-
-def _missing(source: Source, problem: str, table: str) -> CoadjointError:
-    expected, hint = f"a table [{table}]", how_to_write(table)
-    return source.fault(("routes",), problem, found=table, expected=expected, hint=hint)
 
 
 def check_used(source: Source, spec: Spec) -> None:
@@ -202,14 +249,14 @@ def check_used(source: Source, spec: Spec) -> None:
     named |= {each.rate for each in spec.inputs}
     for each in spec.driving:
         if not named & {each.name, *each.components}:
-            table = "time" if each is spec.time else "inputs"
             key: KeyPath = ("time",) if each is spec.time else ("inputs", each.name)
+            rest = "remove [time]" if each is spec.time else "remove it from [inputs]"
             raise source.fault(
                 key,
                 f"{each.name!r} occurs in no formula",
                 found=each.name,
                 expected=f"a formula that names {listed(each.components)}",
-                hint=f"Use it in the energy or a force, or remove it from [{table}].",
+                hint=f"Use it in the energy or a force, or {rest}.",
                 at=source.positions.key(key),
             )
 
@@ -277,7 +324,7 @@ def check_covered(reading: Reading) -> None:
             _check_partners(reading)
         if file.lagrangian is not None:
             _check_spanned(reading, "velocity", "Omega", algebra)
-    elif file.poisson is None or file.lagrangian is not None:
+    elif (file.poisson is None and not _is_bare(file)) or file.lagrangian is not None:
         _check_partners(reading)
 
 
@@ -290,23 +337,17 @@ def _check_partners(reading: Reading) -> None:
         name = variable.name
         if variable.role != "coordinate":
             continue
-        if not any(name in owned[role] for role in wanted):
-            role = wanted[-1]
+        lacking = not any(name in owned[role] for role in wanted)
+        if lacking or (owned["momentum"] and name not in owned["momentum"]):
+            role = wanted[-1] if lacking else "momentum"
+            problem = " and no ".join(wanted) if lacking else "momentum, and others have"
+            partner = reading.free_name("v" if role == "velocity" else "p", name)
             raise reading.at_key(
                 ("variables", name),
-                f"the coordinate {name!r} has no {' and no '.join(wanted)}",
+                f"the coordinate {name!r} has no {problem}",
                 name,
-                f"a {role} of each coordinate",
-                f"Write for instance {'v' if role == 'velocity' else 'p'} = "
-                f'{{ role = "{role}", of = "{name}" }}.',
-            )
-        if owned["momentum"] and name not in owned["momentum"]:
-            raise reading.at_key(
-                ("variables", name),
-                f"the coordinate {name!r} has no momentum, and others have",
-                name,
-                "momenta of all coordinates or of none",
-                f'Write for instance p = {{ role = "momentum", of = "{name}" }}.',
+                f"a {role} of each coordinate" if lacking else "momenta of all coordinates",
+                f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.',
             )
 
 
@@ -322,5 +363,5 @@ def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebr
             f"no {role} spans {listed(left)}",
             found=listed(left),
             expected=f"{_PLURALS[role]} over the whole of {algebra.name}",
-            hint=f'Write for instance {example} = {{ role = "{role}"{block} }}.',
+            hint=f'Write for instance {reading.free_name(example)} = {{ role = "{role}"{block} }}.',
         )

@@ -95,7 +95,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     reading = Reading(source, file, name, TABLES)
     check_tables(source, file)
     check_blocks(reading)
-    check_routes(source, file)
+    check_routes(reading)
     check_covered(reading)
     spec = Spec(
         name=name,

@@ -29,6 +29,7 @@ class Route:
         emitted: Whether it may be the first of a spec. What moves in variables of its own, or
             leaves multipliers out, is there to be proved equal.
         takes_driving: Whether inputs and time may act.
+        needs_energy: Whether it must have one of its energies.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Route:
     in_frame: bool = False
     emitted: bool = True
     takes_driving: bool = True
+    needs_energy: bool = True
 
     @property
     def module(self) -> str:
@@ -77,15 +79,16 @@ _ROUTES = (
     _chart("kaluza-klein"),
     Route("complexification", _ALGEBRA, _HAMILTONIAN),
     _lax("manakov", _ALGEBRA),
-    _lax("lax", ("algebra", "poisson"), table="lax"),
+    _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False),
     Route("nambu", ("algebra", "nambu"), _EITHER, options=_ACTS),
     Route("poisson", ("poisson",), _HAMILTONIAN, options=_ACTS),
-    Route("canonical", ("canonical", "configuration"), _EITHER, options=_DRIVES),
-    Route("euler-lagrange", ("configuration", "canonical"), _LAGRANGIAN, options=_DRIVES),
+    Route("canonical", ("canonical", "configuration"), _EITHER, options=_ACTS),
+    Route("euler-lagrange", ("configuration", "canonical"), _LAGRANGIAN, options=_ACTS),
     Route("newton", _SPACE, table="newton"),
     Route("alignment", _SPACE, table="newton", emitted=False),
     _in_frame("nonholonomic"),
     _in_frame("hamel", emitted=False),
+    _in_frame("nonholonomic-hamilton-pontryagin", emitted=False),
 )
 #: Every route by its name.
 ROUTES: Mapping[str, Route] = MappingProxyType({route.name: route for route in _ROUTES})

@@ -7,11 +7,13 @@ Read next: `coadjoint.spec.validate`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, create_model
 
 from coadjoint.spec.core.parts import Part
+from coadjoint.spec.core.reading import Table
 from coadjoint.spec.core.values import License, Prose, Title, is_unique
 from coadjoint.spec.routes import ROUTES
 from coadjoint.spec.tables import TABLES
@@ -38,14 +40,15 @@ class Head(Part):
     ] = Field(description="routes to derive by; the first is emitted, the others proved equal")
 
 
-_FIELDS: dict[str, Any] = {table.key: table.typed_field for table in TABLES}
+def compose(tables: Iterable[Table[Any]]) -> type[Head]:
+    """The model of a whole file, with a key for each table."""
+    keys: dict[str, Any] = {table.key: table.typed_field for table in tables}
+    about = "A declared system: its algebra, its variables and parameters, its energy."
+    return create_model("SpecFile", __base__=Head, __doc__=about, **keys)
+
+
 #: A declared system.
-SpecFile: type[Head] = create_model(
-    "SpecFile",
-    __base__=Head,
-    __doc__="A declared system: its algebra, its variables and parameters, its energy.",
-    **_FIELDS,
-)
+SpecFile = compose(TABLES)
 
 
 def json_schema() -> dict[str, Any]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
-from difflib import get_close_matches
 from types import MappingProxyType, NoneType
 from typing import Annotated, Any, get_args, get_origin
 
@@ -20,10 +19,10 @@ from pydantic_core import ErrorDetails
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.core.decimals import read_float
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, find_near, listed
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, Span
-from coadjoint.spec.core.source import Source, joined, shown
+from coadjoint.spec.core.source import Source, join_faults, show_value
 from coadjoint.spec.schema import Head, SpecFile
 
 #: Faults that one message shows at the most; each takes three rows of a screen.
@@ -41,12 +40,11 @@ _KINDS = MappingProxyType(
 _HOW_TO_WRITE: Mapping[str | int, str] = MappingProxyType(
     {
         "title": 'Write title = "..." at the top.',
-        "routes": 'Write routes = ["euler-poincare", "lie-poisson"] at the top.',
         "algebra": 'Write algebra = "so(3)".',
         "variables": 'Write [variables] and below it Pi = { role = "momentum" }.',
         "role": 'Write { role = "momentum" }.',
-        "l": 'Write l = "dot(Omega, diag(I)*Omega)/2".',
-        "h": 'Write h = "dot(Pi, inverse(diag(I))*Pi)/2".',
+        "l": 'Write for instance l = "dot(Omega, diag(I)*Omega)/2".',
+        "h": 'Write for instance h = "dot(Pi, inverse(diag(I))*Pi)/2".',
         "expression": 'Write { expression = "..." }.',
         "matrices": "Write matrices = { e1 = [[0, 1], [0, 0]] }.",
     }
@@ -68,7 +66,7 @@ def validate(source: Source) -> Head:
     except ValidationError as error:
         details = _without_echoes(error.errors(include_url=False))
         faults = [_fault(source, document, detail) for detail in details[:MOST_FAULTS]]
-        raise joined(faults, len(details) - len(faults)) from None
+        raise join_faults(faults, len(details) - len(faults)) from None
 
 
 # -- TOML -----------------------------------------------------------------------------------------
@@ -117,7 +115,7 @@ def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointErro
         first = source.line(source.positions.key(key))
         return source.fault(
             key,
-            f"{shown(key[-1])} is declared twice",
+            f"{show_value(key[-1])} is declared twice",
             found=str(key[-1]),
             expected="one declaration",
             hint=f"The first is in line {first}.",
@@ -157,7 +155,9 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
             f"the key {path[-1]!r} is missing",
             found=str(path[-1]),
             expected=_keys(path)[str(path[-1])].description or "",
-            hint=_HOW_TO_WRITE.get(path[-1], ""),
+            hint=_advise_routes(document)
+            if path == ("routes",)
+            else _HOW_TO_WRITE.get(path[-1], ""),
             at=source.positions.key(present),
         )
     if kind == "extra_forbidden":
@@ -167,7 +167,7 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     limit = next(iter(_LIMIT.findall(expected)), "")
     return source.fault(
         present,
-        f"found {shown(found)}",
+        f"found {show_value(found)}",
         found=found,
         expected=expected,
         hint=did_you_mean(found, re.findall("'([^']+)'", expected)) if literal else "",
@@ -176,13 +176,28 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     )
 
 
+def _advise_routes(document: Mapping[str, Any]) -> str:
+    """How routes are written, by the tables that are there."""
+    ways = {
+        "constraints": '"nonholonomic"',
+        "newton": '"newton"',
+        "poisson": '"poisson"',
+        "algebra": '"euler-poincare", "lie-poisson"'
+        if "lagrangian" in document
+        else '"lie-poisson"',
+        "lagrangian": '"euler-lagrange"',
+    }
+    names = next((way for table, way in ways.items() if table in document), '"canonical"')
+    return f"Write routes = [{names}] at the top."
+
+
 def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
     """Faults without the missing keys that a misspelt key beside them was meant to be."""
     meant = set()
     for detail in details:
         *table, key = detail["loc"]
         if detail["type"] == "extra_forbidden":
-            meant |= {(*table, near) for near in get_close_matches(str(key), _keys(detail["loc"]))}
+            meant |= {(*table, near) for near in find_near(str(key), _keys(detail["loc"]))}
     return [d for d in details if d["type"] != "missing" or tuple(d["loc"]) not in meant]
 
 
@@ -208,9 +223,9 @@ def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
     known = _keys(path)
     return source.fault(
         path,
-        f"unknown key {shown(path[-1])}",
+        f"unknown key {show_value(path[-1])}",
         found=str(path[-1]),
-        expected=f"one of {listed(known)}",
+        expected=f"one of {listed(known, most=len(known))}",
         hint=did_you_mean(str(path[-1]), known),
         at=source.positions.key(path),
     )

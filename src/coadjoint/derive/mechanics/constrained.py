@@ -1,7 +1,15 @@
 r"""Constrained motion: what the routes with constraints share beside the kinematics.
 
 A route puts matrix and right side into :math:`\mathcal{M} \dot\eta = k`; constraints that are kept
-join them with their multipliers, the kernel solves, and the reactions follow.
+join them with their multipliers, the kernel solves, and the reactions follow. A force may be
+proportional to reactions, as friction is: with :math:`k = k_0 + C \lambda` and
+:math:`u = -\lambda` the kernel solves
+
+.. math::
+    \begin{pmatrix} \mathcal{M} & A^T + C \\ A & 0 \end{pmatrix}
+    \begin{pmatrix} \dot\eta \\ u \end{pmatrix}
+        = \begin{pmatrix} k_0 \\ -\dot A \eta + \dot b \end{pmatrix}.
+
 Comes in: the Kinematics of a distribution. Goes out: the Exact part of Equations.
 Read next: `coadjoint.derive.routes.nonholonomic`.
 """
@@ -15,7 +23,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import emitted
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
-from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
+from coadjoint.derive.mechanics.distribution import Equation, Row
 from coadjoint.derive.mechanics.kinematics import (
     Kinematics,
     Matrix,
@@ -28,9 +36,8 @@ from coadjoint.derive.records import Exact
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
-from coadjoint.exact.roots import lifted
+from coadjoint.exact.roots import simplify_roots
 from coadjoint.limits import COUPLED_VELOCITIES
-from coadjoint.spec.model import Section
 
 
 @dataclass(frozen=True)
@@ -57,30 +64,53 @@ class ConstrainedMotion(Kinematics):
     def solves(self, mass: Matrix, known: Sequence[Element]) -> tuple[Solve, ...]:
         """The linear equations of accelerations and multipliers, block by block.
 
-        ``[[mass, A^T], [A, 0]] (eta', u) = (known, k)``, symmetric, with u minus the multipliers.
-        Entries that are identically zero are zero, so that every route finds the same blocks.
+        ``[[mass, A^T + C], [A, 0]] (eta', u) = (k_0, k)`` with u minus the multipliers, symmetric
+        where no force names a reaction. Entries that are identically zero are zero, so that every
+        route finds the same blocks.
+
+        Args:
+            mass: The reduced mass matrix.
+            known: What it times the accelerations is, where reactions may be named.
         """
         field, found, value = self.frame.setting.field, self.distribution, self.decided.value
         rows, carried = self.of_kept()
         none = [field.zero] * len(rows)
+        pulls = [field.gradient(k, self.pressing) for k in known]
         whole = [
-            *((*map(value, row), *(a[i] for a in rows)) for i, row in enumerate(mass)),
+            *(
+                (*map(value, row), *(a[i] + value(c) for a, c in zip(rows, pulls[i], strict=True)))
+                for i, row in enumerate(mass)
+            ),
             *((*row, *none) for row in rows),
         ]
-        sides = [*map(value, known), *map(value, carried)]
+        sides = [*map(value, map(self.without_reactions, known)), *map(value, carried)]
         names = [
             *map(rate_name, found.independent),
             *map(multiplier_name, range(len(rows))),
         ]
+        unlike = {i for i, row in enumerate(pulls) if any(row)}
         return tuple(
             Solve(
-                tuple(tuple(whole[i][j] for j in block) for i in block),
-                [sides[i] for i in block],
-                block,
-                [names[i] for i in block],
+                matrix=tuple(tuple(whole[i][j] for j in block) for i in block),
+                known=[sides[i] for i in block],
+                block=block,
+                names=[names[i] for i in block],
+                symmetric=not unlike & {*block},
             )
             for block in coupled_blocks(tuple(whole))
         )
+
+    @cached_property
+    def pressing(self) -> list[str]:
+        """The reactions of the constraints that are kept, which forces may name."""
+        return [equation.reaction for equation, _ in self.distribution.kept]
+
+    def without_reactions(self, force: Element) -> Element:
+        """What is left of a force where all reactions are zero."""
+        field = self.frame.setting.field
+        if not field.reach(force) & {*self.pressing}:
+            return force
+        return field.substitute(force, dict.fromkeys(self.pressing, field.zero))
 
     def reactions(self, mass: Matrix, forces: Sequence[Element]) -> list[Definition]:
         """Rates of the velocities that constraints give, then the multipliers of all constraints.
@@ -143,6 +173,7 @@ def emission(
     """
     setting = motion.frame.setting
     field = setting.field
+    _check_linear_in_reactions(motion, known)
     solves = motion.solves(mass, known)
     for solve in solves:
         _check_regular(motion, solve, definitions)
@@ -152,56 +183,20 @@ def emission(
     rates = tuple(moving[name] for name in setting.state)
     energy = mechanics(setting).energy
     closed = field.substitute(energy, motion.distribution.solved)
-    short = lifted(field, closed)  # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    short = simplify_roots(
+        field, closed
+    )  # sin^2 + cos^2 = 1, where velocities are along a turning frame
     energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
-    along = [
-        *reduced_momenta(motion.distribution),
-        *section_momenta(motion.distribution),
-    ]
     return Exact(
         (*definitions, *solved, *motion.computed(reactions)),
         rates,
         energy,
-        emitted(setting, energy, along),
+        emitted(setting, energy, reduced_momenta(motion.distribution)),
         almost_poisson(setting),
         solves,
         residuals,
     )
-
-
-def section_momenta(found: Distribution) -> list[tuple[str, Element]]:
-    """``<dl/dxi, B sigma>`` of every declared section sigma, in all velocities."""
-    setting = found.setting
-    momenta = mechanics(setting).momenta
-    return [
-        (
-            each.name,
-            setting.field.sum(
-                p * x for p, x in zip(momenta, section_vector(found, each), strict=True) if x != 0
-            ),
-        )
-        for each in setting.spec.sections
-    ]
-
-
-def section_vector(found: Distribution, section: Section) -> Row:
-    """``B sigma``: a section as a vector of the frame."""
-    along = section_components(found, section)
-    return tuple(
-        found.setting.field.sum(b * x for b, x in zip(row, along, strict=True)) for row in found.B
-    )
-
-
-def section_components(found: Distribution, section: Section) -> Row:
-    """``sigma``: the components of a section along the independent velocities."""
-    setting = found.setting
-    parts = dict.fromkeys(found.independent, setting.field.zero)
-    for variable in setting.spec.variables:
-        if variable.name in section.section:
-            values = setting.components(section.section[variable.name])
-            parts |= dict(zip(variable.components, values, strict=True))
-    return tuple(parts.values())
 
 
 def _check_regular(
@@ -224,11 +219,56 @@ def _check_regular(
     for k in range(1, len(matrix) + 1):
         leading = [{j: e for j, e in enumerate(row[:k]) if e != 0} for row in matrix[:k]]
         if generic_rank(setting.field, leading) < k:
-            raise _singular(motion, solve.names[:k])
+            raise _singular(motion, solve, k)
 
 
-def _singular(motion: ConstrainedMotion, names: Sequence[str]) -> DerivationError:
+def _check_linear_in_reactions(motion: ConstrainedMotion, known: Sequence[Element]) -> None:
+    """Forces are linear in the reactions that they name, so that the kernel can solve for them."""
+    field = motion.frame.setting.field
+    for force in known:
+        for name, slope in zip(
+            motion.pressing, field.gradient(force, motion.pressing), strict=True
+        ):
+            if not field.reach(slope) & {*motion.pressing}:
+                continue
+            raise _fault_of_force(
+                motion,
+                name,
+                f"the forces are not linear in {name}; expected forces proportional to reactions, "
+                "which the kernel solves for together with the accelerations. Write what presses "
+                "as a scalar constraint of its own, such as dot(Gamma, v) == 0, whose reaction is "
+                "the normal force, and friction as its multiple along the slip velocity.",
+            )
+
+
+def _fault_of_force(motion: ConstrainedMotion, reaction: str, message: str) -> DerivationError:
+    """A fault of the force, or of Rayleigh's function, that names a reaction."""
     setting = motion.frame.setting
+    spec = setting.spec
+    acting = [*spec.forces.values(), *([spec.dissipation] if spec.dissipation else [])]
+    values = ((each, setting.components(each, setting.reactions)) for each in acting)
+    naming = (
+        formula
+        for formula, parts in values
+        if any(reaction in setting.field.reach(part) for part in parts)
+    )
+    return fault(setting, next(naming), message, reaction)
+
+
+def _singular(motion: ConstrainedMotion, solve: Solve, size: int) -> DerivationError:
+    """What is wrong where the first unknowns of a block are not determined."""
+    setting, names = motion.frame.setting, solve.names[:size]
+    multipliers = {multiplier_name(n): name for n, name in enumerate(motion.pressing)}
+    if not solve.symmetric and names[-1] in multipliers:
+        name = multipliers[names[-1]]
+        return _fault_of_force(
+            motion,
+            name,
+            f"the forces cancel {name} in its own constraint, so that nothing determines it; "
+            "expected forces that leave the reaction its effect on the constraint. Remove "
+            f"{name} from the force, or let it act along the directions that the constraint "
+            "leaves free, as friction does.",
+        )
     formula = setting.spec.lagrangian
     assert formula is not None, "the reader asks for a Lagrangian"
     text = ", ".join(name for name in names if not name.startswith("_"))

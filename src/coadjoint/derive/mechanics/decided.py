@@ -14,13 +14,11 @@ ask.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterable, Mapping
 from math import prod
 
 from coadjoint.exact import Element, Field
-from coadjoint.exact.linear import PRIME
-from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.residues import Residue, draw, residue, square_root
 
 #: Points modulo the prime, with the same parameters.
 POINTS = 2
@@ -110,10 +108,7 @@ class Decided:
         """Points at which every name has a value, the parameters the same ones."""
         self._tries += 1
         return [
-            {
-                name: _random(f"{self._tries} {name} {self._own(name, n)}")
-                for name in self.field.names
-            }
+            {name: draw(f"{self._tries} {name} {self._own(name, n)}") for name in self.field.names}
             for n in range(POINTS)
         ]
 
@@ -151,10 +146,6 @@ class Decided:
         self._points = None
 
 
-def _random(seed: str) -> Residue:
-    return Residue(random.Random(seed).randrange(1, PRIME))  # noqa: S311 (not for secrets)
-
-
 def call_modulo(function: str, argument: Residue) -> Residue:
     """A value of an elementary function that satisfies the relations of the field.
 
@@ -162,15 +153,12 @@ def call_modulo(function: str, argument: Residue) -> Residue:
         ZeroDivisionError: The argument has no square root.
     """
     if function == "sqrt":
-        root = pow(argument.value, (PRIME + 1) // 4, PRIME)  # PRIME is 3 modulo 4
-        if root * root % PRIME != argument.value:
-            raise ZeroDivisionError(f"no square root of {argument.value} modulo {PRIME}")
-        return Residue(root)
+        return square_root(argument)
     if function in ("sin", "cos"):  # a point of the circle, the same one for both
-        half = _random(f"half of {argument.value}")
+        half = draw(f"half of {argument.value}")
         whole = Residue(1) + half * half
         return (half + half if function == "sin" else Residue(1) + -(half * half)) / whole
-    return _random(f"{function} {argument.value}")
+    return draw(f"{function} {argument.value}")
 
 
 # -- sizes ----------------------------------------------------------------------------------------

@@ -25,6 +25,7 @@ from dataclasses import replace
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import Matrix, mechanics
+from coadjoint.derive.mechanics.parts import in_parts, slopes
 from coadjoint.derive.records import Step, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
@@ -52,8 +53,8 @@ def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Elemen
     field, spec = setting.field, setting.spec
     found = dict.fromkeys(velocities, field.zero) | _declared(setting, "velocity")
     if spec.dissipation is not None:
-        slopes = field.gradient(setting.formula(spec.dissipation), velocities)
-        found = {name: found[name] - s for name, s in zip(velocities, slopes, strict=True)}
+        lost = slopes(setting, spec.dissipation, velocities)
+        found = {name: found[name] - s for name, s in zip(velocities, lost, strict=True)}
     return tuple(found[name] for name in velocities)
 
 
@@ -65,7 +66,7 @@ def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
         if variable.name in setting.spec.forces and variable.role in roles
         for name, part in zip(
             variable.components,
-            setting.components(setting.spec.forces[variable.name]),
+            in_parts(setting, setting.spec.forces[variable.name]),
             strict=True,
         )
     }

@@ -18,6 +18,7 @@ from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.frames import Frame
+from coadjoint.derive.mechanics.parts import part_names, parts
 from coadjoint.derive.mechanics.solver import Definition, solver_names
 from coadjoint.derive.setting import make_setting
 from coadjoint.exact import Element
@@ -51,6 +52,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return (
         *(f"_b{n + 1}" for n in range(count)),
         *map(rate_name, found.frame.positions),
+        *(name for names in part_names(spec).values() for name in names),
         *(f"_g{n + 1}" for n in range(len(_moving_roots(found)))),
         *(f"_e{n + 1}" for n in range(count)),
         *(f"_c{n + 1}" for n in range(solved)),
@@ -287,4 +289,7 @@ class Kinematics:
         ]
         convected = [(f"_c{n + 1}", self._convected[place]) for n, place in enumerate(self.solved)]
         roots = self._rates_of_roots()
-        return self.computed([*entries, *self.velocities(), *positions, *roots, *moved, *convected])
+        own = parts(self.frame.setting)
+        return self.computed(
+            [*entries, *self.velocities(), *positions, *roots, *moved, *convected, *own]
+        )

@@ -46,7 +46,7 @@ def nearest_state(setting: Setting, found: Distribution | None, exact: Exact) ->
     sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(found))}
     solves = tuple(
         Solve(
-            solve.matrix,
+            solve.mirrored,  # without what forces add that are proportional to reactions
             [sides.get(name, field.zero) for name in solve.names],
             solve.block,
             [shifts.get(name, name) for name in solve.names],

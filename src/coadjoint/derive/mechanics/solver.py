@@ -5,7 +5,10 @@ diagonal of L, so that ``L y = b``, ``D z = y`` and ``L^T x = z`` are solved ent
 entry of L, D, y and z becomes a definition with a leading underscore, which no spec can declare;
 it is never expanded, since the closed form of a sixth velocity would fill a book. The columns of
 W = L D are computed before they are divided, and a pivot that divides several has one reciprocal.
-What is identically zero in W, y, z or x is left out, and x is then 0.
+A matrix that is not symmetric, as where friction is proportional to a reaction, is :math:`A = W U`
+with ones on the diagonal of U, whose rows are computed beside the columns of W; then ``W z = b``
+and ``U x = z``. For a symmetric one U is the transpose of L. Pivots are the same quotients of
+leading minors. What is identically zero in W, y, z or x is left out, and x is then 0.
 Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
 Read next: `coadjoint.derive.mechanics.decided`, which finds the zeros;
 `coadjoint.derive.mechanics.legendre`, which solves for velocities.
@@ -45,6 +48,11 @@ def factor_name(i: int, j: int) -> str:
     return f"_l{i + 1}_{j + 1}"
 
 
+def upper_name(i: int, j: int) -> str:
+    """Name of the entry of U in row ``i`` and column ``j`` above the diagonal."""
+    return f"_u{i + 1}_{j + 1}"
+
+
 def forward_name(i: int) -> str:
     """Name of the entry of y in the place ``i``."""
     return f"_y{i + 1}"
@@ -54,10 +62,11 @@ def solver_names(block: Sequence[int]) -> list[str]:
     """Every name that the solve of a block of places may define.
 
     >>> solver_names((0, 2))
-    ['_d1', '_d3', '_r1', '_r3', '_w3_1', '_l3_1', '_y1', '_y3', '_z1', '_z3']
+    ['_d1', '_d3', '_r1', '_r3', '_w3_1', '_l3_1', '_u1_3', '_y1', '_y3', '_z1', '_z3']
     """
     pairs = [(i, j) for n, i in enumerate(block) for j in block[:n]]
     of_pairs = [make(*pair) for make in (column_name, factor_name) for pair in pairs]
+    of_pairs += [upper_name(j, i) for i, j in pairs]
     pivots, ones, y, z = (
         [make(i) for i in block]
         for make in (pivot_name, reciprocal_name, forward_name, scaled_name)
@@ -75,16 +84,24 @@ class Solve:
     """``A x = b`` for one block of coupled unknowns.
 
     Attributes:
-        matrix: A, symmetric, its leading minors not identically zero.
+        matrix: A, its leading minors not identically zero.
         known: b.
         block: Places of the unknowns, which number the intermediates.
         names: Names of the unknowns.
+        symmetric: Whether A is, so that it is read below the diagonal alone.
     """
 
     matrix: Rows
     known: Sequence[Element]
     block: Sequence[int]
     names: Sequence[str]
+    symmetric: bool = True
+
+    @property
+    def mirrored(self) -> Rows:
+        """The symmetric matrix that agrees with A on and below the diagonal."""
+        size = range(len(self.matrix))
+        return tuple(tuple(self.matrix[max(i, j)][min(i, j)] for j in size) for i in size)
 
 
 def solve_in_kernel(field: Field, solve: Solve, decided: Decided | None = None) -> list[Definition]:
@@ -117,7 +134,7 @@ def solve_in_kernel(field: Field, solve: Solve, decided: Decided | None = None) 
 
 
 class _Elimination:
-    """A solve in the making: column by column of L, then backward.
+    """A solve in the making: column by column of W and row by row of U, then backward.
 
     Args:
         field: Where all names are symbols.
@@ -130,8 +147,7 @@ class _Elimination:
         self.lines: list[Definition] = []
         self._size = range(len(solve.block))
         self._w: dict[tuple[int, int], Element] = {}
-        self._l: dict[tuple[int, int], Element] = {}
-        self._y: dict[int, Element] = {}
+        self._u: dict[tuple[int, int], Element] = {}
         self._z: dict[int, Element] = {}
 
     def definitions(self) -> list[Definition]:
@@ -140,34 +156,44 @@ class _Elimination:
             self._eliminate(j)
         x: dict[int, Element] = {}
         for i in reversed(self._size):
-            after = self.field.sum(self._l[k, i] * x[k] for k in x if (k, i) in self._l)
+            after = self.field.sum(self._u[i, k] * x[k] for k in x if (i, k) in self._u)
             x[i] = self._define(self.solve.names[i], self._z.get(i, self.field.zero) - after)
         return self.lines
 
     def _eliminate(self, j: int) -> None:
-        """``d_j``, then what is divided by it: column j of W, and ``y_j = b_j - w_jk z_k``."""
-        place, before = self.solve.block[j], [k for k in range(j) if (j, k) in self._l]
-        pivot = self._define(pivot_name(place), self._rest(j, j, before))
+        """``d_j``, then what is divided by it: row j of U, and ``y_j = b_j - w_jk z_k``."""
+        place, before = self.solve.block[j], [k for k in range(j) if (j, k) in self._w]
+        pivot = self._define(pivot_name(place), self._rest(j, j))
         for i in self._size[j + 1 :]:
             name = column_name(self.solve.block[i], place)
-            value = self.decided.value(self._rest(i, j, before))
+            value = self.decided.value(self._rest(i, j))
             if value != 0:
-                leaf = _is_leaf(self.field, value)
+                leaf = self.solve.symmetric and _is_leaf(self.field, value)
                 self._w[i, j] = value if leaf else self._entry(name, value)
-        below = [i for i in self._size[j + 1 :] if (i, j) in self._w]
+        row = self._row(j)
         taken = self.field.sum(self._w[j, k] * self._z[k] for k in before if k in self._z)
         y = self.decided.value(self.solve.known[j] - taken)
         whole = self._cancelled(y, place)
         if whole is None and not _is_product(self.field, y):
             y = self._define(forward_name(place), y)
         share = 1 / pivot
-        if len(below) + (whole is None) > 1:
+        if len(row) + (whole is None) > 1:
             share = self._define(reciprocal_name(place), share)
-        for i in below:
-            name = factor_name(self.solve.block[i], place)
-            self._l[i, j] = self._entry(name, self._w[i, j] * share)
+        for i, value in row.items():
+            other = self.solve.block[i]
+            by_symmetry = self.solve.symmetric
+            name = factor_name(other, place) if by_symmetry else upper_name(place, other)
+            self._u[j, i] = self._entry(name, value * share)
         if y != 0:
             self._z[j] = self._define(scaled_name(place), y * share if whole is None else whole)
+
+    def _row(self, j: int) -> dict[int, Element]:
+        """``d_j u_ji`` for every i, zeros left out: column j of W if A is symmetric."""
+        after = self._size[j + 1 :]
+        if self.solve.symmetric:
+            return {i: self._w[i, j] for i in after if (i, j) in self._w}
+        values = ((i, self.decided.value(self._rest(j, i))) for i in after)
+        return {i: value for i, value in values if value != 0}
 
     def _cancelled(self, y: Element, place: int) -> Element | None:
         """``y/d`` where that leaves no quotient, as of a mass that forces are multiples of."""
@@ -175,7 +201,7 @@ class _Elimination:
         return None if any(each.divisors for each in self.field.quotients(found)) else found
 
     def _entry(self, name: str, value: Element) -> Element:
-        """An entry of W or L by its name, or by that of an entry it is up to its sign."""
+        """An entry of W, L or U by its name, or by that of an entry it is up to its sign."""
         value = self.decided.value(value)
         if _is_leaf(self.field, value):
             return self._define(name, value)
@@ -186,9 +212,10 @@ class _Elimination:
                 return same
         return self._define(name, value)
 
-    def _rest(self, i: int, j: int, before: Sequence[int]) -> Element:
-        """``a_ij`` without what the columns before j take: ``a_ij - w_ik l_jk``."""
-        shared = (self._w[i, k] * self._l[j, k] for k in before if (i, k) in self._w)
+    def _rest(self, i: int, j: int) -> Element:
+        """``a_ij`` without what the columns before take: ``a_ij - w_ik u_kj``."""
+        places = [k for k in range(min(i, j)) if (i, k) in self._w and (k, j) in self._u]
+        shared = (self._w[i, k] * self._u[k, j] for k in places)
         return self.solve.matrix[i][j] - self.field.sum(shared)
 
     def _define(self, name: str, value: Element) -> Element:
@@ -214,7 +241,7 @@ def definitions_under(
 def factors(
     field: Field, solve: Solve, definitions: Mapping[str, Element]
 ) -> dict[tuple[int, int], Element]:
-    """L below the diagonal, zeros left out, and one over D on it, as the definitions name them."""
+    """L below the diagonal, U above it, one over D on it, by their names; zeros are left out."""
     found = {}
     for i, row in enumerate(solve.block):
         pivot, one = definitions[pivot_name(row)], reciprocal_name(row)
@@ -224,6 +251,11 @@ def factors(
             if name in definitions:
                 value = definitions[name]
                 found[i, k] = value if _is_leaf(field, value) else field[name]
+                found[k, i] = found[i, k]
+            if not solve.symmetric and (own := column_name(row, column)) in definitions:
+                found[i, k] = field[own] * found[k, k]
+            if not solve.symmetric and (own := upper_name(column, row)) in definitions:
+                found[k, i] = field[own]
     return found
 
 
@@ -244,9 +276,10 @@ def _is_product(field: Field, value: Element) -> bool:
 def solution_defects(
     field: Field, solve: Solve, definitions: Mapping[str, Element]
 ) -> list[Element]:
-    """Entries of ``W - L D``, ``W L^T - A``, ``W z - b``, ``D z - y``, ``L^T x - z``.
+    """Entries of ``W - L D``, ``W U - A``, ``W z - b``, ``D z - y``, ``U x - z``.
 
-    All are 0 for a solution. In each entry the name that is defined last is replaced by its
+    All are 0 for a solution; U is the transpose of L where A is symmetric, and else there is no L.
+    In each entry the name that is defined last is replaced by its
     definition, and reciprocals of pivots are: that is enough for a proof, and no closed form is
     written out. Only where something was left out as identically zero, all definitions are put in.
     """
@@ -275,13 +308,19 @@ class _Defects:
             return self.field.one
         return self._value(factor_name(self.solve.block[i], self.solve.block[j]))
 
+    def _u(self, i: int, j: int) -> Element:
+        """An entry of U on or above the diagonal."""
+        if i == j or self.solve.symmetric:
+            return self._l(j, i)
+        return self._value(upper_name(self.solve.block[i], self.solve.block[j]))
+
     def _w(self, i: int, j: int) -> Element:
         """An entry of W by its name; by those of L and D where it has none."""
         name = column_name(self.solve.block[i], self.solve.block[j])
         if i == j:
             return self._d[j]
-        if name in self.definitions:
-            return self.field[name]
+        if name in self.definitions or not self.solve.symmetric:
+            return self._value(name)
         own = factor_name(self.solve.block[i], self.solve.block[j])
         return self._reduced(own, self._l(i, j) * self._d[j])
 
@@ -292,12 +331,14 @@ class _Defects:
         x = [field[name] for name in self.solve.names]
         found = []
         for i in size:
-            for j in size[:i]:
+            for j in size[:i] if self.solve.symmetric else ():
                 own = factor_name(block[i], block[j])
                 found.append((own, self._w(i, j) - self._l(i, j) * self._d[j]))
-            for j in size[: i + 1]:
-                total = field.sum(self._w(i, k) * self._l(j, k) for k in size[: j + 1])
+            for j in size[: i + 1] if self.solve.symmetric else size:
+                last = min(i, j)
+                total = field.sum(self._w(i, k) * self._u(k, j) for k in size[: last + 1])
                 own = pivot_name(block[i]) if i == j else column_name(block[i], block[j])
+                own = upper_name(block[i], block[j]) if i < j else own
                 found.append((own, total - self.solve.matrix[i][j]))
             y, own = self._d[i] * z[i], scaled_name(block[i])
             if forward_name(block[i]) in self.definitions:
@@ -306,7 +347,7 @@ class _Defects:
                 own = forward_name(block[i])
             before = field.sum(self._w(i, k) * z[k] for k in size[:i])
             found.append((own, before + y - self.solve.known[i]))
-            total = field.sum(self._l(k, i) * x[k] for k in size[i:])
+            total = field.sum(self._u(i, k) * x[k] for k in size[i:])
             found.append((self.solve.names[i], total - z[i]))
         return [self._decided(last, defect) for last, defect in found]
 

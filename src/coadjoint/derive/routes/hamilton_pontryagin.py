@@ -23,7 +23,7 @@ Read next: `coadjoint.derive.routes.clebsch`, where the advected quantities vary
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from coadjoint.derive.equations import Equations
@@ -50,16 +50,16 @@ def derive(setting: Setting) -> Equations:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
     lagrangian = setting.lagrangian
-    action = _action(setting, lagrangian)
+    action = action_near(setting, lagrangian, setting.elements(setting.momenta))
     transform = legendre(setting)
-    rates = setting.in_state_order(_momentum_equation(setting, action), _advection(setting, action))
+    rates = setting.in_state_order(momentum_equation(setting, action), advection(setting, action))
     exact = emission(setting, rates)
     steps = _steps(setting, action, transform, rates)
     return Equations(setting, "hamilton-pontryagin", exact, steps)
 
 
 @dataclass(frozen=True)
-class _Action:
+class Action:
     """The integrand, to first order in the coordinates of g.
 
     Attributes:
@@ -75,8 +75,14 @@ class _Action:
     integrand: Element
 
 
-def _action(setting: Setting, lagrangian: Element) -> _Action:
-    """The action near the point where the motion is."""
+def action_near(setting: Setting, lagrangian: Element, momenta: Sequence[Element]) -> Action:
+    """The action near the point where the motion is.
+
+    Args:
+        setting: The spec and the field.
+        lagrangian: l of all velocities.
+        momenta: mu, symbols or what they are equal to.
+    """
     field, n = setting.field, setting.algebra.dimension
     names = symbols(setting.spec)
     eps, deps = setting.elements(names[:n]), setting.elements(names[n:])
@@ -91,19 +97,19 @@ def _action(setting: Setting, lagrangian: Element) -> _Action:
         rate - setting.sign * turn / 2 - xi
         for rate, turn, xi in zip(deps, turning, setting.elements(setting.velocities), strict=True)
     ]
-    pairing = zip(setting.elements(setting.momenta), constraint, strict=True)
+    pairing = zip(momenta, constraint, strict=True)
     integrand = field.substitute(lagrangian, moved) + field.sum(mu * c for mu, c in pairing)
-    return _Action(names[:n], names[n:], moved, integrand)
+    return Action(names[:n], names[n:], moved, integrand)
 
 
-def _at_the_motion(setting: Setting, action: _Action, element: Element) -> Element:
+def _at_the_motion(setting: Setting, action: Action, element: Element) -> Element:
     """An element at eps = 0, deps/dt = xi: what the variations of mu say."""
     rates = zip(action.rates, setting.elements(setting.velocities), strict=True)
     here = dict(rates) | dict.fromkeys(action.coordinates, setting.field.zero)
     return setting.field.substitute(element, here)
 
 
-def _momentum_equation(setting: Setting, action: _Action) -> tuple[Element, ...]:
+def momentum_equation(setting: Setting, action: Action) -> tuple[Element, ...]:
     """Euler-Lagrange of eps: ``d/dt dL/deps' = dL/deps``, solved for dmu/dt.
 
     ``dL/deps'`` is ``mu`` plus a part linear in eps, whose rate is known since eps' = xi. eps''
@@ -119,7 +125,7 @@ def _momentum_equation(setting: Setting, action: _Action) -> tuple[Element, ...]
     return tuple(found)
 
 
-def _advection(setting: Setting, action: _Action) -> dict[str, list[Element]]:
+def advection(setting: Setting, action: Action) -> dict[str, list[Element]]:
     """``da/dt`` along ``g0 exp(eps)`` with eps' = xi, per advected quantity."""
     field = setting.field
 
@@ -133,7 +139,7 @@ def _advection(setting: Setting, action: _Action) -> dict[str, list[Element]]:
 
 
 def _steps(
-    setting: Setting, action: _Action, transform: LegendreTransform, rates: tuple[Element, ...]
+    setting: Setting, action: Action, transform: LegendreTransform, rates: tuple[Element, ...]
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     left = setting.sign == 1

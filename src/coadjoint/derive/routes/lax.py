@@ -3,8 +3,9 @@ r"""The Lax route: from a declared pair of matrices with a spectral parameter.
 Theorem (Lax 1968; Holm 2011, section 2.4.4): if :math:`\dot L = [L, M]` for every value of
 :math:`\lambda`, the motion of L is isospectral, :math:`L(t) = g^{-1} L(0)\, g` with :math:`\dot g =
 g M`. Each entry of each power of :math:`\lambda` is one linear equation in the rates of the state.
-Comes in: a Setting with the table [lax], and an energy that gives the velocities. Goes out:
-Equations by the pair. Read next: `coadjoint.prove.lax`, where all of its equations must hold.
+Comes in: a Setting with the table [lax], and an energy that gives the velocities if M names any.
+Goes out: Equations by the pair. Read next: `coadjoint.prove.lax`, where all of its equations must
+hold.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
 from coadjoint.derive.records import Exact, Left, Step, rate, symbol
 from coadjoint.derive.routes.poisson import velocities_of
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_structure
+from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -51,10 +52,10 @@ def equations_of_pair(
         pair: Declared or found.
         search: How it was found.
     """
-    h, solves = hamiltonian(setting)
-    definitions = velocities_of(setting, h, solves)
+    h, solves = hamiltonian(setting) if setting.has_energy else (None, ())
+    definitions = () if h is None else velocities_of(setting, h, solves)
     rates = rates_of(setting, pair, route)
-    tensor = poisson_structure(setting).tensor
+    tensor = poisson_structure(setting).tensor if has_structure(setting) else None
     exact = Exact(definitions, rates, h, emitted(setting, h), tensor, solves)
     steps = (*search, *_steps(setting, pair, definitions, rates))
     return replace(Equations(setting, route, exact, steps), pair=pair)
@@ -68,13 +69,14 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     texts = f"L = {pair.texts[0]},  M = {pair.texts[1]}"
+    velocities = Step(
+        "Velocities",
+        "xi = dh/dmu",
+        r"\xi = \partial h / \partial \mu",
+        tuple((symbol(name), value) for name, value in definitions),
+    )
     return (
-        Step(
-            "Velocities",
-            "xi = dh/dmu",
-            r"\xi = \partial h / \partial \mu",
-            tuple((symbol(name), value) for name, value in definitions),
-        ),
+        *([velocities] if setting.has_energy else []),
         Step("Lax pair", texts, "L(\\lambda), M(\\lambda)", _entries(pair)),
         Step(
             "Lax equation, power by power",
@@ -105,8 +107,10 @@ def _integrals(setting: Setting) -> Step:
         f"integral{n} from tr L^{each.trace} at {found.pair.spectral}^{each.power}"
         for n, each in enumerate(found.emitted, 1)
     )
+    known = ["the energy"] * setting.has_energy
+    known += ["the claimed Casimirs"] * bool(known or setting.spec.casimirs)
     return Step(
-        "Integrals beside the energy and the claimed Casimirs",
+        f"Integrals{' beside ' * bool(known)}{' and '.join(known)}",
         f"coefficients of tr L^k: {words or 'none'}",
         r"\mathrm{tr}\, L^k = \mathrm{const}",
         tuple((symbol(name), value) for name, value in found.named),

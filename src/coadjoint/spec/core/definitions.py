@@ -8,12 +8,19 @@ definition it is from. Read next: `coadjoint.spec.core.formulas`.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from coadjoint import limits
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean
+from coadjoint.spec.core.names import refusal
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.shapes import shape_of
+from coadjoint.spec.core.sizes import check_size
+from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import (
     Call,
     Component,
@@ -21,7 +28,7 @@ from coadjoint.spec.core.tree import (
     Name,
     Node,
     children,
-    rebuilt,
+    rebuild,
     walk,
     walk_up,
 )
@@ -87,7 +94,7 @@ def expand(
     made: dict[int, tuple[Node, int]] = {}  # with the number of parts
     for node in walk_up(tree):
         below = [made[id(child)] for child in children(node)]
-        found = rebuilt(node, [part for part, _ in below]), 1 + sum(count for _, count in below)
+        found = rebuild(node, [part for part, _ in below]), 1 + sum(count for _, count in below)
         definition = definitions.get(_called(node))
         if definition is not None:
             put = _put_in(node, definition, below)
@@ -137,7 +144,7 @@ def _put_in(
     made: dict[int, Node] = {}
     count = 0
     for part in walk_up(definition.tree):
-        fresh = rebuilt(part, [made[id(child)] for child in children(part)])
+        fresh = rebuild(part, [made[id(child)] for child in children(part)])
         fresh = replace(fresh, start=node.start, end=node.end, within=definition.name)
         argument = values.get(_called(part)) if isinstance(part, (Name, Index)) else None
         if argument is not None:
@@ -155,3 +162,93 @@ def _component(node: Node, whole: Node) -> Node:
         return replace(node, name=whole.name)
     start, end, within = node.start, node.end, node.within
     return Component(node.name, whole, node.indices, start=start, end=end, within=within)
+
+
+# -- reading --------------------------------------------------------------------------------------
+
+
+def signature(key: str) -> tuple[str, tuple[str, ...]]:
+    """The name and the arguments in a key of [definitions].
+
+    >>> signature("V(s, d)"), signature("u")
+    (('V', ('s', 'd')), ('u', ()))
+    """
+    name, _, rest = key.partition("(")
+    return name.strip(), tuple(part.strip() for part in rest.rstrip(") ").split(",") if rest)
+
+
+def shapes_of(quantities: Iterable[Any]) -> dict[str, Shape]:
+    """Shapes of declared quantities, whole and by component."""
+    shapes: dict[str, Shape] = {}
+    for each in quantities:
+        shapes |= {**dict.fromkeys(each.components, ()), each.name: each.value_shape}
+    return shapes
+
+
+def define(
+    source: Source, texts: Mapping[str, str], shapes: Mapping[str, Shape]
+) -> tuple[Definition, ...]:
+    """Definitions in their order; each may use those before it.
+
+    Args:
+        source: The text of the spec.
+        texts: Expressions by the keys of [definitions].
+        shapes: Shapes of all that they may name beside each other.
+
+    Raises:
+        SpecError: An expression is none, or a name in it is unknown.
+        LimitError: With the earlier definitions put in, an expression is too large.
+    """
+    known: dict[str, Definition] = {}
+    for text, expression in texts.items():
+        key: KeyPath = ("definitions", text)
+        name, arguments = signature(text)
+        _check_arguments(source, key, arguments, [*shapes, *map(_name, texts)])
+        try:
+            tree = expand(read_expression(expression, functions(known)), known, source.spent)
+            shape = _shape(tree, shapes, arguments, [_name(later) for later in texts])
+        except ExpressionError as error:
+            raise source.expression_fault(key, error) from None
+        known[name] = Definition(name, arguments, expression, tree, shape)
+    return tuple(known.values())
+
+
+def _name(key: str) -> str:
+    return signature(key)[0]
+
+
+def _check_arguments(
+    source: Source, key: KeyPath, arguments: Sequence[str], taken: Sequence[str]
+) -> None:
+    """Arguments have names of their own."""
+    for place, argument in enumerate(arguments):
+        if argument in taken or argument in arguments[:place]:
+            problem, expected = f"the argument {argument!r} has a name that is taken", "a free name"
+            hint = "A variable or parameter need not be an argument."
+        elif (refused := refusal(argument)) is not None:
+            problem, expected, hint = refused
+        else:
+            continue
+        at = source.positions.key(key)
+        raise source.fault(key, problem, found=argument, expected=expected, hint=hint, at=at)
+
+
+def _shape(
+    tree: Node, shapes: Mapping[str, Shape], arguments: Sequence[str], defined: Sequence[str]
+) -> Shape | None:
+    """The shape of a definition; None with arguments, whose shapes only a call has."""
+    for node in walk(tree):
+        if isinstance(node, (Name, Index)) and node.name not in (*shapes, *arguments):
+            later = node.name in defined
+            raise ExpressionError(
+                f"{node.name!r} is {'defined no earlier' if later else 'not declared'}",
+                node.start,
+                node.end,
+                found=node.name,
+                expected="variables, parameters, arguments and earlier definitions",
+                hint="" if later else did_you_mean(node.name, (*shapes, *arguments, *defined)),
+            )
+    if arguments:
+        return None
+    check_size(tree, shapes)
+    return shape_of(tree, shapes)

@@ -188,15 +188,20 @@ class Reading:
         every = dict.fromkeys((naming.name, *naming.components, *naming.rates))
         for derived in every:
             if derived in self.owners:
-                raise self._doubled(derived, naming, self.owners[derived])
+                raise self._explain_doubled(derived, naming, self.owners[derived])
         self.owners |= dict.fromkeys(every, naming)
 
-    def _doubled(self, derived: str, naming: Naming, owner: Naming) -> CoadjointError:
+    def _explain_doubled(self, derived: str, naming: Naming, owner: Naming) -> CoadjointError:
         """An error for a name that two things would have."""
         problem = f"{derived!r} is doubled: {owner.key[0]}.{owner.name} has that name too"
         usual = "Rename one of them; the components of I with shape [3] are I1, I2, I3."
         hint = naming.why or owner.why or usual
         return self.at_key(naming.key, problem, derived, "names and components that differ", hint)
+
+    def free_name(self, name: str, of: str = "thing") -> str:
+        """A free name, for a message: the wanted one, or one that tells what it is of."""
+        names = (name, f"{name}_{of}", *(f"{name}_{of}_{n}" for n in range(2, 99)))
+        return next(each for each in names if each not in self.owners and refusal(each) is None)
 
     # -- formulas -----------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ from coadjoint.spec.core.source import Source
 
 NAME_PATTERN = "^[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*$"
 # Printed in comments of generated code: no text that opens or closes one.
-_UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.()-]+", re.ASCII)
+_UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.(),-]+", re.ASCII)
 _LICENSE = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*", re.ASCII)
 #: Keys such as ``[e1, e2]`` of a bracket in an algebra, ``{X1, X2}`` of one of functions.
 BRACKET_PATTERN = r"^\[ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\]$"
@@ -45,7 +45,7 @@ def _is_prose(text: str) -> str:
 
 def _is_unit(text: str) -> str:
     if not _UNIT.fullmatch(text):
-        raise ValueError("letters, digits, space and ^ / * . ( ) -, as in 'kg m^2/s'")
+        raise ValueError("letters, digits, space and ^ / * . ( ) , -, as in 'kg m^2/s'")
     return text
 
 
@@ -173,6 +173,10 @@ def _shape_text(value: object) -> str:
     )
 
 
+#: What says how many components the entries of a table have.
+_SIZED = {"variables": "block, representation or shape", "parameters": "shape"}
+
+
 def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
     """A number of components that no matrix of a form keeps."""
     counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
@@ -181,5 +185,5 @@ def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> Coadjoin
         f"{count} components fill no matrix of the form {form!r}",
         found=count,
         expected=f"{counts[form]} components for an n by n matrix",
-        hint="Remove form, or choose another block, representation or shape.",
+        hint=f"Remove form, or choose another {_SIZED[str(key[0])]}.",
     )

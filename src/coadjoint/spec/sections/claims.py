@@ -240,7 +240,7 @@ def _check_claims(reading: Reading) -> None:
                     f"there are {table} without a bracket",
                     found=table,
                     expected="a Lagrangian, momenta or [poisson] that give a bracket",
-                    hint=f"Remove {table}, or declare [lagrangian].",
+                    hint=f"Remove {table}, or declare [lagrangian] and a route that takes it.",
                 )
     particles = [variable for variable in variables if variable.role == "coordinate"]
     flat = [q for q in particles if q.value_shape not in ((3,), (3, 3)) or q.form == "symmetric"]

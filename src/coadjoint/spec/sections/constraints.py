@@ -12,13 +12,22 @@ from dataclasses import dataclass
 from typing import Any
 
 from coadjoint.spec.core.components import Shape, component_names
-from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.definitions import define, shapes_of, signature
+from coadjoint.spec.core.formulas import DRIVING, Declared, Formula, Scope, make_scope
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.relations import EQUATION, read_relation
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.sections.solved import find_solved_velocities
-from coadjoint.spec.sections.variables import motion_roles
+from coadjoint.spec.sections.inputs import INPUTS
+from coadjoint.spec.sections.parameters import PARAMETERS
+from coadjoint.spec.sections.solved import (
+    find_definitions_with_reactions,
+    find_names,
+    find_solved_velocities,
+    reaction_name,
+)
+from coadjoint.spec.sections.time import TIME
+from coadjoint.spec.sections.variables import VARIABLES, motion_roles
 
 
 @dataclass(frozen=True)
@@ -52,7 +61,7 @@ class Constraint:
     @property
     def reaction(self) -> str:
         """Name of its multiplier."""
-        return f"{self.name}_reaction"
+        return reaction_name(self.name)
 
     @property
     def reactions(self) -> tuple[str, ...]:
@@ -84,34 +93,70 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
     }
-    scope = reading.scope("a constraint", motion_roles(reading))
-    found = []
+    scope, found = _scope(reading), []
     for name, text in texts.items():
+        _check_names_no_reaction(reading, ("constraints", name), text)
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
         found.append(Constraint(name, left, right, *solved.get(name, ())))
     return tuple(found)
 
 
+def _scope(reading: Reading) -> Scope:
+    """What constraints may name: definitions among it, but those that name reactions.
+
+    The shapes of reactions, which these need, follow from the constraints.
+    """
+    kind, roles, file = "a constraint", motion_roles(reading), reading.file
+    later = find_definitions_with_reactions(file)
+    if not later:
+        return reading.scope(kind, roles)
+    given: list[Declared] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
+    given += filter(None, [TIME.of(reading)])
+    texts = {key: text for key, text in file.definitions.items() if key not in later}
+    plain = define(reading.source, texts, shapes_of(given))
+    return make_scope(kind, roles, [*given, *plain], driven=DRIVING)
+
+
+def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
+    """A constraint rests on no definition that names a reaction."""
+    names = find_names(reading.file, text.split("=="))
+    for definition in sorted(find_definitions_with_reactions(reading.file)):
+        name = signature(definition)[0]
+        if name in names:
+            raise reading.source.fault(
+                key,
+                f"the constraint rests on {name}, which names a reaction",
+                found=name,
+                expected="an equation between velocities, which no reaction enters",
+                hint=f"Write {name} without reactions, or use it in [forces] alone.",
+            )
+
+
 def _check_unasked(source: Source, file: Any) -> None:
-    """Nothing is asked of a constrained motion that rests on a Poisson bracket.
+    """Nothing is asked of a constrained motion for which it has no bracket.
 
     Raises:
         SpecError: Something is, with what to declare instead.
     """
-    asked: dict[KeyPath, tuple[str, bool]] = {
-        ("claims", "casimirs"): ("claims of Casimirs", bool(file.claims.casimirs)),
-        ("claims", "brackets"): ("claims of brackets", bool(file.claims.brackets)),
-        ("symmetries",): ("[symmetries]", bool(file.symmetries)),
-        ("transformations",): ("[transformations]", bool(file.transformations)),
+    gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
+    unbracketed = "none, since a constraint that gives no velocity leaves no bracket of the state"
+    asked: dict[KeyPath, tuple[str, bool, str]] = {
+        ("claims", "casimirs"): ("claims of Casimirs", not gives, unbracketed),
+        ("claims", "brackets"): ("claims of brackets", not gives, unbracketed),
+        ("symmetries",): (
+            "[symmetries]",
+            bool(file.constraints),
+            "none, since symmetries of a constrained motion need not keep their momenta",
+        ),
     }
-    for key, (what, there) in asked.items():
-        if there:
+    for key, (what, is_refused, expected) in asked.items():
+        table = getattr(file.claims, str(key[-1])) if len(key) > 1 else file.symmetries
+        if table and is_refused:
             raise source.fault(
                 key,
                 f"there are {what} beside [constraints]",
                 found=key[-1],
-                expected="none, since the bracket of a constrained motion is almost-Poisson and "
-                "symmetries need not keep their momenta",
+                expected=expected,
                 hint="Declare momenta along the constraints in [momenta], and name what is "
                 "conserved in claims.conserved.",
             )

@@ -8,37 +8,22 @@ puts them into other formulas.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.definitions import Definition, expand, functions
-from coadjoint.spec.core.expressions import read_expression
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean
-from coadjoint.spec.core.formulas import Quantity
-from coadjoint.spec.core.names import refusal
+from coadjoint.spec.core.definitions import Definition, define, shapes_of, signature
+from coadjoint.spec.core.formulas import Declared
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
-from coadjoint.spec.core.shapes import shape_of
-from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import Index, Name, Node, walk
 from coadjoint.spec.core.values import DEFINITION_PATTERN
+from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
 from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.parameters import PARAMETERS
+from coadjoint.spec.sections.solved import find_definitions_with_reactions
 from coadjoint.spec.sections.time import TIME
 from coadjoint.spec.sections.variables import VARIABLES
 
 _KEY = re.compile(DEFINITION_PATTERN, re.ASCII)
-
-
-def signature(key: str) -> tuple[str, tuple[str, ...]]:
-    """The name and the arguments in a key of [definitions].
-
-    >>> signature("V(s, d)"), signature("u")
-    (('V', ('s', 'd')), ('u', ()))
-    """
-    name, _, rest = key.partition("(")
-    return name.strip(), tuple(part.strip() for part in rest.rstrip(") ").split(",") if rest)
 
 
 def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Definition, ...]:
@@ -48,28 +33,16 @@ def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Defini
         SpecError: A key or an expression is none, or a name in it is unknown.
         LimitError: With the earlier definitions put in, an expression is too large.
     """
-    source = reading.source
-    given: list[Quantity] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
-    shapes: dict[str, Shape] = {}
     for text in texts:
-        reading.declare(Naming(("definitions", text), _checked_name(source, text)))
-    for quantity in (*given, *filter(None, [TIME.of(reading)])):
-        shapes |= {**dict.fromkeys(quantity.components, ()), quantity.name: quantity.value_shape}
-    known: dict[str, Definition] = {}
-    for text, expression in texts.items():
-        key: KeyPath = ("definitions", text)
-        name, arguments = signature(text)
-        _check_arguments(source, key, arguments, [*shapes, *map(_name, texts)])
-        try:
-            tree = expand(read_expression(expression, functions(known)), known, source.spent)
-            shape = _shape(tree, shapes, arguments, [_name(later) for later in texts])
-        except ExpressionError as error:
-            raise source.expression_fault(key, error) from None
-        known[name] = Definition(name, arguments, expression, tree, shape)
-    return tuple(known.values())
+        reading.declare(Naming(("definitions", text), _read_name(reading.source, text)))
+    given: list[Declared] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
+    shapes = shapes_of([*given, *filter(None, [TIME.of(reading)])])
+    if find_definitions_with_reactions(reading.file):
+        shapes |= reaction_shapes(CONSTRAINTS.of(reading))
+    return define(reading.source, texts, shapes)
 
 
-def _checked_name(source: Source, text: str) -> str:
+def _read_name(source: Source, text: str) -> str:
     """The name in a key of [definitions]."""
     if not _KEY.fullmatch(text):
         key: KeyPath = ("definitions", text)
@@ -80,48 +53,7 @@ def _checked_name(source: Source, text: str) -> str:
             expected='a name, or a name with arguments in quotes, such as "V(s, d)"',
             at=source.positions.key(key),
         )
-    return _name(text)
-
-
-def _name(key: str) -> str:
-    return signature(key)[0]
-
-
-def _check_arguments(
-    source: Source, key: KeyPath, arguments: Sequence[str], taken: Sequence[str]
-) -> None:
-    """Arguments have names of their own."""
-    for place, argument in enumerate(arguments):
-        if argument in taken or argument in arguments[:place]:
-            problem, expected = f"the argument {argument!r} has a name that is taken", "a free name"
-            hint = "A variable or parameter need not be an argument."
-        elif (refused := refusal(argument)) is not None:
-            problem, expected, hint = refused
-        else:
-            continue
-        at = source.positions.key(key)
-        raise source.fault(key, problem, found=argument, expected=expected, hint=hint, at=at)
-
-
-def _shape(
-    tree: Node, shapes: Mapping[str, Shape], arguments: Sequence[str], defined: Sequence[str]
-) -> Shape | None:
-    """The shape of a definition; None with arguments, whose shapes only a call has."""
-    for node in walk(tree):
-        if isinstance(node, (Name, Index)) and node.name not in (*shapes, *arguments):
-            later = node.name in defined
-            raise ExpressionError(
-                f"{node.name!r} is {'defined no earlier' if later else 'not declared'}",
-                node.start,
-                node.end,
-                found=node.name,
-                expected="variables, parameters, arguments and earlier definitions",
-                hint="" if later else did_you_mean(node.name, (*shapes, *arguments, *defined)),
-            )
-    if arguments:
-        return None
-    check_size(tree, shapes)
-    return shape_of(tree, shapes)
+    return signature(text)[0]
 
 
 DEFINITIONS = Table[tuple[Definition, ...]](

@@ -10,13 +10,15 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import did_you_mean, listed
-from coadjoint.spec.core.formulas import Formula, Scope, misfit
+from coadjoint.spec.core.formulas import ROLES, Formula, Scope, misfit
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
+from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
 
 
@@ -27,7 +29,9 @@ def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula
         SpecError: There is no such variable, a momentum is named whose velocity has a Lagrangian,
             or the force has another shape.
     """
-    scope, forced = reading.scope("a force", motion_roles(reading)), _find_forced(reading)
+    reactions = reaction_shapes(CONSTRAINTS.of(reading))  # which friction is proportional to
+    scope = reading.scope("a force", motion_roles(reading), reactions)
+    forced = _find_forced(reading)
     return {
         name: read_along(reading, ("forces", name), text, scope, forced)
         for name, text in texts.items()
@@ -53,15 +57,7 @@ def read_along(
     """A formula of the shape of the velocity that its key names."""
     name = str(key[-1])
     if name not in velocities:
-        roles = {each.role for each in velocities.values()} or {"velocity"}
-        what = "velocity" if roles == {"velocity"} else "variable"
-        raise reading.at_key(
-            key,
-            f"there is no such {what} as {name!a}",
-            name,
-            f"one of {listed(velocities)}" if velocities else "a declared velocity",
-            did_you_mean(name, velocities),
-        )
+        raise _no_velocity(reading, key, name, velocities)
     formula = reading.formula(key, text, scope, any_shape=True)
     wanted = velocities[name].shape
     if formula.shape != wanted:
@@ -85,6 +81,23 @@ class DissipationPart(Part):
     R: str = Field(description="Rayleigh's function; the force is -dR/dxi")
 
 
+def _no_velocity(
+    reading: Reading, key: KeyPath, name: str, velocities: Mapping[str, Variable]
+) -> CoadjointError:
+    """An error for something along what is no velocity, or nothing that a force may change."""
+    roles = {each.role for each in velocities.values()} or {"velocity"}
+    what = "velocity" if roles == {"velocity"} else "variable"
+    problem, hint = f"there is no such {what} as {name!a}", did_you_mean(name, velocities)
+    declared = {each.name: each for each in VARIABLES.of(reading)}
+    if name in declared:
+        own = declared[name]
+        problem = f"{name!r} is {ROLES[own.role]}"
+        near = [v for v, each in velocities.items() if (each.block, each.of) == (own.block, own.of)]
+        hint = f"Write {(near or list(velocities))[0]} in its place." if velocities else ""
+    expected = f"one of {listed(velocities)}" if velocities else "a declared velocity"
+    return reading.at_key(key, problem, name, expected, hint or f"Remove {name}.")
+
+
 def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     """Rayleigh's function.
 
@@ -92,7 +105,9 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
         SpecError: It is no formula of velocities.
     """
     key: KeyPath = ("dissipation", "R")
-    formula = reading.formula(key, part.R, reading.scope("a dissipation", motion_roles(reading)))
+    reactions = reaction_shapes(CONSTRAINTS.of(reading))
+    scope = reading.scope("a dissipation", motion_roles(reading), reactions)
+    formula = reading.formula(key, part.R, scope)
     velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
     known = {name for each in velocities for name in (each.name, *each.components)}
     if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
@@ -101,8 +116,8 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
             "Rayleigh's function names no velocity",
             found=part.R,
             expected="a function of velocities, whose force is -dR/dxi",
-            hint="Declare velocities, or write what acts along a momentum in [forces]."
-            if reading.file.reduction is None
+            hint=f"Name {listed(each.name for each in velocities)} in it, or remove [dissipation]."
+            if velocities
             else "Write what acts along a momentum in [forces].",
         )
     return formula

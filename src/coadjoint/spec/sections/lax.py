@@ -81,7 +81,7 @@ def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formu
             f"{which} is {words(formula.shape)}",
             found=words(formula.shape),
             expected="a square matrix",
-            hint="Write hat(Pi) for the matrix of a vector, diag(a) for a diagonal one.",
+            hint="Write hat(a) for the matrix of a vector a, diag(a) for a diagonal one.",
         )
     return formula
 

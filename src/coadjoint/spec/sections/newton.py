@@ -69,7 +69,7 @@ def _check_law(reading: Reading, name: str, given: bool, moving: bool) -> None:
             f"the coordinate {name!r} has no law",
             found=name,
             expected="a law for every coordinate",
-            hint=f'Write for instance {name} = {{ mass = "m", force = "..." }}.',
+            hint=f'Write for instance {name} = {{ force = "-{name}" }}.',
         )
     if not moving:
         raise reading.source.fault(
@@ -77,9 +77,18 @@ def _check_law(reading: Reading, name: str, given: bool, moving: bool) -> None:
             f"no velocity of {name!r} is part of the state",
             found=name,
             expected="a velocity of every coordinate, and no momenta beside them",
-            hint=f'Write v = {{ role = "velocity", of = "{name}" }}.',
+            hint=_advise_velocity(reading, name),
             at=reading.source.positions.key(("newton", name)),
         )
+
+
+def _advise_velocity(reading: Reading, name: str) -> str:
+    """How the velocity of a coordinate becomes part of the state."""
+    of_it = {v.role: v.name for v in VARIABLES.of(reading) if v.of == name}
+    if "momentum" in of_it and "velocity" in of_it:
+        return f"Remove the momentum {of_it['momentum']}."
+    velocity = of_it.get("momentum") or reading.free_name("v", name)
+    return f'Write {velocity} = {{ role = "velocity", of = "{name}" }}.'
 
 
 def _read_force(reading: Reading, variable: Variable, text: str, scope: Scope) -> Formula:

@@ -96,6 +96,13 @@ class _Bracket:
         self.forms = {variable.name: variable.form for variable in variables}
         self.places = {variable.name: self._run(variable) for variable in variables}
         self.places |= {name: (place,) for place, name in enumerate(self.state)}
+        file = reading.file
+        self.alone = {
+            name
+            for variable in variables
+            if file.metriplectic is not None or variable.name in file.forces
+            for name in variable.components
+        }
 
     def _run(self, variable: Variable) -> tuple[int, ...]:
         """The places of a whole variable."""
@@ -171,7 +178,7 @@ class _Bracket:
         return self.state.index(found[1]), self.state.index(found[2])
 
     def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
-        """The places of positions and momenta with their brackets; all coordinates are in pairs."""
+        """The places of positions and momenta with their brackets; others commute with all."""
         weights: dict[tuple[int, int], Fraction] = {}
         paired: list[int] = []
         for number, pair in enumerate(names):
@@ -205,11 +212,12 @@ class _Bracket:
         return self.places[name]
 
     def _check_single(self, places: Sequence[int]) -> None:
-        """Each coordinate stands in one pair, since {q, p} = 1 leaves none without a partner."""
+        """Each coordinate stands in one pair; one that commutes with all is moved by more."""
         for place, name in enumerate(self.state):
-            if places.count(place) != 1:
+            if places.count(place) != 1 and (place in places or name not in self.alone):
                 often = "no pair" if place not in places else "more than one pair"
-                hint = "Declare a constant as a parameter." if place not in places else ""
+                ways = "Declare a constant as a parameter, or let a force or [metriplectic] move it"
+                hint = "" if place in places else f"{ways}."
                 raise self.source.fault(
                     ("poisson", "canonical"),
                     f"the coordinate {name!r} is in {often}",

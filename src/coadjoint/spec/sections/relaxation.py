@@ -62,7 +62,7 @@ def read_double_bracket(reading: Reading, part: DoubleBracketPart) -> Relaxation
     """Dissipation that keeps Casimirs.
 
     Raises:
-        SpecError: G has another size than the state.
+        SpecError: G has another size than the state, or the state has velocities.
     """
     return Relaxation(_read_metric(reading, "double_bracket", part.G))
 
@@ -87,8 +87,17 @@ def read_metriplectic(reading: Reading, part: MetriplecticPart) -> Relaxation:
 
 
 def _read_metric(reading: Reading, table: str, text: str) -> Formula:
-    """G: a scalar, or a matrix with a row for each component of the state."""
+    """G: a scalar, or a matrix with a row for each component of the state, which is of momenta."""
     key: KeyPath = (table, "G")
+    moving = [v for v in state_of(VARIABLES.of(reading)) if v.role == "velocity"]
+    if moving:
+        raise reading.source.fault(
+            (table,),
+            f"the state has the velocity {moving[0].name!r}, and G acts by a bracket of momenta",
+            found=moving[0].name,
+            expected="momenta in the state",
+            hint=f'Declare them, as in p = {{ role = "momentum", of = "{moving[0].of or "q"}" }}.',
+        )
     scope = reading.scope("a metric", motion_roles(reading))
     G = reading.formula(key, text, scope, any_shape=True)
     size = sum(len(each.components) for each in state_of(VARIABLES.of(reading)))

@@ -23,7 +23,12 @@ from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import Block, Matrix
 from coadjoint.spec.sections.algebras import ALGEBRA, scalars_of
-from coadjoint.spec.sections.matrices import block_places, by_matrices, located, representation_of
+from coadjoint.spec.sections.matrices import (
+    block_places,
+    by_matrices,
+    point_at_faults,
+    representation_of,
+)
 
 
 class RepresentationPart(Part):
@@ -91,14 +96,14 @@ def _on_matrices(
             f"the representation {name!r} says nothing of how the algebra acts",
             found=name,
             expected="matrices, or a block of the algebra as left or right",
-            hint='Write for instance right = "rotation".',
+            hint=f'Write for instance right = "{next(iter((*algebra.blocks, *algebra.basis)))}".',
             at=source.positions.key(key),
         )
     left, right = (
         _own_matrices(source, (*key, side), algebra, block)
         for side, block in (("left", part.left), ("right", part.right))
     )
-    with located(source, key):
+    with point_at_faults(source, key):
         return two_sided(algebra, name, left, right)
 
 

@@ -7,7 +7,7 @@ out: the velocities with their constraints. Read next: `coadjoint.spec.sections.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from coadjoint.spec.core.expressions import read_expression
@@ -23,7 +23,8 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     """The velocities that constraints give, each with its constraint and the side it stands on.
 
     A constraint gives a velocity if one side is that velocity alone and the other one does not
-    depend on it, also not through velocities that earlier constraints give.
+    depend on it, also not through velocities that earlier constraints give; and if no force names
+    its reaction, which is then solved for together with the accelerations.
 
     Args:
         file: The validated tables; formulas that cannot be read yet are passed over.
@@ -37,9 +38,11 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     velocities = {name for name, part in file.variables.items() if part.role == "velocity"}
     found: dict[str, tuple[str, int]] = {}
     reached: dict[str, set[str]] = {}
+    acting = [*file.forces.values(), *([file.dissipation.R] if file.dissipation else [])]
+    pressing = find_constraints_named(file, acting)
     for constraint, text in (file.constraints or {}).items():
         sides = [_parse(side, file) for side in text.split("==")]
-        if len(sides) != _SIDES:
+        if len(sides) != _SIDES or constraint in pressing:
             continue
         left, right = sides
         for own, other, sign in ((left, right, 1), (right, left, -1)):
@@ -59,6 +62,32 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     return found
 
 
+def reaction_name(constraint: str) -> str:
+    """Name of the multiplier of a constraint.
+
+    >>> reaction_name("plane")
+    'plane_reaction'
+    """
+    return f"{constraint}_reaction"
+
+
+def find_constraints_named(file: Any, texts: Iterable[str]) -> set[str]:
+    """The constraints whose reactions some texts name, also through definitions."""
+    names = find_names(file, texts)
+    return {name for name in file.constraints or {} if reaction_name(name) in names}
+
+
+def find_definitions_with_reactions(file: Any) -> set[str]:
+    """Keys of the definitions that name reactions, also through others."""
+    return {key for key, text in file.definitions.items() if find_constraints_named(file, [text])}
+
+
+def find_names(file: Any, texts: Iterable[str]) -> set[str]:
+    """What some texts name, whole or by component, also through definitions, and these."""
+    trees = (tree for text in texts if (tree := _parse(text, file)) is not None)
+    return set[str]().union(*(_find_names(tree, file) for tree in trees))
+
+
 def _parse(text: str, file: Any) -> Node | None:
     """A tree that may call the definitions with arguments; None where it cannot be read yet."""
     called = [key.split("(")[0].strip() for key in file.definitions if "(" in key]
@@ -69,7 +98,7 @@ def _parse(text: str, file: Any) -> Node | None:
 
 
 def _find_names(node: Node, file: Any) -> set[str]:
-    """Variables that an expression names, whole or by component, also through definitions."""
+    """Variables that an expression names, whole or by component, through definitions, and these."""
     defined = {key.split("(")[0].strip(): text for key, text in file.definitions.items()}
     pending, seen, found = [node], set[str](), set[str]()
     while pending:
@@ -77,6 +106,7 @@ def _find_names(node: Node, file: Any) -> set[str]:
             name = str(getattr(part, "name", "") or getattr(part, "function", ""))
             if name in defined and name not in seen:
                 seen.add(name)
+                found.add(name)
                 inner = _parse(defined[name], file)
                 pending += [] if inner is None else [inner]
             elif isinstance(part, Name | Index):

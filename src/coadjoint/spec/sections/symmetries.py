@@ -235,13 +235,14 @@ class _Actions:
         return {name: (size(algebra.matrices),) * 2}
 
     def _check_matrices(self, key: KeyPath, algebra: LieAlgebra) -> None:
+        """The algebra has matrices, which its elements are, or which act on the state."""
         if not algebra.matrices:
             raise self.source.fault(
                 key,
                 f"{algebra.name} has no matrices",
                 found=algebra.name,
                 expected="an algebra that is declared by matrices, or by name",
-                hint="Write vector in the place of matrix.",
+                hint=f"Write {'generators' if key[-1] == 'linear' else 'vector'} in its place.",
             )
 
     def _check_linear(self, key: KeyPath, names: Sequence[str], algebra: LieAlgebra) -> None:

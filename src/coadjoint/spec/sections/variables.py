@@ -254,7 +254,7 @@ def _as_partner(
             f"the {part.role} {key[-1]!r} belongs to no coordinate",
             found=part.role,
             expected=f"of = one of {listed(coordinates)}" if coordinates else "a coordinate",
-            hint="Add for instance " + f'of = "{coordinates[0] if coordinates else "q"}".',
+            hint=_advise_partner(part.role, parts, coordinates),
         )
     if part.of not in coordinates:
         raise source.fault(
@@ -274,6 +274,18 @@ def _as_partner(
         )
     whole = parts[part.of]
     return part.model_copy(update={"shape": whole.shape, "form": whole.form})
+
+
+def _advise_partner(
+    role: str, parts: Mapping[str, VariablePart], coordinates: Sequence[str]
+) -> str:
+    """How a velocity or momentum says what it belongs to."""
+    taken = {each.of for each in parts.values() if each.role == role}
+    free = [name for name in coordinates if name not in taken]
+    if free:
+        return f'Add for instance of = "{free[0]}".'
+    name = "q" if "q" not in parts else "q_0"
+    return f'Write {name} = {{ role = "coordinate" }}, and add of = "{name}".'
 
 
 def _alien_key(source: Source, key: KeyPath, part: VariablePart) -> CoadjointError:
@@ -369,7 +381,7 @@ def _representation(
             f"the advected quantity {key[-1]!r} has no representation",
             found=str(key[-1]),
             expected=f"representation = one of {listed((*KNOWN, *declared))}",
-            hint='Write representation = "vector".',
+            hint=f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".',
         )
     inner = (*key, "representation")
     name = part.representation

@@ -1,0 +1,197 @@
+r"""The nonholonomic Hamilton-Pontryagin route: velocities, momenta and motions vary on their own.
+
+Principle (Holm 2011, section 12.2): in the action of the unconstrained system
+
+.. math::
+    \int l(\xi, z) + \langle \mu, g^{-1}\dot g - \xi \rangle + \langle p, \dot q - v \rangle \, dt
+
+the velocities, the momenta and the motion vary independently. The constraints
+:math:`A(z)\,\xi = b` bind the variations of the motion, :math:`A\,g^{-1}\delta g = 0`, and only
+afterwards the velocities. So :math:`\mu = \partial l/\partial\xi`, :math:`\dot g = g\xi`, and with
+Lagrange's multipliers
+
+.. math::
+    \dot\mu_k = F_k(\mu, \xi, z) + f_k + \lambda_e A_{ek}, \qquad
+    A\,\dot\xi = \dot b - \dot A\,\xi.
+
+F is read off the action in exponential coordinates about the moving point, as on the route
+hamilton-pontryagin. Where a constraint gives a velocity, the second equation is solved for its
+rate, and the first one along that velocity for its multiplier; no basis of the distribution, no
+bracket and no frame occurs.
+Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
+Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
+from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
+from coadjoint.derive.mechanics.driving import explicit_rate
+from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
+from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.routes import hamilton_pontryagin
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+from coadjoint.spec import Spec
+
+ROUTE = "nonholonomic-hamilton-pontryagin"
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """Coordinates about the moving point; the other names are those of the route before it."""
+    return hamilton_pontryagin.symbols(spec) if spec.algebra is not None else ()
+
+
+def derive(setting: Setting) -> Equations:
+    """Equations of motion by the Hamilton-Pontryagin principle with constraints.
+
+    Raises:
+        DerivationError: As on the route nonholonomic.
+    """
+    mechanics(setting).check_quadratic()
+    found = distribution(setting)
+    forces, moved = _varied(setting)
+    momentum = _momentum_equations(found, forces, moved)
+    constraint = [_rate(found, each.residual, moved) for each in found.equations]
+    given, left = _eliminated(found, momentum, constraint)
+    field = setting.field
+    names = [rate_name(name) for name in found.independent]
+    mass = tuple(field.gradient(line, names) for line in left)
+    rest = dict.fromkeys([*names, *map(multiplier_name, range(len(found.kept)))], field.zero)
+    known = [-field.substitute(line, rest) for line in left]
+    motion = ConstrainedMotion(found)
+    exact = emission(motion, motion.kinematics, mass, known, list(given.items()))
+    steps = _steps(found, forces, momentum, constraint, given)
+    return Equations(setting, ROUTE, exact, steps, distribution=found)
+
+
+def _varied(setting: Setting) -> tuple[Row, dict[str, Element]]:
+    """F along each velocity by the variation of the motion, and ``dz/dt`` by that of momenta."""
+    known, own = mechanics(setting), len(symbols(setting.spec)) // 2
+    velocities = setting.elements(known.frame.velocities)
+    forces: Row = ()
+    moved = dict(zip(setting.positions, velocities[own:], strict=True))
+    if own:
+        action = hamilton_pontryagin.action_near(setting, known.lagrangian, known.momenta[:own])
+        forces = hamilton_pontryagin.momentum_equation(setting, action)
+        carried = hamilton_pontryagin.advection(setting, action)
+        for variable in setting.advected:
+            moved |= zip(variable.components, carried[variable.name], strict=True)
+    return (*forces, *setting.field.gradient(known.lagrangian, setting.positions)), moved
+
+
+def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) -> Element:
+    """The time derivative of a function of velocities, positions and time, in accelerations."""
+    setting, field = found.setting, found.setting.field
+    accelerations = {v: field[rate_name(v)] for v in found.frame.velocities}
+    rates = {**moved, **accelerations}
+    slopes = zip(field.gradient(function, list(rates)), rates.values(), strict=True)
+    own = explicit_rate(setting, function, "a constraint or a momentum")
+    return own + field.sum(slope * x for slope, x in slopes if slope != 0)
+
+
+def _momentum_equations(
+    found: Distribution, forces: Row, moved: Mapping[str, Element]
+) -> dict[str, Element]:
+    """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers."""
+    setting, field, names = found.setting, found.setting.field, found.frame.velocities
+    multipliers = setting.elements([each.reaction for each in found.equations])
+    lines = {}
+    for name, momentum, force, outer, column in zip(
+        names,
+        mechanics(setting).momenta,
+        forces,
+        external_forces(setting, names),
+        zip(*found.A, strict=True) if found.A else [()] * len(names),
+        strict=True,
+    ):
+        reaction = field.sum(a * x for a, x in zip(column, multipliers, strict=True))
+        lines[name] = _rate(found, momentum, moved) - force - outer - reaction
+    return lines
+
+
+def _eliminated(
+    found: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
+) -> tuple[dict[str, Element], list[Element]]:
+    """Rates and multipliers that follow, and the momentum equations that are left.
+
+    The velocity that a constraint gives has its rate from that constraint, and the constraint its
+    multiplier from the momentum equation along that velocity. Of the constraints that are kept
+    minus the multiplier has a name of its own.
+    """
+    field = found.setting.field
+    giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
+    lines = {rate_name(equation.solves): line for equation, line in giving}
+    rates = _solved(found, lines)
+    kept = {
+        equation.reaction: -field[multiplier_name(n)] for n, (equation, _) in enumerate(found.kept)
+    }
+    put = {**rates, **kept}
+    left = {name: field.substitute(line, put) for name, line in momentum.items()}
+    multipliers = _solved(found, {each.reaction: left[each.solves] for each, _ in giving})
+    rows = [field.substitute(left[name], multipliers) for name in found.independent]
+    return {**rates, **kept, **multipliers}, rows
+
+
+def _solved(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
+    """The unknowns of affine equations, one of which belongs to each of them."""
+    field, known = found.setting.field, dict[str, Element]()
+    for name, whole in lines.items():
+        line = field.substitute(whole, known)
+        value = field[name] - line / field.derivative(line, name)
+        known = {n: field.substitute(v, {name: value}) for n, v in known.items()}
+        known[name] = value
+    return known
+
+
+def _steps(
+    found: Distribution,
+    forces: Row,
+    momentum: Mapping[str, Element],
+    constraint: Sequence[Element],
+    given: Mapping[str, Element],
+) -> tuple[Step, ...]:
+    """The derivation as a person would write it down."""
+    names, momenta = found.frame.velocities, mechanics(found.setting).momenta
+    steps = (
+        Step(
+            "Variation of the velocities: the Legendre relation",
+            "mu = dl/dxi",
+            r"\mu = \partial l / \partial \xi",
+            tuple(zip((partial("l", name) for name in names), momenta, strict=True)),
+        ),
+        Step(
+            "Variation of the motion without constraints",
+            "F_k from d/dt dL/d(deps/dt) = dL/deps at eps = 0, dl/dq of coordinates",
+            r"F_k: \quad \frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
+            r"= \frac{\partial L}{\partial \epsilon}",
+            tuple((symbol(f"F_{name}"), value) for name, value in zip(names, forces, strict=True)),
+        ),
+        Step(
+            "Variation of the motion within the constraints",
+            "dmu/dt - F - f - A^T lambda = 0",
+            r"\dot\mu - F - f - A^T \lambda = 0",
+            tuple((symbol(f"E_{name}"), value) for name, value in momentum.items()),
+        ),
+        Step(
+            "Constraints, imposed after the variation, and their rates",
+            "d/dt (left - right) = 0",
+            r"\frac{d}{dt}(A \xi - b) = 0",
+            tuple(
+                (rate(each.name), value)
+                for each, value in zip(found.equations, constraint, strict=True)
+            ),
+        ),
+        Step(
+            "Rates and multipliers that these equations give",
+            "dxi/dt = B deta/dt + c,  lambda",
+            r"\dot\xi = B \dot\eta + c, \quad \lambda",
+            tuple((symbol(name), value) for name, value in given.items()),
+        ),
+    )
+    return tuple(step for step in steps if step.lines)

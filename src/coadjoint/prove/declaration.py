@@ -1,0 +1,103 @@
+"""Proving, declaration: what the generated files of a system say of it.
+
+Comes in: proved Equations and the Programs of its functions. Goes out: a `KernelContext` of names,
+units and numbers. Of a spec's free text it holds nothing, nor of the texts of its claims: rewording
+these leaves every kernel as it is.
+Read next: `coadjoint.render.kernels`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from coadjoint.declared import KernelContext, Quantity
+from coadjoint.derive import Equations
+from coadjoint.derive.document import equation_lines
+from coadjoint.derive.domain import bounds
+from coadjoint.derive.records import Emitted
+from coadjoint.derive.setting import Declared
+from coadjoint.lower.program import Program
+from coadjoint.prove.driven import while_constant
+from coadjoint.prove.integrals import is_conserved
+from coadjoint.spec import Spec
+from coadjoint.spec.model import Reconstructed
+
+
+def kernel_context(
+    equations: Equations, programs: Mapping[str, Program], supported: int = 0
+) -> KernelContext:
+    """What the generated files of a system say; of a spec's free text, nothing.
+
+    Args:
+        equations: The emitted route.
+        programs: Its functions.
+        supported: How many claims are numerically supported and not proved.
+    """
+    spec = equations.spec
+    first, *others = spec.routes
+    proved = [f"Proved equal to the route {route}." for route in others]
+    return KernelContext(
+        name=spec.name,
+        spec=f"derivations/{spec.name}.toml",
+        license=spec.license,
+        routes=(f"Route {first} {_origin(spec)}.", *proved),
+        equations=equation_lines(equations),
+        state=tuple(map(_quantity, spec.state)),
+        parameters=tuple(map(_quantity, spec.parameters)),
+        observables=tuple(_observable(equations, each) for each in equations.exact.emitted),
+        programs=tuple(programs.values()),
+        supported=supported,
+        reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
+        inputs=tuple(map(_quantity, spec.inputs)),
+        time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
+        domain=tuple(bound for bound, _ in bounds(equations)),
+    )
+
+
+def _origin(spec: Spec) -> str:
+    """Where the bracket of a system comes from, for the head of its files."""
+    if spec.algebra is not None:
+        return f"on {spec.algebra.name}, {spec.invariance} invariant"
+    if spec.reduction is not None:
+        return f"{_origin(spec.reduction.whole)}, restricted"
+    if spec.poisson is None:
+        return "on the space of " + ", ".join(q.name for q in spec.having_role("coordinate"))
+    return {
+        "nambu": "with the Nambu bracket of its distinguished functions",
+        "brackets": "with the declared brackets",
+        "canonical": "with the canonical bracket",
+    }[spec.poisson.kind]
+
+
+def _quantity(declared: Declared) -> Quantity:
+    """What is declared as the generated package declares it."""
+    default = getattr(declared, "default", None)
+    return Quantity(
+        declared.name,
+        declared.shape,
+        declared.unit,
+        declared.components,
+        None if default is None else tuple(map(float, default)),
+        getattr(declared, "positive", False),
+    )
+
+
+def _followed(spec: Spec, each: Reconstructed) -> Quantity:
+    """What is reconstructed as the generated package declares it."""
+    upright = spec.rolling.normal if spec.rolling and each.attitude and each.of_rolling else ""
+    default = None if each.default is None else tuple(map(float, each.default))
+    return Quantity(each.name, each.shape, each.unit, each.components, default, upright=upright)
+
+
+def _observable(equations: Equations, each: Emitted) -> Quantity:
+    """What is emitted as the generated package declares it."""
+    conserved = is_conserved(equations, each)
+    held = conserved and while_constant(equations, each.values)
+    return Quantity(
+        name=each.name,
+        shape=each.shape,
+        unit=each.unit,
+        components=each.components,
+        conserved=conserved,
+        while_constant=bool(held),
+    )

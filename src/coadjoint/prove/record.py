@@ -1,0 +1,43 @@
+"""Proving, record: the certificate as a generated file.
+
+Comes in: a Spec and its Certificate. Goes out: the text of ``certificate.json``, the only generated
+file that holds free text of the spec.
+Read next: `coadjoint.files`, which reads it without trust.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from coadjoint.derive.setting import Declared
+from coadjoint.prove.certificate import Certificate
+from coadjoint.spec import Spec
+
+
+def certificate_json(spec: Spec, certificate: Certificate) -> str:
+    """The certificate with the spec's free text, for programs and documents."""
+    quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
+    record: dict[str, Any] = {
+        "title": spec.title,
+        "source": spec.source,
+        "description": spec.description,
+        "docs": {quantity.name: quantity.doc for quantity in quantities if quantity.doc}
+        | {entry.name: entry.doc for entry in spec.observables if entry.doc}
+        | {entry.name: entry.doc for entry in spec.symmetries if entry.doc}
+        | {entry.name: entry.doc for entry in spec.reconstruction if entry.doc},
+        "casimirs": [formula.in_one_line for formula in spec.casimirs],
+        "routes": list(spec.routes),
+        "claims": certificate.as_record()["claims"],
+        "findings": certificate.as_record()["findings"],
+    }
+    if spec.definitions:  # the texts of casimirs and claims may hold them
+        record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
+    if spec.constraints:  # in the order of the rows of the function constraint_residual
+        record["constraints"] = {
+            name: each.in_one_line for each in spec.constraints for name in each.components
+        }
+    if spec.domain:  # generated code names conditions; their text stands here
+        record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
+    return json.dumps(record, indent=2, ensure_ascii=True) + "\n"
