@@ -34,6 +34,7 @@ CORE = (
         "action_near _at_the_motion momentum_equation advection",
         systems=ADVECTED,
         tests=ON_BOTH_SIDES,
+        fallacies={"action_near: drop pairing": "g^-1 dg/dt = xi put in before varying"},
         equivalent=dict.fromkeys(
             (
                 "action_near: flip rate in constraint",
@@ -44,7 +45,14 @@ CORE = (
             "the momentum equation takes no slope of <mu, deps/dt - xi> but those that hold eps",
         ),
     ),
-    *core_of("clebsch", "clebsch", "derive _pairing", systems=ADVECTED, tests=ON_BOTH_SIDES),
+    *core_of(
+        "clebsch",
+        "clebsch",
+        "derive _pairing",
+        systems=ADVECTED,
+        tests=ON_BOTH_SIDES,
+        fallacies={"derive: drop pairing": "dq/dt + rho(xi) q = 0 put in before varying"},
+    ),
     *core_of(
         "poincare",
         "poincare",
@@ -97,7 +105,7 @@ CORE = (
         ),
     ),
     *core_of(
-        "lie-poisson",
+        "poisson",
         "poisson",
         "hamiltonian_equations",
         systems=("nambu_body", "sp2_momentum", "kepler", "heavy_top"),
@@ -127,6 +135,7 @@ CORE = (
         "_hamilton _magnetic _in_own_momenta",
         systems=("kepler", "monopole_kepler", "rocking_disk", "spd_motion"),
         tests=("tests/derive/test_external.py",),
+        fallacies={"_magnetic: flip value": "a magnetic bracket that is not antisymmetric"},
     ),
     *core_of(
         "newton",
@@ -142,6 +151,16 @@ CORE = (
         "_forces _projected _known",
         systems=("chaplygin_sleigh", "chaplygin_ball_centred"),
         tests=(*distributions.PARTICLE, *distributions.MOVING_MASS, *distributions.FORCED),
+        fallacies={
+            "_forces: flip inertial": "ad* of the other sign",
+            "_forces: drop inertial": "no ad* at all",
+            "_forces: drop convected": "a constraint without ds/dt",
+            "_forces: flip slope": "a torque of the other sign",
+            "_forces: drop motion": "a moving mass that does not move",
+            "_forces: flip force in value": "an external force of the other sign",
+            "_projected: omit b in return": "momenta that B does not project",
+            "_known: omit b": "forces that B does not project",
+        },
     ),
     *core_of(
         "hamel",
@@ -149,6 +168,7 @@ CORE = (
         "_known",
         systems=("chaplygin_sleigh", "chaplygin_ball_centred", "knife_edge_cvt"),
         tests=(*distributions.FORCED, *distributions.DRIVEN, "tests/prove/test_driven.py"),
+        fallacies={"_known: drop gyroscopic": "a constraint put in before varying"},
     ),
     *core_of(
         "projection",
@@ -156,6 +176,9 @@ CORE = (
         "nearest_state _residuals",
         systems=("suslov",),
         tests=distributions.PROJECTION,
+        fallacies={
+            "nearest_state: flip residual in sides": "a projection away from the constraints"
+        },
     ),
     *core_of(
         "frames",
@@ -163,6 +186,9 @@ CORE = (
         "along bracket structure inertial rates",
         systems=(),
         tests=distributions.FRAMES,
+        fallacies={
+            "inertial: omit setting in return": "forces of a left-invariant body on a right one"
+        },
     ),
     *core_of(
         "solver",

@@ -6,6 +6,8 @@ Read next: `tests.mutation.addresses`, how a line names a change, then `tests.mu
 
 from __future__ import annotations
 
+import ast
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -138,11 +140,12 @@ def core_of(
     *,
     systems: tuple[str, ...],
     tests: tuple[str, ...] = (),
+    fallacies: Mapping[str, str] = MappingProxyType({}),
     equivalent: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Mutant, ...]:
     """All changes of signs, terms, factors and the order of arguments in functions of a route.
 
-    The first by each operator is tried in every run, the others in campaigns.
+    The first by each operator and those with a name are tried in every run, others in campaigns.
 
     Args:
         route: The route.
@@ -150,23 +153,30 @@ def core_of(
         names: Its functions.
         systems: Whose certificates judge them.
         tests: The tests that judge what those let pass.
+        fallacies: The names of mistakes, by lines.
         equivalent: Why changes move nothing, by lines that may fit several.
     """
     file = module(f"derive/{name}")
     tree = tree_of(ROOT / file)
+    mistakes = {find_edit(tree, line).place: mistake for line, mistake in fallacies.items()}
     reasons = {
         edit.place: reason for line, reason in equivalent.items() for edit in find_edits(tree, line)
     }
-    found, tried, texts = list[Mutant](), set[str](), dict[str, int]()
+    found, tried, counts = list[Mutant](), set[str](), Counter[str]()
+    seen = set[tuple[int, str]]()
     for function in names.split():
         for edit in core(function_of(tree, function)):
-            reason = reasons.get(edit.place, "")
+            if (same := (id(edit.old), ast.dump(edit.new))) in seen:
+                continue
+            seen.add(same)
+            mistake, reason = (table.pop(edit.place, "") for table in (mistakes, reasons))
             line = f"{function}: {edit.label}"
-            texts[line] = texts.get(line, 0) + 1
-            line += f" ({texts[line]})" if texts[line] > 1 else ""
-            first = edit.operator not in tried and not reason
-            found.append(Mutant(file, line, route, systems, tests, "", reason, first, edit))
-            tried |= {edit.operator} if first else set()
+            counts[line] += 1
+            line += f" ({counts[line]})" if counts[line] > 1 else ""
+            always = bool(mistake) or (edit.operator not in tried and not reason)
+            tried |= {edit.operator} if always else set()
+            found.append(Mutant(file, line, route, systems, tests, mistake, reason, always, edit))
+    assert not mistakes, f"no operator makes {mistakes} in {file}"
     return tuple(found)
 
 

@@ -20,16 +20,6 @@ MANAKOV = ("tests/sources/test_lax.py -k '2_4_2_three or 2_4_2_manakov or every_
 
 REDUCED = (
     *of(
-        "euler-poincare",
-        "euler_poincare",
-        PLAIN,
-        "_rates: flip sign in advected",
-        "_rates: flip t",
-        "_rates: flip sign in in_state_order",
-        "_rates: swap diamond",
-        "_rates: drop t",
-    ),
-    *of(
         "matrix-euler-poincare",
         "matrix_euler_poincare",
         ("quadratic_potential_so3",),
@@ -38,13 +28,6 @@ REDUCED = (
         "_rates: unwrap add",
         "_symmetric: unwrap add",
         "_symmetric: use 1 for 2",
-    ),
-    *of(
-        "matrix-euler-poincare",
-        "matrix_euler_poincare",
-        (),  # no shipped potential has terms beside the diagonal
-        "_slope_matrix: omit half",
-        tests=(f"{LAX} -k move_advected",),
     ),
     *of(
         "lie-poisson",
@@ -69,13 +52,7 @@ REDUCED = (
         "hamilton-pontryagin",
         "hamilton_pontryagin",
         PLAIN,
-        "action_near: flip setting in moved",
-        "action_near: flip setting in constraint",
-        "action_near: omit 2",
-        "momentum_equation: flip carried",
-        "momentum_equation: drop carried",
         "_at_the_motion: rewrite _1 | _2 -> _2",
-        ("action_near: drop pairing", "g^-1 dg/dt = xi put in before varying"),
     ),
     *of(
         "hamilton-pontryagin",
@@ -101,24 +78,15 @@ REDUCED = (
         "clebsch",
         "clebsch",
         PLAIN[:1] + TOP,
-        "derive: flip slope in rates",
         "derive: rewrite zip(p, _1, strict=True) -> zip(p, (-s for s in _1), strict=True)",
         "derive: use pairing for action in q",
-        "derive: flip slope in momentum",
-        "_pairing: flip setting",
         "derive: negate substitute image",
-        ("derive: drop pairing", "dq/dt + rho(xi) q = 0 put in before varying"),
     ),
     *of(
         "poincare",
         "poincare",
         PLAIN[:1] + TOP,
-        "_inertial: flip eta in s",
-        "_inertial: flip eta in k",
-        "_vector_fields: flip column",
         "_inertial: rewrite _1 * eta[k] * slopes[i] -> _1 * eta[k] * slopes[k]",
-        "derive: flip b",
-        "derive: drop b",
     ),
 )
 
@@ -127,11 +95,7 @@ BODY_ROUTES = (
         "cayley-klein",
         "cayley_klein",
         ("rigid_body_attitude", "heavy_top"),
-        "_slopes: flip mu",
         "_momentum_rate: rewrite body.omega.conjugate -> body.omega",
-        "q_rate: omit HALF",
-        "q_rate: swap product",
-        "_momentum_rate: drop slopes",
     ),
     *of(
         "cayley-klein",
@@ -146,16 +110,12 @@ BODY_ROUTES = (
         TOP,
         "_rates: use add for subtract in torque",
         "_rates: unwrap turning",
-        "_forces: flip lagrangian",
-        "mass_points: omit 2",
-        "_rates: swap cross in squared",
         "mass_points: use add for subtract in second",
     ),
     *of(
         "newton-euler",
         "newton_euler",
         (),  # a body that moves about another origin than its centre of mass
-        "_rates: swap v in turning",
         "mass_points: rewrite (mass[2][4], _1, _2) -> (mass[1][5], mass[2][3], mass[0][4])",
         "_rates: rewrite add(_1, inner) -> inner",
         tests=(f"{TOPS} -k 2_1_2",),
@@ -166,20 +126,11 @@ BODY_ROUTES = (
         TOP,
         "_rates: flip forces",
         "derive: drop level",
-        "_rates: flip sign in advected",
-        "_rates: swap algebra",
         "derive: flip value",
         (
             "derive: let forces = field.gradient(field.substitute(whole, solved), names)",
             "dq/dt = p - a put in before varying",
         ),
-    ),
-    *of(
-        "kaluza-klein",
-        "kaluza_klein",
-        (),
-        "_rates: omit sign",
-        tests=(f"{BODIES} -k 'kaluza_klein_follows and right'",),
     ),
     *of(
         "complexification",
@@ -205,7 +156,6 @@ PAIRS = (
         "lax",
         "pairs",
         ("bloch_iserles_3",),
-        "rates_of: flip right",
         "lax_equations: rewrite rights.get(power, _1) -> rights.get(power + 1, _1)",
         "lax_equations: swap commutator",
         "lax_equations: unwrap commutator",
@@ -228,7 +178,6 @@ PAIRS = (
         ("rigid_body",),
         "_by_sums: rewrite (a, _1) -> (a, a)",
         "find_pair: flip turn",
-        "_antisymmetric: flip value",
     ),
     *of(
         "manakov",
@@ -240,8 +189,6 @@ PAIRS = (
         "manakov",
         "planes",
         (),  # another pair is found then, which is right, too, but not the book's
-        "_by_sums: flip 1 2 in first",
-        "_by_sums: flip first",
         "_by_differences: flip other",
         "_by_differences: flip inertia in return",
         tests=MANAKOV,

@@ -23,7 +23,6 @@ BRACKETS = (
         "poisson",
         "poisson",
         ("nambu_body", "sp2_momentum"),
-        "hamiltonian_equations: flip entry",
         "hamiltonian_equations: compare-Eq entry",
     ),
     *of(
@@ -42,16 +41,12 @@ BRACKETS = (
         "nambu",
         "nambu",
         ("nambu_body",),
-        "derive: flip multiplier",
         "derive: reverse gradients",
-        "generalised_cross_product: omit 1 i",
     ),
     *of(
         "nambu",
         "nambu",
         ("rigid_body",),
-        "distinguished_function: flip tensor",
-        "distinguished_function: omit 2",
         "distinguished_function: reverse 0 2",
     ),
     *of(
@@ -59,7 +54,6 @@ BRACKETS = (
         "nambu",
         (),  # algebras that are not unimodular
         "_from_casimir: rewrite _1 / _2 -> _2 / _1",
-        "distinguished_function: rewrite _1 - _2 -> _1 + _2",
         tests=FOUND,
     ),
 )
@@ -68,27 +62,9 @@ LAGRANGE = (
     *of(
         "euler-lagrange",
         "euler_lagrange",
-        (),  # Lagrangians that depend on time
-        "_in_velocities: flip e",
-        "_in_velocities: drop e",
-        tests=DRIVEN,
-    ),
-    *of(
-        "euler-lagrange",
-        "euler_lagrange",
         ("rocking_disk",),
-        "_in_velocities: flip c",
-        "_in_velocities: drop c",
         "_in_velocities: use mass for inverse_mass",
         "_in_velocities: rewrite v + moved -> moved + v",
-    ),
-    *of(
-        "euler-lagrange",
-        "euler_lagrange",
-        (),
-        "_in_momenta: flip weight",
-        "_in_momenta: omit weight",
-        tests=PAIRED_TWICE,
     ),
     *of(
         "euler-lagrange",
@@ -132,13 +108,6 @@ HAMILTON = (
         "canonical",
         ("monopole_kepler",),
         "_hamilton: drop turning",
-        ("_magnetic: flip value", "a magnetic bracket that is not antisymmetric"),
-    ),
-    *of(
-        "canonical",
-        "canonical",
-        ("rocking_disk",),
-        "_in_own_momenta: flip lagrangian",
     ),
     *of(
         "canonical",
@@ -161,12 +130,6 @@ NEWTON = (
     *of(
         "newton",
         "forces",
-        ("kepler",),
-        "_acceleration: flip component",
-    ),
-    *of(
-        "newton",
-        "forces",
         (),
         "_acceleration: use mass for inverse in apply",
         "_acceleration: rewrite (_1 for row in _2 for k in _3) -> (_1 for k in _3 for row in _2)",
@@ -176,9 +139,6 @@ NEWTON = (
         "alignment",
         "alignment",
         ("kepler", "monopole_kepler"),  # a central force, then one across r and with v in it
-        "derive: flip q",
-        "derive: drop q",
-        "derive: swap cross in add",
         "derive: bare Quaternion",
         "derive: rewrite dot(chi, r) -> dot(chi, r) - 1",
     ),
@@ -186,7 +146,6 @@ NEWTON = (
         "alignment",
         "alignment",
         ("monopole_kepler",),
-        "derive: swap cross in Quaternion",
         "derive: unwrap substitute",
     ),
 )

@@ -25,89 +25,14 @@ ROOTS = ("tests/derive/test_kinematics.py -k quotient_rule",)
 PENDULUM = (f"{BY_HAND} -k pendulum",)
 PROJECTION = ("tests/derive/test_projection.py -k multiple",)
 
-PROJECTED = (
-    *of(
-        "nonholonomic",
-        "nonholonomic",
-        SLEIGH,
-        ("_forces: flip inertial", "ad* of the other sign"),
-        ("_forces: drop inertial", "no ad* at all"),
-    ),
-    *of(
-        "nonholonomic",
-        "nonholonomic",
-        BALL,
-        "_projected: omit b in turned",
-        ("_projected: omit b in return", "momenta that B does not project"),
-        ("_forces: drop convected", "a constraint without ds/dt"),
-        "_forces: flip convected",
-    ),
-    *of(
-        "nonholonomic",
-        "nonholonomic",
-        (),
-        ("_known: omit b", "forces that B does not project"),
-        tests=PARTICLE,
-    ),
-    *of(
-        "nonholonomic",
-        "nonholonomic",
-        ("chaplygin_ball",),
-        ("_forces: flip slope", "a torque of the other sign"),
-    ),
-    *of(
-        "nonholonomic",
-        "nonholonomic",
-        (),
-        ("_forces: drop motion", "a moving mass that does not move"),
-        tests=MOVING_MASS,
-    ),
-    *of(
-        "nonholonomic",
-        "nonholonomic",
-        (),
-        ("_forces: flip force in value", "an external force of the other sign"),
-        tests=FORCED,
-    ),
-)
+PROJECTED = ()
 
 CONSTRAINED_LAGRANGIAN = (
     *of(
         "hamel",
         "hamel",
-        (),  # constraints that move
-        "_known: flip b in turned",
-        "_known: flip explicit_rate",
-        tests=(*DRIVEN, "tests/prove/test_driven.py"),
-    ),
-    *of(
-        "hamel",
-        "hamel",
-        SLEIGH,
-        ("_known: drop gyroscopic", "a constraint put in before varying"),
-        "_known: flip gyroscopic",
-    ),
-    *of(
-        "hamel",
-        "hamel",
         BALL,
         "_known: use structure for bracket",
-        "_known: swap bracket",
-        "_known: drop carried",
-        "_known: flip carried in append",
-    ),
-    *of(
-        "hamel",
-        "hamel",
-        ("knife_edge_cvt",),
-        "_known: flip constrained",
-    ),
-    *of(
-        "hamel",
-        "hamel",
-        (),
-        "_known: flip driven",
-        tests=FORCED,
     ),
 )
 
@@ -151,7 +76,6 @@ DISTRIBUTED = (
         "projection",
         "projection",
         (),
-        ("nearest_state: flip residual in sides", "a projection away from the constraints"),
         "nearest_state: use one for zero in Solve",
         ("_residuals: leave b in sum", "a projection that forgets what is affine"),
         tests=PROJECTION,
@@ -167,14 +91,6 @@ DISTRIBUTED = (
         "frames",
         (),
         "rates: rewrite _1 - setting.sign * _2 -> setting.sign * _2",
-        "bracket: flip b",
-        "bracket: drop a",
-        "bracket: drop c",
-        "structure: swap algebra",
-        (
-            "inertial: omit setting in return",
-            "a right invariant body with the forces of a left invariant one",
-        ),
         tests=FRAMES,
     ),
     *of(

@@ -76,8 +76,6 @@ SHARED = (
         "solver",
         (),
         "_eliminate: flip taken",
-        "_rest: flip shared",
-        "definitions: flip after",
         "_rest: rewrite self._w[i, k] * _1 -> self._l[i, k] * _1",
         "_eliminate: omit share in _entry",
         "_eliminate: invert pivot",
