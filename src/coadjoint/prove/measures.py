@@ -245,15 +245,17 @@ def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]], prime: in
 
 def about_measure(motion: Motion) -> Iterator[Examined]:
     """Whether a measure is invariant: first with a density of the positions alone."""
-    if not motion.matrices and motion.divergence == 0:  # also of many unknowns
+    by_numbers = bool(motion.matrices)  # which is much shorter where accelerations are solved for
+    divergence = None if by_numbers else motion.divergence
+    if divergence is not None and divergence == 0:
         statement = f"an invariant measure: {_form(motion)}{motion.at_all_times}"
-        yield statement, "measure", lambda: [Measure(motion).divergence]
+        yield statement, "measure", lambda: [divergence]
         return
     numbers = _numbers(motion)
     measure, samples = Measure(motion.at(numbers)), Samples(motion, numbers)
     coupled = max(map(len, motion.matrices), default=0)
     obstacle = samples.obstacle
-    if motion.divergence is None:
+    if divergence is None and not by_numbers:
         obstacle = "the rates rest on velocities that the kernel solves for"
     elif coupled > SIZE:
         obstacle = f"{coupled} unknowns are solved for together, more than {SIZE}"
