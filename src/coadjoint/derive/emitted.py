@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 
 from coadjoint.derive import units
 from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.mechanics.parts import in_parts
 from coadjoint.derive.mechanics.reconstruction import spatial_momentum
 from coadjoint.derive.mechanics.sections import section_momenta
 from coadjoint.derive.records import Emitted, Kept
@@ -87,7 +88,7 @@ def _declared(setting: Setting) -> tuple[Emitted, ...]:
             each.shape,
             each.components,
             each.unit,
-            setting.components(each.formula, setting.reactions),
+            in_parts(setting, each.formula),
             _claimed(setting, each.name),
         )
         for each in setting.spec.observables

@@ -100,7 +100,7 @@ def _find_obstacle(file: Any, route: str) -> str:
         return f"has no table [{start.table}]"
     if not start.takes_driving and (file.inputs or file.time):
         return "knows neither inputs nor time"
-    if not start.needs_energy and not _is_bare(file) and kinds == ("configuration",):
+    if _lacks_bracket(file, route):
         return "knows no bracket of coordinates with velocities or momenta"
     energies = energies_of(route, kinds)
     if start.needs_energy and energies and not any(getattr(file, each) for each in energies):
@@ -115,6 +115,12 @@ def _find_obstacle(file: Any, route: str) -> str:
 def _is_bare(file: Any) -> bool:
     """Whether a Lax pair alone moves the state."""
     return bool(file.lax) and not (file.hamiltonian or file.lagrangian or file.newton)
+
+
+def _lacks_bracket(file: Any, route: str) -> bool:
+    """Whether a Lax pair stands beside an energy, and no bracket says how that moves the state."""
+    bare = ROUTES[route].needs_energy or _is_bare(file)
+    return not bare and kinds_of(file) == ("configuration",)
 
 
 def _check_moved(source: Source, file: Any) -> None:
@@ -158,6 +164,9 @@ def _advise(reading: Reading, route: str, others: Sequence[str]) -> str:
         ways += list(filter(None, (_write_table(reading, table) for table in tables)))[:1]
     acting = [t.key for t in TABLES if t.acts and getattr(file, t.key)]
     ways += [f"remove [{key}]" for key in acting if key not in start.options]
+    if _lacks_bracket(file, route):
+        way = 'declare the momenta as coordinates, with [poisson] and canonical = [["q", "p"]]'
+        ways.append(way)
     text = ", or ".join(ways)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 

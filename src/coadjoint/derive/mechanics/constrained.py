@@ -78,10 +78,10 @@ class ConstrainedMotion(Kinematics):
         pulls = [field.gradient(k, self.pressing) for k in known]
         whole = [
             *(
-                (*map(value, row), *(value(a[i] + c) for a, c in zip(rows, pulls[i], strict=True)))
+                (*map(value, row), *(a[i] + value(c) for a, c in zip(rows, pulls[i], strict=True)))
                 for i, row in enumerate(mass)
             ),
-            *((*map(value, row), *none) for row in rows),
+            *((*row, *none) for row in rows),
         ]
         sides = [*map(value, map(self.without_reactions, known)), *map(value, carried)]
         names = [

@@ -58,7 +58,8 @@ def derive(setting: Setting) -> Equations:
     """Equations of motion as geodesics with cyclic coordinates.
 
     Raises:
-        DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
+        DerivationError: Nothing is advected, or the Lagrangian is not linear in it, with slopes
+            that are the same at all times.
     """
     lagrangian, names = setting.lagrangian, _advected(setting)
     level = _level(setting, lagrangian, names)
@@ -113,7 +114,7 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
         )
     slopes = setting.field.gradient(lagrangian, names)
     for name, slope in zip(names, slopes, strict=True):
-        moving = setting.field.reach(slope) & {*setting.velocities, *names}
+        moving = setting.field.reach(slope) & {*setting.velocities, *names, *setting.time}
         if moving:
             text = element_text(setting.field, slope)
             raise refusal(
