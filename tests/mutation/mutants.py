@@ -139,7 +139,11 @@ DRIVEN = (
             ),
             ("driven.py", 'if needed else ""', 'if not needed else ""'),
             ("symmetries.py", "part + explicit(setting, own)", "part - explicit(setting, own)"),
-            ("symmetries.py", "{t: -setting.field[t] for t", "{t: setting.field[t] for t"),
+            (
+                "symmetries.py",
+                "{name: -field[name] for name in turned",
+                "{name: field[name] for name in turned",
+            ),
             ("almost_poisson.py", "explicit(setting, a) * x for", "-explicit(setting, a) * x for"),
         )
     ),
@@ -300,7 +304,7 @@ MUTANTS = (
     Mutant(PROVE + "identities.py", "tensor[i][j] + tensor[j][i]", "tensor[i][j] - tensor[j][i]"),
     Mutant(PROVE + "identities.py", "rate - dot(in_vel", "rate + dot(in_vel"),
     Mutant(
-        PROVE + "claims.py",
+        PROVE + "agreement.py",
         "first.closed(a) - other.closed(b)",
         "first.closed(a) + other.closed(b)",
     ),
@@ -319,11 +323,27 @@ MUTANTS = (
     Mutant(POISSON + "casimirs.py", "if len(given) >= expected:", "if given:"),
     Mutant(POISSON + "summands.py", "(i, j, *reached[id(entry)])", "(i, j)"),
     Mutant(POISSON + "summands.py", "c if a < b else -c", "c"),
-    Mutant(PROVE + "claims.py", "if decide().verdict is Verdict.PROVED:", "if decide():"),
+    Mutant(PROVE + "brackets.py", "if decide().verdict is Verdict.PROVED:", "if decide():"),
     Mutant(PROVE + "measures.py", "- len(samples.unit):", "- len(samples.unit) or found:"),
     Mutant(PROVE + "measures.py", "rates, -point.value(self", "rates, point.value(self"),
     Mutant(PROVE + "invariant_factors.py", "return rate != 0 and", "return rate == 0 or"),
-    Mutant(PROVE + "reversibility.py", "if name and motion.distribution.kept", "if not name"),
+    Mutant(PROVE + "reversibility.py", "if name and motion.kept", "if not name"),
+    *(
+        Mutant(PROVE + file, old, new, tests=("tests/prove/test_free_searches.py",))
+        for file, old, new in (
+            ("reversibility.py", "is_complete &= not inside", "is_complete &= True"),
+            ("reversibility.py", "(1 + len(odd & time)) % 2", "len(odd & time) % 2"),
+            ("reversibility.py", "names ^ others, right ^ value", "names ^ others, right"),
+            ("samples.py", "(*self.state, *motion.setting.driving)", "self.state"),
+        )
+    ),
+    *(
+        Mutant(PROVE + "carried.py", old, new, tests=("tests/prove/test_carried.py",))
+        for old, new in (
+            ("transpose(back))", "back)"),
+            ("apply(back, [along", "apply(transpose(back), [-along"),
+        )
+    ),
     Mutant(PROVE + "almost_poisson.py", "plain or total > 0 or total < 0", "True"),
     Mutant(
         PROVE + "completeness.py",
