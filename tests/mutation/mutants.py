@@ -385,7 +385,12 @@ MUTANTS = (
     Mutant(PROVE + "functions.py", "self._functions.proper.add(name)", "pass"),
     Mutant(PROVE + "samples.py", "if self.functions.proper == self.functions.roots:", "if True:"),
     Mutant(PROVE + "candidates.py", "if not unproved:", "if True:"),
-    Mutant(PROVE + "candidates.py", "if bounded and certain ==", "if certain =="),
+    Mutant(
+        PROVE + "counts.py",
+        "if bounded and certain ==",
+        "if certain ==",
+        tests=("tests/prove/test_candidates.py",),
+    ),
     Mutant(
         PROVE + "candidates.py",
         "if moved.keys() <= place.keys():",

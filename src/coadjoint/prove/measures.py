@@ -27,7 +27,6 @@ Comes in: a motion. Goes out: a claim.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -46,15 +45,13 @@ from coadjoint.prove.findings import shown
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.samples import Point, Samples, leading
+from coadjoint.prove.samples import Point, Samples, leading, random_numbers
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 #: Largest denominator of an exponent that is taken for one.
 DENOMINATOR = 12
 #: Unknowns of one solve; the determinants of larger ones take too long, and no measure is claimed.
 SIZE = 6
-#: Choices of numbers for the parameters, until all square roots of such exist.
-SEEDS = 20
 #: Points at which exponents are found.
 POINTS = 6
 
@@ -251,7 +248,7 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
         statement = f"an invariant measure: {_form(motion)}{motion.at_all_times}"
         yield statement, "measure", lambda: [divergence]
         return
-    numbers = _numbers(motion)
+    numbers = random_numbers(motion)
     measure, samples = Measure(motion.at(numbers)), Samples(motion, numbers)
     coupled = max(map(len, motion.matrices), default=0)
     obstacle = samples.obstacle
@@ -395,17 +392,6 @@ def _where(samples: Samples) -> str:
     """The lengths of vectors at which conditions are examined."""
     lengths = [f"dot({each.name}, {each.name}) = 1" for each in samples.unit]
     return f" where {', '.join(lengths)}" if lengths else ""
-
-
-def _numbers(motion: Motion) -> dict[str, Fraction]:
-    """Numbers for the parameters, without relations among them; the square roots exist."""
-    for seed in range(SEEDS):
-        source = random.Random(seed)  # noqa: S311 (not for secrets)
-        names = motion.equations.setting.parameters
-        numbers = {name: Fraction(source.randint(2, 999), 7) for name in names}
-        if not Samples(motion, numbers).obstacle:
-            break
-    return numbers
 
 
 def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
