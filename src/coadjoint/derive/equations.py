@@ -56,6 +56,12 @@ class Equations:
         return self.setting.spec
 
     @property
+    def way(self) -> str:
+        """The route or the declared chart, in words."""
+        declared = self.chart is not None and self.chart.name
+        return f"the chart {declared}" if declared else f"the route {self.route}"
+
+    @property
     def variables(self) -> tuple[str, ...]:
         """Names of what the rates are the rates of: the declared state, or the route's own."""
         return self.setting.state if self.chart is None else self.chart.variables

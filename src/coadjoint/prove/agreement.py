@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.charts import declared_charts
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.charts import ChartMap, reach
@@ -56,10 +57,10 @@ def about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 
 def about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
-    """That the other routes give the motion of the first one."""
+    """That the other routes and the declared charts give the motion of the first route."""
     first, *others = routes
     pulled = LegendreMap(first) if LegendreMap.applies(first) else None
-    for other in others:
+    for other in (*others, *declared_charts(first)):
         same, through = partial(_same_rates, first, other), ""
         if other.chart is not None:
             yield from _about_chart(first, other)
@@ -73,21 +74,22 @@ def about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 
 def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
-    """That a route in variables of its own gives the same motion, and where."""
+    """That a motion in variables of its own is the same motion, and where."""
     assert other.chart is not None
     chart_map = ChartMap(first, other)
     relations = ", ".join(relation.text for relation in other.chart.relations)
     where = f", where {relations}" if relations else ""
     elements = [relation.element for relation in other.chart.relations]
     held = while_constant(other, [*elements, *other.chart.state])
+    name = other.way if other.chart.name else other.route
     through = f"through {other.chart.through}{where}{held}"
     yield (
-        f"{first.route} and {other.route} give the same motion, {through}",
+        f"{first.route} and {name} give the same motion, {through}",
         "equivalence",
         chart_map.related,
     )
     if relations:
-        yield f"the route {other.route} keeps {relations}{held}", "equivalence", chart_map.kept
+        yield f"{other.way} keeps {relations}{held}", "equivalence", chart_map.kept
     statement, decision = reach(chart_map)
     yield statement, "equivalence", lambda: decision
 

@@ -21,7 +21,7 @@ from functools import cached_property, reduce
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.element import remove_factor
-from coadjoint.exact.irreducible import divided_factors, numerator
+from coadjoint.exact.irreducible import find_factors, numerator
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import leading
 
@@ -89,13 +89,13 @@ class InvariantFactors:
             return []
         divisor = reduce(lambda p, q: p.gcd(q), numerators)
         whole = self.field.from_polynomial(divisor)
-        return divided_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
+        return find_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
 
     def _factored(self) -> Iterator[Element]:
         """The factors of the rates and of the determinant."""
         for element in (*self.rates, *self._determinant()):
             if self._is_short(element):
-                yield from divided_factors(self.field, element)
+                yield from find_factors(self.field, element)
 
     def _is_short(self, element: Element) -> bool:
         """Whether a function can be factored in little time."""

@@ -36,7 +36,7 @@ from itertools import combinations, islice
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import solve_with_right_side
 from coadjoint.exact.dense import determinant
-from coadjoint.exact.irreducible import divided_factors
+from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.linear import SpanModulo
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
@@ -402,8 +402,8 @@ def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     """
     whole, found = Measure(motion), list[Element]()
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
-        reducible = len(divided_factors(measure.field, short)) > 1
-        own = divided_factors(measure.field, minor, found) if reducible else [minor]
+        reducible = len(find_factors(measure.field, short)) > 1
+        own = find_factors(measure.field, minor, found) if reducible else [minor]
         (written,) = motion.field.quotients(minor.combined())
         found = [*own, *(divisor for divisor, _ in written.divisors), *found]
     known = list[Element]()

@@ -36,7 +36,7 @@ from coadjoint.derive.records import Exact
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
-from coadjoint.exact.roots import lifted
+from coadjoint.exact.roots import simplify_roots
 from coadjoint.limits import COUPLED_VELOCITIES
 
 
@@ -183,7 +183,9 @@ def emission(
     rates = tuple(moving[name] for name in setting.state)
     energy = mechanics(setting).energy
     closed = field.substitute(energy, motion.distribution.solved)
-    short = lifted(field, closed)  # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    short = simplify_roots(
+        field, closed
+    )  # sin^2 + cos^2 = 1, where velocities are along a turning frame
     energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
     return Exact(
