@@ -13,7 +13,7 @@ from tests.mutation.mutant import Mutant, module
 
 def of(name: str, *lines: str, tests: tuple[str, ...] = ()) -> tuple[Mutant, ...]:
     """Changes of one module below ``src/coadjoint``, or of one template."""
-    file = f"src/coadjoint/render/targets/{name}" if name.endswith(".j2") else module(name)
+    file = f"templates/{name}" if name.endswith(".j2") else module(name)
     return tuple(Mutant(file, line, tests=tests) for line in lines)
 
 
