@@ -125,16 +125,16 @@ def test_forces_are_the_reactions_of_the_text():
 # -- motions ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "law", [{"viscous": 0.1, "coulomb": 0.0}, {"viscous": 0.0, "coulomb": 0.1}]
-)
+LAWS = ({"viscous": 0.1, "coulomb": 0.0}, {"viscous": 0.0, "coulomb": 0.1})
+
+
+@pytest.mark.parametrize("law", LAWS, ids=["viscous", "Coulomb"])
 def test_it_turns_upside_down(law):
     """Gamma3 goes to -1, and the last spin follows from Jellett's integral: -w s3(0)/(r + e).
 
     Meanwhile the energy falls, the plane presses and Jellett's integral stays; without friction it
     does not turn over.
     """
-    law = dict(zip(("viscous", "coulomb"), law, strict=True))
     run = tippe_top.simulate(START, (0, 60), parameters=law, samples=301, rtol=1e-8, atol=1e-9)
     assert run.drift["jellett"] < 1e-6
     assert run["normal_force"].min() > 5

@@ -156,12 +156,6 @@ class Equations:
         """What follows from the motion without acting on it: each variable with its rate."""
         return rates_followed(self.setting, self.distribution)
 
-    @property
-    def keeps_energy(self) -> bool:
-        """Whether nothing acts that could change the energy: no force, no constraint that moves."""
-        free = self.distribution is None or self.distribution.is_linear
-        return free and self.spec.keeps_energy
-
     def work(self, function: Element) -> Element:
         """What external forces add to the rate of a function of the state."""
         field, closed = self.setting.field, self.closed(function)

@@ -9,10 +9,12 @@ them. Read next: `coadjoint.derive.mechanics.external`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 from coadjoint.derive.interpret import Quantity, entries, interpret
-from coadjoint.derive.setting import Setting, shaped
+from coadjoint.derive.setting import Setting, once, shaped
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core.components import component_names
@@ -33,12 +35,24 @@ def part_names(spec: Spec) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def parts(setting: Setting) -> Iterator[tuple[str, Element]]:
-    """The components of each part, in terms of the state, all velocities and parts before it."""
-    named = part_names(setting.spec)
-    for part in _parts(setting.spec):
-        values = entries(_value(setting, _tree(setting.spec, part.text)))
-        yield from zip(named[part.name], values, strict=True)
+@once
+def parts(setting: Setting) -> tuple[tuple[str, Element], ...]:
+    """The components of each part, in terms of the state, all velocities and parts before it.
+
+    Raises:
+        DerivationError: Division by zero or a singular inverse inside one.
+    """
+    spec, found = setting.spec, list[tuple[str, Element]]()
+    named = part_names(spec)
+    for part in _parts(spec):
+        try:
+            value = interpret(_tree(spec, part.text), _values(setting), setting.field)
+        except DerivationError as error:
+            key = f"definitions.{part.name}"
+            message = f"{spec.path}: {key}: {error}"
+            raise DerivationError(message, path=str(spec.path), key=key, found=part.text) from error
+        found += zip(named[part.name], entries(value), strict=True)
+    return tuple(found)
 
 
 def slopes(setting: Setting, function: Formula, velocities: Sequence[str]) -> tuple[Element, ...]:
@@ -59,17 +73,20 @@ def slopes(setting: Setting, function: Formula, velocities: Sequence[str]) -> tu
     return whole(*in_parts(setting, function))
 
 
-def in_parts(setting: Setting, force: Formula) -> tuple[Element, ...]:
-    """The components of a force, in parts and reactions."""
-    return entries(_value(setting, _tree(setting.spec, force.text)))
+def in_parts(setting: Setting, formula: Formula) -> tuple[Element, ...]:
+    """The components of a force, or of what is observed, in parts and reactions."""
+    tree = _tree(setting.spec, formula.text) if part_names(setting.spec) else formula.tree
+    return setting.components(replace(formula, tree=tree), _values(setting))
 
 
-def _value(setting: Setting, tree: Node) -> Quantity:
+@once
+def _values(setting: Setting) -> dict[str, Quantity]:
+    """Reactions and parts by their names, and what a spec declares."""
     known = {each.name: each for each in setting.spec.definitions}
-    values: dict[str, Quantity] = {**setting.values, **setting.reactions}
-    for name, components in part_names(setting.spec).items():
-        values[name] = shaped(setting.elements(components), known[name].shape or ())
-    return interpret(tree, values, setting.field)
+    return {**setting.values, **setting.reactions} | {
+        name: shaped(setting.elements(components), known[name].shape or ())
+        for name, components in part_names(setting.spec).items()
+    }
 
 
 def _tree(spec: Spec, text: str) -> Node:

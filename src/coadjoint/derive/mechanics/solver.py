@@ -215,9 +215,8 @@ class _Elimination:
     def _rest(self, i: int, j: int) -> Element:
         """``a_ij`` without what the columns before take: ``a_ij - w_ik u_kj``."""
         places = [k for k in range(min(i, j)) if (i, k) in self._w and (k, j) in self._u]
-        return self.solve.matrix[i][j] - self.field.sum(
-            self._w[i, k] * self._u[k, j] for k in places
-        )
+        shared = (self._w[i, k] * self._u[k, j] for k in places)
+        return self.solve.matrix[i][j] - self.field.sum(shared)
 
     def _define(self, name: str, value: Element) -> Element:
         """Write a line, and return what later lines read: a number, or the name."""

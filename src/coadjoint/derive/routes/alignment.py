@@ -23,6 +23,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.records import Relation, Step, rate, symbol
+from coadjoint.derive.refusals import leave_route
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact.dense import Vector, add, cross, dot, scale
@@ -45,7 +46,7 @@ def derive(setting: Setting) -> Equations:
     v = add(scale(alpha, r), cross(chi, r))
     moved = dict(zip(setting.velocities, v, strict=True))
     force = tuple(field.substitute(f, moved) for f in accelerations(setting))
-    source = Quaternion(dot(r, force), *cross(r, force)).scaled(1 / dot(r, r))
+    source = Quaternion(dot(r, force), *cross(r, force)).scale(1 / dot(r, r))
     q = Quaternion(alpha, *chi)
     rates = zip((*setting.positions, *own), (*v, *(source - q * q).components), strict=True)
     relation = Relation("chi . r = 0", dot(chi, r))
@@ -69,7 +70,8 @@ def _check_particle(setting: Setting) -> None:
             setting,
             laws[0].force,
             f"the route alignment is that of one particle in three dimensions, and the coordinates "
-            f"are {coordinates}; expected one coordinate with shape = [3]. Remove the route.",
+            f"are {coordinates}; expected one coordinate with shape = [3]. "
+            f"{leave_route(setting, 'alignment').capitalize()}.",
             coordinates,
         )
 

@@ -119,7 +119,6 @@ def check_rotations(setting: Setting) -> None:
             f"the algebra is {algebra.name}",
             algebra.name,
             "so(3), or another basis with [e1, e2] = e3 and cyclic",
-            "Remove the route.",
         )
     turning = tuple(map(dict, adjoint(rotations).matrices))
     for variable in setting.advected:
@@ -131,7 +130,6 @@ def check_rotations(setting: Setting) -> None:
                 f"{variable.name} has the representation {action.name!r}",
                 action.name,
                 "vectors or the unit quaternion, on which quaternions act by products",
-                "Remove the route.",
             )
 
 

@@ -58,7 +58,8 @@ def derive(setting: Setting) -> Equations:
     """Equations of motion as geodesics with cyclic coordinates.
 
     Raises:
-        DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
+        DerivationError: Nothing is advected, or the Lagrangian is not linear in it, with slopes
+            that are the same at all times.
     """
     lagrangian, names = setting.lagrangian, _advected(setting)
     level = _level(setting, lagrangian, names)
@@ -114,12 +115,11 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
             "nothing is advected",
             setting.spec.name,
             "an advected quantity, beside which a cyclic coordinate turns the potential into "
-            "kinetic energy",
-            "Remove the route: without a potential the motion is geodesic already.",
+            "kinetic energy; without a potential the motion is geodesic already",
         )
     slopes = setting.field.gradient(lagrangian, names)
     for name, slope in zip(names, slopes, strict=True):
-        moving = setting.field.reach(slope) & {*setting.velocities, *names}
+        moving = setting.field.reach(slope) & {*setting.velocities, *names, *setting.time}
         if moving:
             text = element_text(setting.field, slope)
             raise refusal(
@@ -128,7 +128,6 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
                 f"dl/d{name} = {text} depends on {', '.join(sorted(moving))}",
                 text,
                 "a Lagrangian linear in what is advected, such as T - m*g*dot(Gamma, chi)",
-                "Remove the route.",
             )
     return slopes
 

@@ -41,7 +41,7 @@ from coadjoint.derive.mechanics.solver import Definition
 from coadjoint.derive.records import Left, Step, bracket, component, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.exact.roots import lifted
+from coadjoint.exact.roots import simplify_roots
 
 __all__ = ["derive", "symbols"]
 
@@ -79,7 +79,7 @@ def _forces(
     momenta = field.gradient(lagrangian, frame.velocities)
     parts = zip(
         frame.inertial(momenta, xi),
-        (lifted(field, slope) for slope in frame.slopes(lagrangian)),
+        (simplify_roots(field, slope) for slope in frame.slopes(lagrangian)),
         external_forces(frame.setting, frame.velocities),
         mass,
         momenta,
@@ -87,15 +87,15 @@ def _forces(
     )
     forces = []
     named: list[Definition] = []
-    for n, (inertial, slope, force, row, p) in enumerate(parts):
+    for n, (inertial, slope, declared, row, p) in enumerate(parts):
         convected = field.sum(m * c for m, c in zip(row, motion.c, strict=True))
-        own = motion.without_reactions(force)
-        value = inertial + slope + own - convected - motion.moved(p)
+        force = motion.without_reactions(declared)
+        value = inertial + slope + force - convected - motion.moved(p)
         if n in motion.solved:
             lines = motion.computed([(f"_k{n + 1}", value)])
             named += lines
             value = field[lines[0][0]] if lines else field.zero
-        forces.append(value + (force - own))
+        forces.append(value + (declared - force))
     return tuple(forces), named
 
 
