@@ -64,7 +64,7 @@ PROJECTED = (
         "nonholonomic",
         "nonholonomic",
         ("chaplygin_ball",),
-        ("+ slope + own", "- slope + own", "a torque of the other sign"),
+        ("+ slope + force", "- slope + force", "a torque of the other sign"),
     ),
     *of(
         "nonholonomic",
@@ -77,7 +77,7 @@ PROJECTED = (
         "nonholonomic",
         "nonholonomic",
         (),
-        ("+ slope + own", "+ slope - own", "an external force of the other sign"),
+        ("+ slope + force", "+ slope - force", "an external force of the other sign"),
         tests=FORCED,
     ),
 )
