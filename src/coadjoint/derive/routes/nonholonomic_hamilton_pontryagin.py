@@ -58,13 +58,13 @@ def derive(setting: Setting) -> Equations:
     forces, moved = _varied(setting)
     momentum = _momentum_equations(found, forces, moved)
     constraint = [_rate(found, each.residual, moved) for each in found.equations]
-    given, left = _eliminated(found, momentum, constraint)
-    field = setting.field
+    motion, field = ConstrainedMotion(found), setting.field
+    pressed = _pressed(motion)
+    given, left = _eliminated(found, momentum, constraint, pressed)
     names = [rate_name(name) for name in found.independent]
     mass = tuple(field.gradient(line, names) for line in left)
     rest = dict.fromkeys([*names, *map(multiplier_name, range(len(found.kept)))], field.zero)
     known = [-field.substitute(line, rest) for line in left]
-    motion = ConstrainedMotion(found)
     exact = emission(motion, motion.kinematics, mass, known, list(given.items()))
     steps = _steps(found, forces, momentum, constraint, given)
     return Equations(setting, ROUTE, exact, steps, distribution=found)
@@ -115,14 +115,24 @@ def _momentum_equations(
     return lines
 
 
+def _pressed(motion: ConstrainedMotion) -> dict[str, Element]:
+    """The part of the force along each velocity that is a multiple of reactions, as friction is."""
+    names = motion.frame.velocities
+    acting = zip(names, external_forces(motion.frame.setting, names), strict=True)
+    return {name: force - motion.without_reactions(force) for name, force in acting}
+
+
 def _eliminated(
-    found: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
+    found: Distribution,
+    momentum: Mapping[str, Element],
+    constraint: Sequence[Element],
+    pressed: Mapping[str, Element],
 ) -> tuple[dict[str, Element], list[Element]]:
     """Rates and multipliers that follow, and the momentum equations that are left.
 
     The velocity that a constraint gives has its rate from that constraint, and the constraint its
     multiplier from the momentum equation along that velocity. Of the constraints that are kept
-    minus the multiplier has a name of its own.
+    minus the multiplier has a name of its own; forces that are multiples of it keep its name.
     """
     field = found.setting.field
     giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
@@ -132,7 +142,10 @@ def _eliminated(
         equation.reaction: -field[multiplier_name(n)] for n, (equation, _) in enumerate(found.kept)
     }
     put = {**rates, **kept}
-    left = {name: field.substitute(line, put) for name, line in momentum.items()}
+    left = {
+        name: field.substitute(line + pressed[name], put) - pressed[name]
+        for name, line in momentum.items()
+    }
     multipliers = _solved(found, {each.reaction: left[each.solves] for each, _ in giving})
     rows = [field.substitute(left[name], multipliers) for name in found.independent]
     return {**rates, **kept, **multipliers}, rows
