@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 from coadjoint.derive import Equations, derive, make_setting
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.agreement import about_equality
+from coadjoint.prove.constrained import ConstrainedRates, about_constraints, about_kept
+from coadjoint.prove.integrals import about_energy
+from coadjoint.prove.zero import Examined
 from tests.specs import spec
 
 #: The constraint of many books, dz - y dx = 0.
@@ -235,3 +239,12 @@ def derived(text: str, *changes: tuple[str, str]) -> dict[str, Equations]:
 def motion(text: str, *changes: tuple[str, str], route: str = "nonholonomic") -> ConstrainedRates:
     """The motion of a changed text by one route."""
     return ConstrainedRates(derived(text, *changes)[route])
+
+
+def about_routes(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """The claims about constrained motions that need no search."""
+    along = ConstrainedRates(routes[0])
+    yield from about_constraints(along)
+    yield from about_equality(routes)
+    yield from about_energy(along)
+    yield from about_kept(along)

@@ -11,6 +11,7 @@ import pytest
 
 from coadjoint.errors import ClaimError, DriftError, SpecError
 from coadjoint.regenerate import check, regenerate
+from coadjoint.render.write import SYSTEM_FILES
 from tests.specs import RIGID_BODY
 from tests.trees_of_files import ROOT, coadjoint, copy_source, environment, tree
 
@@ -68,7 +69,7 @@ def test_the_checked_in_tree_is_current():
         assert row.proved == row.claims >= 7
         # Against 50 digits, over every function, target and family of points.
         assert 0 < row.k <= LONG.get(row.system, 4), row
-        assert row.targets == ("numpy", "c", "c-fast")
+        assert row.targets == ("numpy", "c", "c-fast", "python")
     assert LONG.keys() <= {row.system for row in outcome.rows}
 
 
@@ -126,8 +127,8 @@ def test_the_command_for_a_false_claim_exits_with_one(checkout):
         "generated/rigid_body/certificate.json",
         "generated/manifest.json",
         "generated/__init__.py",
-        "templates/c/kernel.c.j2",
-        "templates/numpy/__init__.py.j2",
+        "src/coadjoint/render/targets/c/kernel.c.j2",
+        "templates/package/__init__.py.j2",
         "derivations/rigid_body.toml",
     ],
 )
@@ -241,7 +242,7 @@ def test_the_same_bytes_for_every_hash_seed(seed, tmp_path):
     expected = "".join(
         f"{spec.stem}/{name}\n" + (ROOT / "generated" / spec.stem / name).read_text()
         for spec in specs
-        for name in ("kernel.py", "__init__.py", "kernel.c", "kernel.h", "certificate.json")
+        for name in SYSTEM_FILES
     )
     assert done.stdout == expected
 

@@ -8,7 +8,7 @@ Read next: `coadjoint.kernel_functions`, the table of all functions of the kerne
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from coadjoint.lower.program import Program
@@ -21,7 +21,8 @@ class Quantity:
     Attributes:
         name: As in the spec, e.g. ``Pi``.
         shape: ``()``, ``(n,)`` or ``(n, m)``.
-        unit: Unit text, ``"1"`` if dimensionless, ``""`` if not stated.
+        unit: Unit text, ``"1"`` if dimensionless, ``""`` if not stated; of components with units
+            of their own those of all, as ``"1, 1, m"``.
         components: Name of each row, row by row.
         default: One value for each row, or None.
         positive: Whether every value must be positive.
@@ -39,6 +40,22 @@ class Quantity:
     conserved: bool = False
     while_constant: bool = False
     upright: str = ""
+
+    def unit_of(self, name: str) -> str:
+        """The unit of a component; by the name of the whole, that of the whole.
+
+        >>> a = Quantity("a", (2,), "1, m", ("a1", "a2"))
+        >>> a.unit_of("a2"), a.unit_of("a")
+        ('m', '1, m')
+        """
+        return dict(zip(self.components, component_units(self), strict=True)).get(name, self.unit)
+
+
+def component_units(quantity: Any) -> list[str]:
+    """The unit of each component of anything with a unit and components."""
+    units = [part.strip() for part in quantity.unit.split(",")]
+    count = len(quantity.components)
+    return units if len(units) == count else [quantity.unit] * count
 
 
 @dataclass(frozen=True)

@@ -70,10 +70,10 @@ def test_random_antisymmetric_constants_are_no_algebra():
 
 
 def test_a_matrix_basis_that_does_not_close_is_refused():
-    """The offending commutator is named with its entries."""
+    """The offending bracket is named with its entries."""
     e = {(0, 1): Fraction(1)}
     f = {(1, 0): Fraction(1)}
-    with pytest.raises(AlgebraError, match=r"commutator of e and f .* \(1, 1\): 1, \(2, 2\): -1"):
+    with pytest.raises(AlgebraError, match=r"bracket of e and f .* \(1, 1\): 1, \(2, 2\): -1"):
         from_matrices("open", ("e", "f"), (e, f))
 
 

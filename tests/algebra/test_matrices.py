@@ -9,7 +9,7 @@ from coadjoint.algebra.matrices import (
     entries_text,
     kronecker,
     product,
-    realified,
+    realify,
     size,
     transpose,
 )
@@ -59,8 +59,8 @@ def test_real_forms_multiply_as_complex_matrices_do():
         )
 
     real, imaginary = plus(times(a, c), times(b, d), -1), plus(times(a, d), times(b, c), 1)
-    left, right = realified(sparse(a), sparse(b), 2), realified(sparse(c), sparse(d), 2)
-    assert product(left, right) == realified(real, imaginary, 2) != {}
+    left, right = realify(sparse(a), sparse(b), 2), realify(sparse(c), sparse(d), 2)
+    assert product(left, right) == realify(real, imaginary, 2) != {}
 
 
 def test_blocks_and_kronecker_products():

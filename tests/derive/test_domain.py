@@ -72,7 +72,7 @@ def test_generated_code_has_the_name_of_a_condition_and_not_its_text():
     """The text stands in the certificate, where messages look it up."""
     texts = render(spec(KEPLER, ("r > closest", "closest+0  <  r"))).texts
     assert json.loads(texts["certificate.json"])["domain"] == {"apart": "closest+0 < r"}
-    for name in ("kernel.py", "__init__.py", "kernel.c", "kernel.h"):
+    for name in ("kernel.py", "__init__.py", "kernel.c", "kernel.h", "kernel_python.py"):
         assert "closest+0" not in texts[name]
     assert (
         'Bound("apart", "condition", strict=True, inputs=("r", "closest")),' in texts["__init__.py"]

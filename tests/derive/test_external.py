@@ -132,7 +132,7 @@ def test_a_damped_motion_does_not_keep_its_energy():
     """The claim is refuted, with a point; without the friction it is proved."""
     claimed = ("[claims]", '[claims]\nconserved = ["energy"]')
     damped = ("[claims]", '[dissipation]\nR = "dot(Omega, Omega)"\n[claims]')
-    assert verdicts(RIGID_BODY, claimed)["energy is conserved"] is Verdict.PROVED
+    assert verdicts(RIGID_BODY, claimed)["the energy is conserved"] is Verdict.PROVED
     assert verdicts(RIGID_BODY, claimed, damped)["energy is conserved"] is Verdict.REFUTED
 
 

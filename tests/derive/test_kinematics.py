@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from coadjoint.exact.roots import lifted
+from coadjoint.exact.roots import simplify_roots
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Call, Symbol, walk
 from tests.constrained import BALL, PARTICLE, SLEIGH, derived, motion
@@ -78,15 +78,15 @@ def test_a_function_that_a_definition_is_has_no_second_call():
     assert sorted(call.function for call in calls) == ["cos", "sin"]
 
 
-def test_roots_are_lifted_only_where_that_is_shorter():
+def test_roots_are_simplified_only_where_that_is_shorter():
     """(x^2 + y)/h is h; what has no such factor stays as it was written."""
     of = motion(PARTICLE, OVER_ROOT)
     ring, y, u = of.field, of.field["y"], of.field["u"]
     h = ring.call("sqrt", 1 + y**2)
     slope = u * (1 + y**2) / h**3
-    assert lifted(ring, slope) == u / h
-    assert lifted(ring, u * y / h**3) == u * y / h**3
-    assert lifted(ring, u + y) == u + y
+    assert simplify_roots(ring, slope) == u / h
+    assert simplify_roots(ring, u * y / h**3) == u * y / h**3
+    assert simplify_roots(ring, u + y) == u + y
 
 
 def test_the_document_ends_with_brackets_and_what_is_reconstructed():

@@ -22,7 +22,7 @@ from coadjoint.exact.dense import (
     total,
     trace,
     transpose,
-    weighted,
+    weighted_sum,
 )
 
 
@@ -78,7 +78,7 @@ def test_a_singular_matrix_has_no_inverse():
 
 def test_sparse_matrices_are_weighted():
     """The sum of multiples, with the zero that is asked for elsewhere."""
-    assert weighted([2, 3], [{(0, 1): 1}, {(1, 1): 5, (0, 1): 1}], 2, "none") == (
+    assert weighted_sum([2, 3], [{(0, 1): 1}, {(1, 1): 5, (0, 1): 1}], 2, "none") == (
         ("none", 5),
         ("none", 15),
     )

@@ -111,7 +111,7 @@ def test_points_of_a_domain_keep_declared_signs():
     """A point outside is moved inside, with positive symbols left positive."""
     field = Field(NAMES, slots=2, positive=["m"])
     domain = Domain(field, (field.call("sqrt", field["q"] - field["m"] - 50),))
-    point = domain.moved_inside({"m": Fraction(1), "q": Fraction(1)})
+    point = domain.move_inside({"m": Fraction(1), "q": Fraction(1)})
     assert point["m"] > 0
     assert point["q"] > point["m"] + 50
     assert mpmath.sqrt(mpmath.mpf(float(point["q"] - point["m"] - 50))) > 0

@@ -9,7 +9,7 @@ import pytest
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.exact.witness import (
     Enclosure,
-    enclosed_function,
+    enclose_function,
     enclosure,
     is_nonzero,
     points_inside,
@@ -69,7 +69,7 @@ def test_bounds_of_functions_contain_their_values(function):
             if not x:
                 continue
             value = getattr(mpmath, function)(mpmath.mpf(x.numerator) / x.denominator)
-            low, high = enclosed_function(function, Enclosure.of(x)).bounds._mpi_
+            low, high = enclose_function(function, Enclosure.of(x)).bounds._mpi_
             assert mpmath.make_mpf(low) <= value <= mpmath.make_mpf(high)
 
 

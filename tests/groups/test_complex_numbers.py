@@ -8,7 +8,7 @@ import pytest
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
 from coadjoint.exact.dense import product, transpose
-from coadjoint.groups.complex_numbers import Complex, I, adjoint, realified
+from coadjoint.groups.complex_numbers import Complex, I, adjoint, realify
 
 
 def test_complex_numbers_calculate_as_pythons():
@@ -45,10 +45,10 @@ def test_realified_matrices_multiply_alike():
         return ((a, b), (c, d))
 
     A, B = generic("a"), generic("b")
-    assert realified(product(A, B)) == product(realified(A), realified(B))
-    assert realified(product(A, B)) != product(realified(B), realified(A))
-    assert realified(adjoint(A)) == transpose(realified(A))
-    assert realified(((I, 0), (0, I))) == (
+    assert realify(product(A, B)) == product(realify(A), realify(B))
+    assert realify(product(A, B)) != product(realify(B), realify(A))
+    assert realify(adjoint(A)) == transpose(realify(A))
+    assert realify(((I, 0), (0, I))) == (
         (0, 0, -1, 0),
         (0, 0, 0, -1),
         (1, 0, 0, 0),

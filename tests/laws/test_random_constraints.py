@@ -14,9 +14,10 @@ from coadjoint.errors import DerivationError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.prove import Verdict
-from coadjoint.prove.constrained import ConstrainedRates, about_constraints
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.zero import decide_zero
+from tests.constrained import about_routes
 from tests.specs import spec
 
 PARAMETERS = """[parameters]
@@ -101,7 +102,7 @@ def check(text):
     for program in lower(first).values():
         check_inverse(first, program)
     motion = ConstrainedRates(first)
-    for statement, _, examine in [*about_constraints(motion, [second]), *about_projection(first)]:
+    for statement, _, examine in [*about_routes([first, second]), *about_projection(first)]:
         found = examine()
         if isinstance(found, list | tuple):
             found = decide_zero(found, motion.field)

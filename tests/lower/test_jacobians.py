@@ -12,10 +12,11 @@ from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Negate, Number, Output
+from coadjoint.render.targets import BUILDS
 from tests.driven_specs import PENDULUM, SUSLOV, build, rendered
 from tests.specs import shipped, spec
 
-TARGETS = ("numpy", "c", "c-fast")
+TARGETS = tuple(BUILDS)
 
 
 @pytest.fixture(scope="module")

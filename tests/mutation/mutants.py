@@ -44,7 +44,6 @@ POISSON = "src/coadjoint/poisson/"
 EXACT = "src/coadjoint/exact/"
 PROVE = "src/coadjoint/prove/"
 DEFINITIONS = "src/coadjoint/spec/core/definitions.py"
-DEFINED = "src/coadjoint/spec/sections/definitions.py"
 LOWER = "src/coadjoint/lower/"
 RENDER = "src/coadjoint/render/"
 TARGETS = RENDER + "targets/"
@@ -64,8 +63,8 @@ SIGNS = (
     Mutant(ALGEBRA + "invariants.py", "yield j, i, k, -c", "yield j, i, k, c"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
-        "result[j] + scaled(xi[i] * mu[k], c)",
-        "result[j] - scaled(xi[i] * mu[k], c)",
+        "result[j] + multiply_constant(xi[i] * mu[k], c)",
+        "result[j] - multiply_constant(xi[i] * mu[k], c)",
     ),
     Mutant(
         POISSON + "brackets.py",
@@ -172,22 +171,38 @@ MUTANTS = (
     ),
     Mutant(ALGEBRA + "lie_algebra.py", "term = (b, a, c, n), -inner", "term = (b, a, c, n), inner"),
     # ad*, brackets, tensors
-    Mutant(ALGEBRA + "lie_algebra.py", "scaled(xi[i] * mu[k], c)", "scaled(xi[j] * mu[k], c)"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
-        "result[k] + scaled(xi[i] * eta[j], c)",
-        "result[k] - scaled(xi[i] * eta[j], c)",
+        "multiply_constant(xi[i] * mu[k], c)",
+        "multiply_constant(xi[j] * mu[k], c)",
     ),
-    Mutant(ALGEBRA + "lie_algebra.py", "scaled(mu[k], sign * c)", "scaled(mu[k], -sign * c)"),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "result[k] + multiply_constant(xi[i] * eta[j], c)",
+        "result[k] - multiply_constant(xi[i] * eta[j], c)",
+    ),
+    Mutant(
+        ALGEBRA + "lie_algebra.py",
+        "multiply_constant(mu[k], sign * c)",
+        "multiply_constant(mu[k], -sign * c)",
+    ),
     Mutant(ALGEBRA + "lie_algebra.py", "sign: int = -1", "sign: int = 1"),
     Mutant(
         ALGEBRA + "lie_algebra.py",
-        "matrix[k][j] + scaled(xi[i], c)",
-        "matrix[k][j] - scaled(xi[i], c)",
+        "matrix[k][j] + multiply_constant(xi[i], c)",
+        "matrix[k][j] - multiply_constant(xi[i], c)",
     ),
     # representations, products, extensions
-    Mutant(ALGEBRA + "representation.py", "result[row] + scaled(", "result[row] - scaled("),
-    Mutant(ALGEBRA + "representation.py", "result[i] - scaled(", "result[i] + scaled("),
+    Mutant(
+        ALGEBRA + "representation.py",
+        "result[row] + multiply_constant(",
+        "result[row] - multiply_constant(",
+    ),
+    Mutant(
+        ALGEBRA + "representation.py",
+        "result[i] - multiply_constant(",
+        "result[i] + multiply_constant(",
+    ),
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(c, r): v for"),
     Mutant(ALGEBRA + "representation.py", "{(c, r): -v for", "{(r, c): -v for"),
     Mutant(
@@ -429,11 +444,11 @@ MUTANTS = (
     Mutant(POISSON + "momentum_maps.py", "/ (_degree(field, term, names) + 1)", "/ 1"),
     # definitions
     Mutant(DEFINITIONS, "argument[1] + isinstance(part, Index)", "1"),
-    Mutant(DEFINED, "in taken or argument in arguments[:place]", "in taken or argument in []"),
+    Mutant(DEFINITIONS, "in taken or argument in arguments[:place]", "in taken or argument in []"),
     Mutant(DEFINITIONS, "return replace(node, name=whole.name)", "return whole"),
     Mutant(DEFINITIONS, "if len(given) != len(definition.arguments)", "if not given"),
     Mutant(
-        DEFINED,
+        DEFINITIONS,
         "expand(read_expression(expression, functions(known)), known,",
         "expand(read_expression(expression, functions(known)), {},",
     ),

@@ -190,7 +190,7 @@ NEWTON = (
         ("(source - q * q)", "(source + q * q)"),
         ("(source - q * q)", "source"),
         ("scale(alpha, r), cross(chi, r)", "scale(alpha, r), cross(r, chi)"),
-        (".scaled(1 / dot(r, r))", ""),
+        (".scale(1 / dot(r, r))", ""),
         ('"chi . r = 0", dot(chi, r)', '"chi . r = 0", dot(chi, r) - 1'),
     ),
     *of(

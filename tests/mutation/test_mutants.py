@@ -61,7 +61,6 @@ JUDGES = {
     "src/coadjoint/prove/lax": ("tests/derive/test_lax.py", SOURCES + "test_lax.py"),
     "src/coadjoint/prove": ("tests/prove", "tests/derive", *BODIES),
     "src/coadjoint/spec/core/definitions": ("tests/spec/test_definitions.py",),
-    "src/coadjoint/spec/sections/definitions": ("tests/spec/test_definitions.py",),
     "src/coadjoint/lower": ("tests/lower",),
     "src/coadjoint/render": KERNELS,
     "templates": KERNELS,

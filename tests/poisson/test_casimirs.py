@@ -15,7 +15,7 @@ from coadjoint.poisson import PoissonStructure, declared, lie_poisson, nambu
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.poisson.polynomials import Polynomial, read_polynomial
 from coadjoint.poisson.search import independent_polynomials
-from coadjoint.poisson.summands import restricted_algebra, summands
+from coadjoint.poisson.summands import restrict_algebra, summands
 
 #: Algebras of dimension at most 11, with the degrees of their Casimirs.
 DEGREES = {
@@ -204,7 +204,7 @@ def test_a_term_between_the_summands_joins_them():
 def test_a_summand_in_another_order_keeps_its_algebra():
     """so(3) with its basis reversed: constants change their signs, the matrices go along."""
     so3 = algebra_by_name("so(3)")
-    turned = restricted_algebra(so3, (2, 1, 0))
+    turned = restrict_algebra(so3, (2, 1, 0))
     assert turned.basis == ("J3", "J2", "J1")
     assert dict(turned.constants[0, 1]) == {2: -1}
     turned.check_matrices()

@@ -8,7 +8,7 @@ from coadjoint.exact import Field
 from coadjoint.exact.dense import cross
 from coadjoint.groups.vector_fields import VectorField
 from coadjoint.poisson import canonical, lie_poisson, magnetic
-from coadjoint.poisson.momentum_maps import MomentumMap, generating_function, lifted
+from coadjoint.poisson.momentum_maps import MomentumMap, generating_function, lift
 
 NAMES = ("q1", "q2", "q3", "p1", "p2", "p3")
 SO3 = algebra_by_name("so(3)")
@@ -22,13 +22,13 @@ def rotations(sign=1, factor=1):
     q = [field[name] for name in NAMES[:3]]
     units = ([int(i == k) for k in range(3)] for i in range(3))
     turns = [dict(zip(NAMES, SO3.bracket(unit, q), strict=False)) for unit in units]
-    generators = tuple(lifted(space, pairs, turn) for turn in turns)
+    generators = tuple(lift(space, pairs, turn) for turn in turns)
     values = tuple(factor * x for x in cross(q, [field[name] for name in NAMES[3:]]))
     return MomentumMap(SO3, space, generators, values, sign)
 
 
 def test_rotations_obey_every_law():
-    """The lifted rotations act from the left, keep the bracket, and q x p generates them."""
+    """The lift rotations act from the left, keep the bracket, and q x p generates them."""
     J = rotations()
     assert not any(J.action_defects())
     assert not any(J.bracket_defects())

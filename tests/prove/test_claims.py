@@ -33,8 +33,9 @@ def test_every_claim_of_a_shipped_system_is_proved(system):
     expected |= {"bracket"} if declared.brackets else set()
     expected |= {"galilean"} if declared.galilean else set()
     expected |= {"dissipation"} if declared.relaxation else set()
-    if not declared.constraints:  # of those, more is found than is claimed
-        assert kinds - {"symmetry"} == expected - {"symmetry"}
+    found = {"transformation", "integrals", "measure", "symmetry"}  # also without being claimed
+    if not declared.constraints:
+        assert kinds - found == expected - found
     assert kinds >= expected
     for counted in [c.statement for c in certificate.claims if c.kind == "casimir"][-1:]:
         assert counted.startswith(("every Casimir is a function of the", "there are no Casimirs"))

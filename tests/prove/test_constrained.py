@@ -22,6 +22,7 @@ from tests.constrained import (
     SLEIGH,
     STRAIGHT,
     SUSLOV,
+    about_routes,
     derived,
     motion,
 )
@@ -36,7 +37,7 @@ DRIVEN = ("[claims]", '[forces]\nw = "3"\n[dissipation]\nR = "k*u^2/2"\n[claims]
 def verdicts(routes):
     """Verdict by statement of the claims that need no search."""
     found = {}
-    for statement, kind, examine in about_constraints(ConstrainedRates(routes[0]), routes[1:]):
+    for statement, kind, examine in about_routes(routes):
         if kind in ("constraint", "equivalence", "conserved"):
             decision = examine()
             if not hasattr(decision, "verdict"):
@@ -191,7 +192,7 @@ def test_the_energy_is_said_to_be_conserved_once():
 )
 def test_where_the_rank_drops_is_said(name, where):
     """A blade has a direction at every angle, a normal of length 0 is none."""
-    statement, *_ = next(about_constraints(ConstrainedRates(derive(shipped(name))), ()))
+    statement, *_ = next(about_constraints(ConstrainedRates(derive(shipped(name)))))
     assert statement == f"the constraint is independent: rank 1 {where}"
 
 
@@ -213,7 +214,7 @@ def test_where_a_rank_is_certain_is_said(factor, where, method):
     old = next(line for line in text.splitlines() if line.startswith("blade"))
     new = f'blade = "{factor}*vx*(x + 2*z) + vz*(x^2 + {factor.replace("y", "x")}) + vxi*x == 0"'
     declared = spec(text, (old, new.replace("y", "z")), name="knife_edge_cvt")
-    statement, _, examine = next(about_constraints(ConstrainedRates(derive(declared)), ()))
+    statement, _, examine = next(about_constraints(ConstrainedRates(derive(declared))))
     assert statement == f"the constraint is independent: rank 1 at {where}"
     assert examine().method == f"rank of A {method}"
 

@@ -137,7 +137,7 @@ def test_the_exceptions_have_one(name, changes, volume):
     ("force", "reason", "power"),
     [
         ("-r*vtheta", "what it asks for at rest contradicts itself", "-1"),
-        ("-r*vtheta^3", "div X is not affine in the velocities", "-3"),
+        ("-r*vtheta^3", "div X is not affine in velocities", "-3"),
     ],
 )
 def test_friction_has_no_measure_of_positions(force, reason, power):

@@ -209,7 +209,7 @@ def test_a_body_falls_onto_its_largest_axis():
 def test_shipped_motions_name_what_they_lose():
     """The heads of generated files and the certificate agree."""
     found = {c.statement for c in prove(shipped("landau_lifshitz_gilbert")).claims}
-    assert "the energy changes by -<P dh, G P dh>" in found
+    assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
 
 
 #: A particle in a potential, whose phase space has a canonical bracket.
@@ -331,7 +331,10 @@ def test_wrong_baths_are_refuted(change, statement):
     [
         (
             PARTICLE,
-            ("beside {x, h} the rates are P G P dh", "the energy changes by -<P dh, G P dh>"),
+            (
+                "beside {x, h} the rates are P G P dh",
+                "dh/dt = -<P dh, G P dh>: the energy never grows",
+            ),
         ),
         (HEATING, ("beside {x, h} the rates are G dS",)),
     ],

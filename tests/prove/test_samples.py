@@ -9,7 +9,7 @@ import pytest
 from coadjoint.exact import Field
 from coadjoint.exact.linear import PRIME, primes
 from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
-from coadjoint.prove.samples import AtNumbers, Samples, leading
+from coadjoint.prove.samples import Samples, leading
 from tests.prove.rolling import motion
 
 #: A slope that does not move.
@@ -51,7 +51,7 @@ def test_given_parameters_are_taken():
     numbers = dict.fromkeys(along.equations.setting.parameters, Fraction(1)) | {"chi1": Fraction(0)}
     point = next(Samples(along, numbers).points())
     assert [point.values[name].value for name in ("I1", "chi1")] == [1, 0]
-    rate = AtNumbers(along, numbers).rate(along.field["Omega1"])
+    rate = along.at(numbers).rate(along.field["Omega1"])
     assert along.field.reach(rate) <= set(along.equations.setting.state)
     assert rate != 0
 

@@ -166,13 +166,13 @@ def test_the_former_name_of_a_claim_is_read():
 
 
 def test_generated_heads_say_what_is_not_proved():
-    """Both kernels count the claims that are only supported; where all are proved they say none."""
+    """All kernels count the claims that are only supported; where all are proved they say none."""
     claims = (
         f'casimirs = ["dot(Pi, Pi)", {{ claim = "{nested("Pi1", "Pi2")}", accept = "numerical" }}]'
     )
     rendered = pipeline.render(spec(RIGID_BODY, (PLAIN, claims)))
     line = "1 claim is numerically supported and NOT proved: see certificate.json."
-    for name in ("kernel.py", "kernel.c"):
+    for name in ("kernel.py", "kernel.c", "kernel_python.py"):
         assert line in rendered.texts[name]
     assert '"accepted": true' in rendered.texts["certificate.json"]
     assert "NOT proved" not in pipeline.render(spec()).texts["kernel.c"]

@@ -105,7 +105,7 @@ def test_C_1_2_the_submanifold_is_proved_invariant():
     kinds = [c.statement for c in certificate.claims if c.kind == "reduction"]
     assert len(kinds) == 3
     assert kinds[0].startswith("the whole motion keeps dot(x, y) = 0")
-    assert "energy is conserved" in {c.statement for c in certificate.claims}
+    assert "the energy is conserved" in {c.statement for c in certificate.claims}
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from coadjoint.derive import derive
+from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict, prove
 from coadjoint.resources import derivations_folder
 from tests.conftest import rational_points
+from tests.sources.bodies import heavy_top_rates
 from tests.sources.components import cross, dot, minus, over, plus, times
 from tests.sources.driven import (
     quadrotor_rates,
@@ -111,6 +114,14 @@ def test_a_hovering_quadrotor_is_controlled_by_thrust_and_torque():
     assert np.allclose(B, inputs)
     reached = np.hstack([np.linalg.matrix_power(A, k) @ B for k in range(4)])
     assert np.linalg.matrix_rank(reached) == 9
+
+
+def test_the_depth_has_a_unit_of_its_own():
+    """So that the energy has one, too."""
+    quadrotor = system("quadrotor")
+    assert quadrotor.OBSERVABLES["energy"].unit == "kg m^2/s^2"
+    motion = quadrotor.simulate(HOVERING, (0, 1), samples=2)
+    assert [motion.unit(name) for name in ("Gamma1", "Gamma4", "P1")] == ["1", "m", "kg m/s"]
 
 
 # -- a spacecraft with wheels ----
@@ -223,6 +234,22 @@ def test_pitch_of_any_size_keeps_the_integral_of_jacobi():
     assert np.allclose(integral, integral[0], atol=1e-8)
 
 
+def test_the_torque_is_that_of_gravity_on_points_of_mass():
+    """Newton's attraction ``-n^2 r/|r|^3`` of six points, the planet at the distance 1."""
+    size, masses, n = 1e-3, np.array([3.0, 1.0, 2.0]), 1.7
+    gamma = np.array([2.0, 3.0, 6.0]) / 7
+    torque = np.zeros(3)
+    for axis, mass in zip(np.eye(3), masses, strict=True):
+        for side in (1, -1):
+            X = side * size * axis
+            r = gamma + X
+            torque += np.cross(X, -mass / 2 * n**2 * r / np.linalg.norm(r) ** 3)
+    inertia = size**2 * (masses.sum() - masses)
+    rates = satellite_rates([0, 0, 0, 0, 0, 1, *gamma], [*inertia, n])
+    assert np.allclose(rates[:3], torque, rtol=1e-4, atol=0)
+    assert not np.allclose(times(-1, rates[:3]), torque, rtol=1e-4, atol=0)
+
+
 def test_the_radius_turns_against_the_orbit():
     """With ``gamma x Omega`` in the place of ``gamma x omega`` the integral of Jacobi drifts."""
     state, given = random_point("gravity_gradient_satellite")
@@ -290,6 +317,35 @@ def test_a_shaken_top_stays_up_and_a_calmer_one_falls(a, least):
     assert (motion["Gamma"][2].min() > 0.9) == (least > 0)
     assert set(motion.drift) == {"casimir1", "casimir2"}
     assert max(motion.drift.values()) < 1e-8
+
+
+@pytest.mark.parametrize(("sign", "same"), [(1, True), (-1, False)])
+def test_the_pivot_takes_gravity_with_it(sign, same):
+    """Euler and Poincare with the velocity of the pivot, whose momentum is another one.
+
+    Of ``Omega . I Omega/2 + m z' Gamma . (Omega x chi) - m g Gamma . chi`` the momentum is ``p = Pi
+    + m z' chi x Gamma``, and its rate is ``p x Omega + dl/dGamma x Gamma``.
+    """
+    point = random_point("kapitza_top")
+    state, (*top, speed, acceleration, _) = point
+    inertia, (m, g), chi = top[:3], top[3:5], top[5:8]
+    Pi, Gamma = state[:3], state[3:]
+    omega = over(Pi, inertia)
+    p = plus(Pi, times(m * speed, cross(chi, Gamma)))
+    slope = minus(times(m * speed, cross(omega, chi)), times(m * g, chi))
+    moved = plus(cross(p, omega), cross(slope, Gamma))
+    carried = times(m * speed, cross(chi, cross(Gamma, omega)))
+    own = times(sign * m * acceleration, cross(chi, Gamma))
+    felt = heavy_top_rates(state, [*inertia, m, g + acceleration, *chi])[:3]
+    assert (minus(minus(moved, carried), own) == felt) == same
+
+
+def test_a_weight_that_changes_is_no_cyclic_momentum():
+    """The route of Kaluza and Klein keeps ``p = -m g chi``; the message says what to do."""
+    text = (derivations_folder() / "kapitza_top.toml").read_text(encoding="utf-8")
+    declared = spec(text, ('"newton-euler",', '"newton-euler", "kaluza-klein",'))
+    with pytest.raises(DerivationError, match=r"depends on t.*Remove the route"):
+        derive(declared, "kaluza-klein")
 
 
 def test_the_pivot_is_highest_when_time_begins():

@@ -1,4 +1,4 @@
-"""Freshly built kernels, NumPy and C, against the formulas of books in exact arithmetic.
+"""Freshly built kernels of all targets against the formulas of books in exact arithmetic.
 
 The systems are built here from specs, not imported from `generated/`, so that a change anywhere
 between a spec and a compiled kernel shows.
@@ -11,6 +11,7 @@ import pytest
 
 from coadjoint import pipeline
 from coadjoint.errors import KernelArgumentError
+from coadjoint.render.targets import BUILDS
 from coadjoint.solve.system import load_folder
 from tests.sources import textbook
 from tests.specs import shipped
@@ -18,7 +19,7 @@ from tests.specs import shipped
 #: Inputs lie in [1/8, 8], so that sums stay below 2^13 and their rounding errors below 2^-37.
 TOLERANCE = 2.0**-37
 SYSTEMS = sorted(textbook.RATES)
-TARGETS = ("numpy", "c", "c-fast")
+TARGETS = tuple(BUILDS)
 MEMBERS = 7
 
 

@@ -164,7 +164,7 @@ def test_3_1_2_conjugate_norm_and_inverse(field):
     assert (q * r).conjugate == r.conjugate * q.conjugate
     assert (q * r).conjugate != q.conjugate * r.conjugate
     assert (q * r).norm == q.norm * r.norm
-    assert q.inverse() == q.conjugate.scaled(1 / squares)
+    assert q.inverse() == q.conjugate.scale(1 / squares)
     assert q * q.inverse() == Quaternion(1, 0, 0, 0)
 
 
@@ -470,7 +470,7 @@ def test_3_2_7_the_table_of_coquaternions():
     assert [i * i, j * j, k * k] == [-one, one, one]
     assert [i * j, j * k, k * i] == [k, -i, j]
     assert [j * i, k * j, i * k] == [-k, i, -j]
-    assert [ad(i, j), ad(j, k), ad(k, i)] == [k.scaled(2), i.scaled(-2), j.scaled(2)]
+    assert [ad(i, j), ad(j, k), ad(k, i)] == [k.scale(2), i.scale(-2), j.scale(2)]
     _, i, j, k = Quaternion.units()
     assert j * k != -i
 
@@ -516,7 +516,7 @@ def test_4_1_quaternion_kinematics(field):
     """Omega = 2 Im(q* q') and q' = q [0, Omega]/2 give R' = R hat(Omega) and keep the norm."""
     q, Omega = symbols(field, "q"), vector(field, "u")
     q_dot = quaternion_rate(q, Omega)
-    assert q_dot == (q * Quaternion(0, *Omega)).scaled(field.one / 2)
+    assert q_dot == (q * Quaternion(0, *Omega)).scale(field.one / 2)
     assert body_angular_velocity(q, q_dot) == Omega
     R = euler_rodrigues(q)
     R_dot = tuple(tuple(along(field, q, q_dot, entry) for entry in row) for row in R)
@@ -562,8 +562,8 @@ def test_4_2_1_actions_of_quaternions(field):
     assert Ad_star(q, mu) == q.conjugate * mu * q
     assert ad(xi, mu).components == (0, *scale(2, cross(xi.vector, mu.vector)))
     assert ad_star(xi, mu).components == (0, *scale(-2, cross(xi.vector, mu.vector)))
-    halved = [part.scaled(field.one / 2) for part in (xi, mu)]
-    assert ad(*halved) == Quaternion.pure(cross(xi.vector, mu.vector)).scaled(field.one / 2)
+    halved = [part.scale(field.one / 2) for part in (xi, mu)]
+    assert ad(*halved) == Quaternion.pure(cross(xi.vector, mu.vector)).scale(field.one / 2)
 
 
 def test_4_2_1_coactions_are_dual(field):

@@ -195,22 +195,22 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
     assert listed(["euler-poincare", "lie-poisson"]) in str(caught.value)
 
 
+SYMMETRY = '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }'
+KEPT = ('"w == y*u"', '"2*w == y*u"')
+
+
 @pytest.mark.parametrize(
-    ("table", "found"),
+    ("text", "changes", "table", "found"),
     [
-        ('[claims]\ncasimirs = ["k*m"]', "claims of Casimirs"),
-        ('[claims]\nbrackets = { "{omega, v}" = "k" }', "claims of brackets"),
-        ('[transformations.P]\nmap = { v = "-v" }', "[transformations]"),
-        (
-            '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }',
-            "[symmetries]",
-        ),
+        (PARTICLE, (KEPT,), 'casimirs = ["k*m"]', "claims of Casimirs"),
+        (PARTICLE, (KEPT,), 'brackets = { "{u, v}" = "k" }', "claims of brackets"),
+        (SLEIGH, (), SYMMETRY, "[symmetries]"),
     ],
 )
-def test_what_rests_on_a_bracket_is_refused(table, found):
-    """Casimirs, brackets, symmetries and transformations have no place; [momenta] is named."""
+def test_what_rests_on_a_bracket_is_refused(text, changes, table, found):
+    """Casimirs and brackets where constraints give no velocity, symmetries; [momenta] is named."""
     with pytest.raises(SpecError, match="beside \\[constraints\\]") as caught:
-        spec(SLEIGH + table)
+        spec(text + table, *changes)
     assert f"there are {found} beside [constraints]" in str(caught.value)
     assert "Declare momenta along the constraints in [momenta]" in str(caught.value)
 

@@ -5,7 +5,7 @@ import tomllib
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, listed
 from coadjoint.spec.core.positions import scan
-from coadjoint.spec.core.source import Source, dotted, joined, shown
+from coadjoint.spec.core.source import Source, join_faults, show_value, write_key
 
 TEXT = 'title = "x"\n\n[lagrangian]\n\tl = "dot(Omgea, Omega)/2"  # a comment\n'
 
@@ -76,20 +76,20 @@ def test_place_at_the_end_and_in_an_empty_text():
 def test_several_faults_are_one_error():
     """All messages in order, the parts of the first, and all parts."""
     faults = [source().fault(("title",), f"fault {n}", found=n) for n in (1, 2)]
-    error = joined(faults)
+    error = join_faults(faults)
     assert str(error).count("fault") == 2
     assert error.found == 1
     assert [part["found"] for part in error.faults] == [1, 2]
-    assert joined(faults[:1]) is faults[0]
+    assert join_faults(faults[:1]) is faults[0]
 
 
 def test_words_of_messages():
     """Paths, values and suggestions on one line each."""
-    assert dotted(("claims", "casimirs", 0)) == "claims.casimirs[1]"
-    assert dotted(()) == "the file"
-    assert dotted(("a", "\x1b[31m")) == "a.'\\x1b[31m'"
-    assert shown(1 << 5000) == "an integer of 5001 bits"
-    assert shown([1, 2]) == "a list of 2"
-    assert shown("a\nb" * 50).endswith("...")
+    assert write_key(("claims", "casimirs", 0)) == "claims.casimirs[1]"
+    assert write_key(()) == "the file"
+    assert write_key(("a", "\x1b[31m")) == "a.'\\x1b[31m'"
+    assert show_value(1 << 5000) == "an integer of 5001 bits"
+    assert show_value([1, 2]) == "a list of 2"
+    assert show_value("a\nb" * 50).endswith("...")
     assert did_you_mean("zzz", ["Omega"], "else") == "else"
     assert listed("abc", most=2) == "a, b, ..."

@@ -15,7 +15,7 @@ from coadjoint.exact.dense import (
     subtract,
     trace,
     transpose,
-    weighted,
+    weighted_sum,
 )
 from coadjoint.theory import matrix as m
 
@@ -80,7 +80,7 @@ def test_coordinates_of_overlapping_matrices():
     """Readers give the coordinates also where no entry belongs to one matrix alone."""
     basis = [{(0, 0): 1, (1, 1): -1}, {(0, 0): 1, (1, 1): 1}, {(0, 1): 2}]
     readers = m.coordinate_readers(basis)
-    matrix = weighted([5, 7, -3], basis, 2)
+    matrix = weighted_sum([5, 7, -3], basis, 2)
     assert [sum(matrix[r][c] * w for (r, c), w in reader.items()) for reader in readers] == [
         *(5, 7, -3)
     ]

@@ -127,9 +127,9 @@ def algebra_by_name(name: str, most: int = GENERATORS) -> LieAlgebra:
     """
     plain = ALIASES.get("".join(name.split()), "".join(name.split()))
     for family in FAMILIES:
-        found = re.fullmatch(family.pattern, plain, re.ASCII)
-        if found:
-            sizes = tuple(map(int, found.groups()))
+        result = re.fullmatch(family.pattern, plain, re.ASCII)
+        if result:
+            sizes = tuple(map(int, result.groups()))
             _check_sizes(name, family, sizes, most)
             return _built(family, sizes)
     near = get_close_matches(name, (*CATALOGUE, *ALIASES), n=3)

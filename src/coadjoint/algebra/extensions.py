@@ -59,7 +59,7 @@ def central_extension(
             triple=[x, y, z],
             defect=error.defect,
         ) from error
-    return with_matrices(whole, _extended_matrices(algebra, omega))
+    return with_matrices(whole, _extend_matrices(algebra, omega))
 
 
 def _form(
@@ -85,7 +85,7 @@ def _form(
     return omega
 
 
-def _extended_matrices(
+def _extend_matrices(
     algebra: LieAlgebra, omega: Mapping[tuple[int, int], Any]
 ) -> tuple[SparseMatrix, ...]:
     """``[[x, 0], [f_x, 0]]`` for rows f_x that make the commutators right, if there are such rows.

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, permutations, product
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, from_matrices
-from coadjoint.algebra.matrices import Matrix, realified, unit
+from coadjoint.algebra.matrices import Matrix, realify, unit
 
 Generators = Iterator[tuple[str, Matrix]]
 
@@ -161,11 +161,11 @@ def _unitary(n: int, diagonal: Sequence[Matrix]) -> Generators:
     """Antisymmetric, then i times symmetric, then i times diagonal matrices."""
     pairs = list(combinations(range(n), 2))
     for i, j in pairs:
-        yield label("A", i, j), realified({(i, j): 1, (j, i): -1}, {}, n)
+        yield label("A", i, j), realify({(i, j): 1, (j, i): -1}, {}, n)
     for i, j in pairs:
-        yield label("S", i, j), realified({}, {(i, j): 1, (j, i): 1}, n)
+        yield label("S", i, j), realify({}, {(i, j): 1, (j, i): 1}, n)
     for k, matrix in enumerate(diagonal):
-        yield f"D{k + 1}", realified({}, matrix, n)
+        yield f"D{k + 1}", realify({}, matrix, n)
 
 
 def u(n: int) -> LieAlgebra:
@@ -182,7 +182,7 @@ def su(n: int) -> LieAlgebra:
             ({(0, 1): -half, (1, 0): half}, {}),
             ({}, {(0, 0): -half, (1, 1): half}),
         ]
-        return _algebra("su(2)", ((f"T{k + 1}", realified(*spin[k], 2)) for k in range(3)))
+        return _algebra("su(2)", ((f"T{k + 1}", realify(*spin[k], 2)) for k in range(3)))
     diagonal: list[Matrix] = [{(k, k): 1, (k + 1, k + 1): -1} for k in range(n - 1)]
     return _algebra(f"su({n})", _unitary(n, diagonal))
 

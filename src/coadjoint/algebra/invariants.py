@@ -129,13 +129,13 @@ class Invariants:
                 if lower_central
                 else combinations(members, 2)
             )
-            members = self._spanned_by_brackets(pairs)
+            members = self._span_of_brackets(pairs)
             if len(members) == dimensions[-1]:
                 break
             dimensions.append(len(members))
         return tuple(dimensions)
 
-    def _spanned_by_brackets(
+    def _span_of_brackets(
         self, pairs: Iterable[tuple[dict[int, Any], dict[int, Any]]]
     ) -> list[dict[int, Any]]:
         """A basis of the span of the brackets of pairs of sparse vectors."""

@@ -19,7 +19,7 @@ from coadjoint.algebra.matrices import (
     SparseMatrix,
     combination,
     commutator,
-    converted,
+    convert_entries,
     entries_text,
 )
 from coadjoint.errors import AlgebraError, LimitError
@@ -34,8 +34,8 @@ __all__ = [
     "from_bracket",
     "from_brackets",
     "from_matrices",
+    "multiply_constant",
     "same_constants",
-    "scaled",
 ]
 
 #: [e_i, e_j] = sum of value * e_k over the items k: value; pairs with i < j only, zeros left out.
@@ -44,7 +44,7 @@ __all__ = [
 Constants = Mapping[tuple[int, int], Mapping[int, Any]]
 
 
-def scaled(value: Any, factor: Any) -> Any:
+def multiply_constant(value: Any, factor: Any) -> Any:
     """``factor * value`` for values that know integers but not fractions, such as floats."""
     if isinstance(factor, int) and abs(factor) == 1:
         return value if factor == 1 else -value
@@ -97,23 +97,23 @@ class LieAlgebra(Invariants):
 
         It moves parameters into another field, or puts numbers for them.
         """
-        constants = {pair: converted(row, convert) for pair, row in self.constants.items()}
-        matrices = tuple(converted(matrix, convert) for matrix in self.matrices)
-        elements = tuple(converted(matrix, convert) for matrix in self.elements)
+        constants = {pair: convert_entries(row, convert) for pair, row in self.constants.items()}
+        matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
+        elements = tuple(convert_entries(matrix, convert) for matrix in self.elements)
         return LieAlgebra(self.name, self.basis, constants, self.blocks, matrices, elements)
 
     def bracket(self, xi: Sequence[Any], eta: Sequence[Any]) -> tuple[Any, ...]:
         """``[xi, eta]^k = c_ij^k xi^i eta^j``."""
         result: list[Any] = [0] * self.dimension
         for i, j, k, c in self.structure():
-            result[k] = result[k] + scaled(xi[i] * eta[j], c)
+            result[k] = result[k] + multiply_constant(xi[i] * eta[j], c)
         return tuple(result)
 
     def ad(self, xi: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
         """Matrix of ``eta -> [xi, eta]``: entry ``[k][j] = c_ij^k xi^i``."""
         matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
         for i, j, k, c in self.structure():
-            matrix[k][j] = matrix[k][j] + scaled(xi[i], c)
+            matrix[k][j] = matrix[k][j] + multiply_constant(xi[i], c)
         return tuple(map(tuple, matrix))
 
     def ad_star(self, xi: Sequence[Any], mu: Sequence[Any]) -> tuple[Any, ...]:
@@ -123,7 +123,7 @@ class LieAlgebra(Invariants):
         """
         result: list[Any] = [0] * self.dimension
         for i, j, k, c in self.structure():
-            result[j] = result[j] + scaled(xi[i] * mu[k], c)
+            result[j] = result[j] + multiply_constant(xi[i] * mu[k], c)
         return tuple(result)
 
     def lie_poisson_tensor(self, mu: Sequence[Any], sign: int = -1) -> tuple[tuple[Any, ...], ...]:
@@ -133,7 +133,7 @@ class LieAlgebra(Invariants):
         """
         matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
         for i, j, k, c in self.structure():
-            matrix[i][j] = matrix[i][j] + scaled(mu[k], sign * c)
+            matrix[i][j] = matrix[i][j] + multiply_constant(mu[k], sign * c)
         return tuple(map(tuple, matrix))
 
     # -- checks ---------------------------------------------------------------------------
@@ -205,12 +205,12 @@ class LieAlgebra(Invariants):
             for j in range(i + 1, self.dimension):
                 row = self.constants.get((i, j), {})
                 expected = combination((c, self.matrices[k]) for k, c in row.items())
-                found = commutator(a, self.matrices[j])
-                if found != expected:
+                result = commutator(a, self.matrices[j])
+                if result != expected:
                     pair = [self.basis[i], self.basis[j]]
                     raise AlgebraError(
                         f"{self.name}: the matrices of {pair[0]} and {pair[1]} have a commutator "
-                        f"with the entries {entries_text(found)}; expected "
+                        f"with the entries {entries_text(result)}; expected "
                         f"{entries_text(expected)}. Check [{pair[0]}, {pair[1]}].",
                         pair=pair,
                     )
@@ -292,15 +292,7 @@ def from_matrices(
     brackets = {}
     for i, j in _overlapping(matrices):
         product = commutator(matrices[i], matrices[j])
-        coordinates = span.coordinates(product)
-        if coordinates is None:
-            raise AlgebraError(
-                f"{name}: the commutator of {basis[i]} and {basis[j]} is not in the span of the "
-                f"basis; it has the entries {entries_text(product)}. Add what is missing to the "
-                "basis.",
-                pair=[basis[i], basis[j]],
-            )
-        brackets[i, j] = coordinates
+        brackets[i, j] = _coordinates(name, span, (basis[i], basis[j]), product)
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
 
 
@@ -335,14 +327,7 @@ def from_bracket(
                 "antisymmetric bracket. Subtract what it is with X and Y exchanged.",
                 pair=[basis[i], basis[j]],
             )
-        coordinates = span.coordinates(product)
-        if coordinates is None:
-            raise AlgebraError(
-                f"{name}: the bracket of {basis[i]} and {basis[j]} is not in the span of the "
-                f"basis; it has the entries {entries_text(product)}. Add what is missing to the "
-                "basis.",
-                pair=[basis[i], basis[j]],
-            )
+        coordinates = _coordinates(name, span, (basis[i], basis[j]), product)
         if i < j:
             brackets[i, j] = coordinates
     made = from_brackets(name, basis, brackets)
@@ -361,6 +346,20 @@ def _independent(name: str, basis: Sequence[str], matrices: Sequence[SparseMatri
             found=redundant,
         )
     return span
+
+
+def _coordinates(
+    name: str, span: Span, pair: tuple[str, str], product: SparseMatrix
+) -> dict[int, Any]:
+    """The coordinates of a bracket of two basis vectors."""
+    coordinates = span.coordinates(product)
+    if coordinates is None:
+        raise AlgebraError(
+            f"{name}: the bracket of {pair[0]} and {pair[1]} is not in the span of the basis; it "
+            f"has the entries {entries_text(product)}. Add what is missing to the basis.",
+            pair=list(pair),
+        )
+    return coordinates
 
 
 def _overlapping(matrices: Sequence[SparseMatrix]) -> Iterator[tuple[int, int]]:

@@ -50,7 +50,7 @@ def commutator(a: SparseMatrix, b: SparseMatrix) -> Matrix:
     return result
 
 
-def converted(row: Mapping[Place, Any], convert: Callable[[Any], Any]) -> dict[Place, Any]:
+def convert_entries(row: Mapping[Place, Any], convert: Callable[[Any], Any]) -> dict[Place, Any]:
     """A sparse row or matrix whose entries with parameters are converted; rationals stay."""
     return {
         at: value if isinstance(value, int | Fraction) else convert(value)
@@ -68,7 +68,7 @@ def size(matrices: Iterable[SparseMatrix]) -> int:
     return 1 + max((max(place) for matrix in matrices for place in matrix), default=-1)
 
 
-def shifted(a: SparseMatrix, rows: int, columns: int) -> Matrix:
+def shift(a: SparseMatrix, rows: int, columns: int) -> Matrix:
     """The matrix as a block that begins further down and to the right."""
     return {(r + rows, c + columns): value for (r, c), value in a.items()}
 
@@ -80,14 +80,14 @@ def kronecker(a: SparseMatrix, b: SparseMatrix, width: int) -> Matrix:
     }
 
 
-def realified(real: SparseMatrix, imaginary: SparseMatrix, width: int) -> Matrix:
+def realify(real: SparseMatrix, imaginary: SparseMatrix, width: int) -> Matrix:
     """``A + iB`` as the real matrix ``[[A, -B], [B, A]]``, for A and B of ``width`` rows."""
     turned = {place: -value for place, value in imaginary.items()}
     return {
-        **shifted(real, 0, 0),
-        **shifted(real, width, width),
-        **shifted(turned, 0, width),
-        **shifted(imaginary, width, 0),
+        **shift(real, 0, 0),
+        **shift(real, width, width),
+        **shift(turned, 0, width),
+        **shift(imaginary, width, 0),
     }
 
 
@@ -97,7 +97,7 @@ def block_diagonal(parts: Sequence[Sequence[SparseMatrix]]) -> tuple[Matrix, ...
     start = 0
     for part in parts:
         for whole, block in zip(result, part, strict=True):
-            whole.update(shifted(block, start, start))
+            whole.update(shift(block, start, start))
         start += size(part)
     return tuple(result)
 

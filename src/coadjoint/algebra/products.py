@@ -30,12 +30,12 @@ def direct_sum(algebras: Sequence[LieAlgebra], name: str = "") -> LieAlgebra:
     ('J1', 'J2', 'J3', 'e1', 'e2')
     """
     check_size(name or "the direct sum", sum(algebra.dimension for algebra in algebras))
-    basis, blocks = _joined(algebras)
+    basis, blocks = _join(algebras)
     brackets: Brackets = {}
     parts: list[tuple[SparseMatrix, ...]] = []
     start, dimension = 0, len(basis)
     for algebra in algebras:
-        brackets |= _shifted(algebra, start)
+        brackets |= _shift(algebra, start)
         after = dimension - start - algebra.dimension
         parts.append((*_zeros(start), *algebra.matrices, *_zeros(after)))
         start += algebra.dimension
@@ -104,8 +104,8 @@ def semidirect_sum(
     _check_action(action, acting, ideal)
     check_size(name or "the semidirect sum", acting.dimension + ideal.dimension)
     start = acting.dimension
-    basis, blocks = _joined([acting, ideal])
-    brackets = _shifted(acting, 0) | _shifted(ideal, start)
+    basis, blocks = _join([acting, ideal])
+    brackets = _shift(acting, 0) | _shift(ideal, start)
     for i, matrix in enumerate(action.matrices):
         for (row, column), value in matrix.items():
             brackets.setdefault((i, start + column), {})[start + row] = value
@@ -186,7 +186,7 @@ def _zeros(count: int) -> tuple[Matrix, ...]:
     return tuple({} for _ in range(count))
 
 
-def _shifted(algebra: LieAlgebra, start: int) -> Brackets:
+def _shift(algebra: LieAlgebra, start: int) -> Brackets:
     """The brackets of a part whose basis begins further on."""
     return {
         (i + start, j + start): {k + start: c for k, c in row.items()}
@@ -194,7 +194,7 @@ def _shifted(algebra: LieAlgebra, start: int) -> Brackets:
     }
 
 
-def _joined(parts: Sequence[LieAlgebra]) -> tuple[list[str], Blocks]:
+def _join(parts: Sequence[LieAlgebra]) -> tuple[list[str], Blocks]:
     """Bases and blocks one after the other; names that occur twice get the number of the part."""
     names = [name for part in parts for name in part.basis]
     labels = [label for part in parts for label in part.blocks]

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from coadjoint.algebra.lie_algebra import LieAlgebra, scaled
+from coadjoint.algebra.lie_algebra import LieAlgebra, multiply_constant
 from coadjoint.algebra.matrices import (
     Matrix,
     SparseMatrix,
     combination,
     commutator,
-    converted,
+    convert_entries,
     entries_text,
     kronecker,
     size,
@@ -48,16 +48,16 @@ class Representation:
         for i, j in combinations(range(self.algebra.dimension), 2):
             row = self.algebra.constants.get((i, j), {})
             expected = combination((c, self.matrices[k]) for k, c in row.items())
-            found = commutator(self.matrices[i], self.matrices[j])
-            if found != expected:
+            result = commutator(self.matrices[i], self.matrices[j])
+            if result != expected:
                 a, b = self.algebra.basis[i], self.algebra.basis[j]
                 raise AlgebraError(
                     f"representation {self.name!r} of {self.algebra.name}: the matrices of {a} and "
                     f"{b} do not commute like [{a}, {b}]: rho({a}) rho({b}) - rho({b}) rho({a}) "
-                    f"has the entries {entries_text(found) or 'none'}; expected "
+                    f"has the entries {entries_text(result) or 'none'}; expected "
                     f"{entries_text(expected) or 'none'}. Check the matrices of {a} and {b}.",
                     pair=[a, b],
-                    found=entries_text(found),
+                    found=entries_text(result),
                     expected=entries_text(expected),
                 )
 
@@ -66,7 +66,7 @@ class Representation:
         result: list[Any] = [0] * self.dimension
         for i, matrix in enumerate(self.matrices):
             for (row, column), value in sorted(matrix.items()):
-                result[row] = result[row] + scaled(xi[i] * a[column], value)
+                result[row] = result[row] + multiply_constant(xi[i] * a[column], value)
         return tuple(result)
 
     def diamond(self, b: Sequence[Any], a: Sequence[Any]) -> tuple[Any, ...]:
@@ -78,7 +78,7 @@ class Representation:
         result: list[Any] = [0] * self.algebra.dimension
         for i, matrix in enumerate(self.matrices):
             for (row, column), value in sorted(matrix.items()):
-                result[i] = result[i] - scaled(b[row] * a[column], value)
+                result[i] = result[i] - multiply_constant(b[row] * a[column], value)
         return tuple(result)
 
     def over(
@@ -90,7 +90,7 @@ class Representation:
             convert: As in `LieAlgebra.over`.
             algebra: The converted algebra, where it is at hand already.
         """
-        matrices = tuple(converted(matrix, convert) for matrix in self.matrices)
+        matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
         acting = algebra or self.algebra.over(convert)
         return Representation(acting, self.name, self.dimension, matrices)
 

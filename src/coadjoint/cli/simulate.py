@@ -214,7 +214,7 @@ def _print(system: System, solution: Solution) -> None:
     print_table(
         ("state", ">t = 0", f">{end}", "unit"),
         [
-            (name, f"{first:.12g}", f"{last:.12g}", system.STATE.of_component(name).unit)
+            (name, f"{first:.12g}", f"{last:.12g}", system.STATE.of_component(name).unit_of(name))
             for name, first, last in _ends(solution, system.STATE.components)
         ],
         title=f"{system.title} ({system.name})",
@@ -234,7 +234,7 @@ def _print(system: System, solution: Solution) -> None:
                 name,
                 f"{first:.12g}",
                 f"{last:.12g}",
-                system.OBSERVABLES.of_component(name).unit,
+                system.OBSERVABLES.of_component(name).unit_of(name),
                 f"{solution.drift[name]:.1e}" if name in solution.drift else "",
             )
             for name, first, last in _ends(solution, system.OBSERVABLES.components)

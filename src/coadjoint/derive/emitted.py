@@ -15,6 +15,7 @@ from coadjoint.derive import units
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.parts import in_parts
 from coadjoint.derive.mechanics.reconstruction import spatial_momentum
+from coadjoint.derive.mechanics.sections import section_momenta
 from coadjoint.derive.records import Emitted, Kept
 from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import in_formulas, momentum_maps
@@ -30,7 +31,7 @@ def emitted(
     Args:
         setting: The spec and its field.
         energy: Of the route, or None.
-        momenta: Along a constraint distribution, of velocities and then of sections.
+        momenta: Along a constraint distribution, of velocities.
     """
     return (
         *(() if energy is None else (emitted_energy(setting, energy),)),
@@ -72,6 +73,7 @@ def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterato
         unit = units.of_momentum(setting, each.velocity)
         parts = tuple(values[name] for name in each.components)
         yield Emitted(each.name, each.velocity.shape, each.components, unit, parts)
+    values |= section_momenta(setting)
     for section in setting.spec.sections:
         name, kept = section.name, _claimed(setting, section.name)
         yield Emitted(name, (), (name,), section.unit, (values[name],), kept)

@@ -56,6 +56,12 @@ class Equations:
         return self.setting.spec
 
     @property
+    def way(self) -> str:
+        """The route or the declared chart, in words."""
+        declared = self.chart is not None and self.chart.name
+        return f"the chart {declared}" if declared else f"the route {self.route}"
+
+    @property
     def variables(self) -> tuple[str, ...]:
         """Names of what the rates are the rates of: the declared state, or the route's own."""
         return self.setting.state if self.chart is None else self.chart.variables
@@ -149,12 +155,6 @@ class Equations:
     def followed(self) -> tuple[tuple[str, Element], ...]:
         """What follows from the motion without acting on it: each variable with its rate."""
         return rates_followed(self.setting, self.distribution)
-
-    @property
-    def keeps_energy(self) -> bool:
-        """Whether nothing acts that could change the energy: no force, no constraint that moves."""
-        free = self.distribution is None or self.distribution.is_linear
-        return free and self.spec.keeps_energy
 
     def work(self, function: Element) -> Element:
         """What external forces add to the rate of a function of the state."""

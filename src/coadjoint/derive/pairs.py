@@ -71,7 +71,7 @@ def declared_pair(setting: Setting) -> LaxPair:
             setting.field.coefficients(entry, lax.spectral)
         except ValueError as error:
             problem, expected = str(error), f"polynomials in {lax.spectral} and its inverse"
-            hint = f"Choose another parameter than {lax.spectral}{_another_road(setting)}."
+            hint = f"Choose another parameter than {lax.spectral}."
             raise refusal(setting, "lax", problem, lax.spectral, expected, hint) from None
     return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
 
@@ -120,18 +120,9 @@ def rates_of(setting: Setting, pair: LaxPair, route: str) -> tuple[Element, ...]
             f"L does not determine {listed(missing)}",
             listed(missing),
             "an L in which every component of the state occurs, independently of the others",
-            f"Put it into L{_another_road(setting)}.",
+            "Put it into L.",
         )
     return tuple(found[name] for name in setting.state)
-
-
-def _another_road(setting: Setting) -> str:
-    """A route that needs no pair, as the end of a hint; "" where there is no energy for it."""
-    if not setting.has_energy:
-        return ""
-    of_coordinates = "canonical" if setting.spec.hamiltonian is None else "poisson"
-    known = of_coordinates if setting.spec.algebra is None else "lie-poisson"
-    return f", or take the route {known}"
 
 
 def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:
@@ -147,7 +138,7 @@ def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:
                 f"{name} depends on {listed(sorted(inside))}",
                 listed(sorted(inside)),
                 "an L that is affine in the state",
-                f"Choose the entries of L as variables{_another_road(setting)}.",
+                "Choose the entries of L as variables.",
             )
 
 

@@ -207,9 +207,11 @@ class Chart:
         state: Each component of the declared state as a function of them.
         through: The map in words for certificates: ``Pi = P x Q``.
         relations: What vanishes where the variables live; the motion must keep it so.
+        name: As a spec declares it; "" of a route.
     """
 
     variables: tuple[str, ...]
     state: tuple[Element, ...]
     through: str
     relations: tuple[Relation, ...] = ()
+    name: str = ""

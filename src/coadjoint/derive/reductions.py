@@ -100,7 +100,6 @@ def whole_equations(setting: Setting, route: str) -> Equations:
             "it moves in variables of its own, and the section is one over the state",
             whole.route,
             "a route on the declared state, such as lie-poisson",
-            "Remove the route.",
         )
     return whole
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 
+from coadjoint.derive import charts
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics import external, legendre
@@ -17,6 +18,8 @@ from coadjoint.derive.setting import Setting
 from coadjoint.spec import Spec
 from coadjoint.spec.routes import ROUTES
 
+#: What names symbols whatever the routes are.
+_BESIDE = (external.symbols, legendre.symbols, charts.symbols)
 _FOLDER = "coadjoint.derive.routes"
 
 
@@ -35,5 +38,5 @@ def make_setting(spec: Spec) -> Setting:
     modules = [import_module(f"{_FOLDER}.{ROUTES[name].module}") for name in spec.routes]
     # routes that share their variables share the function that names them, too
     makers = dict.fromkeys(module.symbols for module in modules if hasattr(module, "symbols"))
-    names = [name for make in (*makers, external.symbols, legendre.symbols) for name in make(spec)]
+    names = [name for make in (*makers, *_BESIDE) for name in make(spec)]
     return settings.make_setting(spec, tuple(dict.fromkeys(names)))

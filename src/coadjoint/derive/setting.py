@@ -392,7 +392,7 @@ def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
 
 def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
     """``sum x_i e_i`` for matrices e_i."""
-    return dense.weighted(parts, matrices, size(matrices), 0 * parts[0])
+    return dense.weighted_sum(parts, matrices, size(matrices), 0 * parts[0])
 
 
 def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:

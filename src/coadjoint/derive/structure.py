@@ -51,6 +51,8 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
 def has_structure(setting: Setting) -> bool:
     """Whether a spec says enough for a bracket: velocities have one through a Lagrangian alone."""
     spec = setting.spec
+    if spec.in_frame and spec.kind == "algebra":  # the bracket is one of momenta
+        return False
     return spec.kind != "configuration" or bool(setting.momenta) or spec.lagrangian is not None
 
 

@@ -22,7 +22,7 @@ from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import scale
 from coadjoint.groups.vector_fields import VectorField
-from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_function, lifted
+from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_function, lift
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
 from coadjoint.spec.core.components import FORMS
@@ -267,13 +267,13 @@ def _generator(
         resting: J of it without the part of time.
 
     Returns:
-        The field, and whether it is lifted from the positions, not declared on the whole state.
+        The field, and whether it is lift from the positions, not declared on the whole state.
     """
     moves, pairs = _moves(setting, symmetry, element), _pairs(setting)
     if not moves.keys() <= set(positions(setting)):
         return _whole(setting, moves), False
     if pairs:
-        return lifted(structure, pairs, moves), True
+        return lift(structure, pairs, moves), True
     by_map = structure.hamiltonian_vector_field(resting)
     declared = dict.fromkeys(positions(setting), setting.field.zero) | dict(moves)
     named = dict(zip(setting.state, by_map, strict=True)) | declared

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from coadjoint.declared import component_units
 from coadjoint.derive.setting import Declared, Setting, once
 from coadjoint.exact import Element
 from coadjoint.spec import Formula
@@ -21,9 +22,12 @@ def declared_units(setting: Setting) -> Mapping[str, Unit | None]:
     spec = setting.spec
     quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     return {
-        name: parse_unit(quantity.unit)
+        name: parse_unit(unit)
         for quantity in quantities
-        for name in (quantity.name, *quantity.components)
+        for name, unit in (
+            (quantity.name, quantity.unit),
+            *zip(quantity.components, component_units(quantity), strict=True),
+        )
     }
 
 

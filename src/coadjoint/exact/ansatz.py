@@ -57,8 +57,8 @@ class Solution(Generic[Member]):
         >>> Solution({"x": 1, "y": 2**60}, 2**61 - 1).lift()
         {'x': Fraction(1, 1), 'y': Fraction(1, 2)}
         """
-        found = rational_vector(dict(enumerate(self.numbers.values())), self.prime)
-        return None if found is None else dict(zip(self.numbers, found.values(), strict=True))
+        result = rational_vector(dict(enumerate(self.numbers.values())), self.prime)
+        return None if result is None else dict(zip(self.numbers, result.values(), strict=True))
 
 
 def solve(

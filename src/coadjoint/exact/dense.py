@@ -45,14 +45,14 @@ def add(a: Value, b: Value) -> Value:
     >>> add((1, 2), (3, 4)), add(((1,), (2,)), ((3,), (4,)))
     ((4, 6), ((4,), (6,)))
     """
-    found: Value = _join(operator.add, a, b)
-    return found
+    result: Value = _join(operator.add, a, b)
+    return result
 
 
 def subtract(a: Value, b: Value) -> Value:
     """``a - b`` of two values of one shape."""
-    found: Value = _join(operator.sub, a, b)
-    return found
+    result: Value = _join(operator.sub, a, b)
+    return result
 
 
 def _join(operation: Callable[[Any, Any], Any], a: Any, b: Any) -> Any:
@@ -65,10 +65,10 @@ def _join(operation: Callable[[Any, Any], Any], a: Any, b: Any) -> Any:
 def scale(factor: Any, a: Value) -> Value:
     """``factor * a`` of a value of any shape."""
     if isinstance(a, tuple | list):
-        found: Any = tuple(scale(factor, x) for x in a)
+        result: Any = tuple(scale(factor, x) for x in a)
     else:
-        found = factor * a
-    return found  # type: ignore[no-any-return]
+        result = factor * a
+    return result  # type: ignore[no-any-return]
 
 
 def combine(*terms: tuple[Any, Matrix]) -> Matrix:
@@ -84,7 +84,7 @@ def combine(*terms: tuple[Any, Matrix]) -> Matrix:
     )
 
 
-def weighted(
+def weighted_sum(
     weights: Sequence[Any],
     matrices: Sequence[Mapping[tuple[int, int], Any]],
     size: int,
@@ -92,7 +92,7 @@ def weighted(
 ) -> Matrix:
     """``sum of weight_i matrix_i`` for sparse square matrices.
 
-    >>> weighted([2, 3], [{(0, 1): 1}, {(1, 0): -1}], 2)
+    >>> weighted_sum([2, 3], [{(0, 1): 1}, {(1, 0): -1}], 2)
     ((0, 2), (-3, 0))
     """
     entries: dict[tuple[int, int], Any] = {}
@@ -113,8 +113,8 @@ def dot(a: Iterable[Entry], b: Iterable[Any]) -> Entry:
     """
     pairs = list(zip(a, b, strict=True))
     products = [x * y for x, y in pairs if x and y]
-    found: Entry = total(products or [x * y for x, y in pairs[:1]])
-    return found
+    result: Entry = total(products or [x * y for x, y in pairs[:1]])
+    return result
 
 
 def cross(a: Sequence[Any], b: Sequence[Any]) -> Vector:
@@ -205,12 +205,12 @@ def determinant(a: tuple[tuple[Entry, ...], ...]) -> Entry:
     first: Sequence[Any] = a[0]
     if len(a) == 1:
         return a[0][0]
-    terms = [(-1) ** j * x * determinant(_without(a, 0, j)) for j, x in enumerate(first) if x != 0]
-    found: Entry = sum(terms, 0 * first[0])
-    return found
+    terms = [(-1) ** j * x * determinant(_drop(a, 0, j)) for j, x in enumerate(first) if x != 0]
+    result: Entry = sum(terms, 0 * first[0])
+    return result
 
 
-def _without(a: Matrix, row: int, column: int) -> Matrix:
+def _drop(a: Matrix, row: int, column: int) -> Matrix:
     """A matrix without a row and a column."""
     return tuple(line[:column] + line[column + 1 :] for i, line in enumerate(a) if i != row)
 
@@ -226,5 +226,5 @@ def inverse(a: Matrix) -> Matrix:
         return ((share,),)
     size = range(len(a))
     return tuple(
-        tuple((-1) ** (i + j) * determinant(_without(a, j, i)) * share for j in size) for i in size
+        tuple((-1) ** (i + j) * determinant(_drop(a, j, i)) * share for j in size) for i in size
     )

@@ -208,7 +208,7 @@ class Element:
         result._parts = dict(parts)
         return result
 
-    def _scaled(self, number: Any) -> Element:
+    def _scale(self, number: Any) -> Element:
         """The element times a nonzero number."""
         return self._with(
             {s: Quotient(q.numer.mul_ground(number), q.powers) for s, q in self._parts.items()}
@@ -285,7 +285,7 @@ class Element:
 
     def __mul__(self, other: object) -> Element:
         if isinstance(other, int | Fraction) and other:
-            return self._scaled(QQ(other.numerator, other.denominator))
+            return self._scale(QQ(other.numerator, other.denominator))
         right = self._coerce(other)
         if right is None:
             return NotImplemented

@@ -36,10 +36,10 @@ def factors_of(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
     gens = [(gen, e) for gen, e in zip(p.ring.gens, least, strict=True) if e]
     p = p.quo_term((least, p.ring.domain.one))
     small = len(p) <= LARGEST_FACTORED and max(map(sum, p)) <= LARGEST_DEGREE
-    content, found = p.factor_list() if small and len(p) > 1 else (p.ring.domain.one, [(p, 1)])
-    for factor, exponent in found:
+    content, result = p.factor_list() if small and len(p) > 1 else (p.ring.domain.one, [(p, 1)])
+    for factor, exponent in result:
         content *= factor.LC**exponent
-    return content, [*gens, *((f.monic(), e) for f, e in found if not f.is_ground)]
+    return content, [*gens, *((f.monic(), e) for f, e in result if not f.is_ground)]
 
 
 def exact(number: Any) -> Fraction:
@@ -78,18 +78,18 @@ def eliminate_signs(
     rows: Iterable[SignRow], wanted: Sequence[Factor]
 ) -> list[tuple[Factor, frozenset[Factor], int]]:
     """Rows each with a factor that no other row has, one that is not wanted where there is one."""
-    found: list[tuple[Factor, frozenset[Factor], int]] = []
+    result: list[tuple[Factor, frozenset[Factor], int]] = []
     for factors, number in rows:
-        left, negative = reduce_signs(factors, found)
+        left, negative = reduce_signs(factors, result)
         negative ^= number
         if not left:
             continue
         pivot = min(left, key=lambda f: (f in wanted, str(f)))
-        found = [
-            (p, row ^ left, n ^ negative) if pivot in row else (p, row, n) for p, row, n in found
+        result = [
+            (p, row ^ left, n ^ negative) if pivot in row else (p, row, n) for p, row, n in result
         ]
-        found.append((pivot, left, negative))
-    return found
+        result.append((pivot, left, negative))
+    return result
 
 
 def reduce_signs(

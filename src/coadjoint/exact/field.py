@@ -178,8 +178,8 @@ class Field(Rationals):
         >>> field.coefficients(field["a"] * field["x"] ** 2 + 3 - 1 / field["x"], "x")
         {-1: -1, 0: 3, 2: a}
         """
-        place, found = self._position[name], dict[int, list[Element]]()
-        if any(name in self.reach(self.adjoined[g].argument) for g in self._needed(element)):
+        place, result = self._position[name], dict[int, list[Element]]()
+        if any(name in self.reach(self.adjoined[g].argument) for g in self._calls_in(element)):
             raise ValueError(f"{name} occurs in a function")
         for quotient in element.parts:
             lowered, powers = 0, {}
@@ -197,15 +197,15 @@ class Field(Rationals):
                 parts.setdefault(monomial[place] - lowered, {})[rest] = number
             for power, part in parts.items():
                 whole = Element(self._factors, [(self._ring.from_dict(part), powers)])
-                found.setdefault(power, []).append(whole)
-        return {power: value for power in sorted(found) if (value := self.sum(found[power]))}
+                result.setdefault(power, []).append(whole)
+        return {power: value for power in sorted(result) if (value := self.sum(result[power]))}
 
     def functions_in(self, element: Element) -> frozenset[str]:
         """Generators of the functions that occur in an element or in their arguments."""
-        found = set(self._needed(element))
-        for generator in self._needed(element):
-            found |= self.functions_in(self.adjoined[generator].argument)
-        return frozenset(found)
+        result = set(self._calls_in(element))
+        for generator in self._calls_in(element):
+            result |= self.functions_in(self.adjoined[generator].argument)
+        return frozenset(result)
 
     # -- calculus -----------------------------------------------------------------------
 
@@ -216,7 +216,7 @@ class Field(Rationals):
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
         result = element.diff(self._position[name])
-        for generator in self._needed(element):
+        for generator in self._calls_in(element):
             result += self.slope(element, generator) * self._derivative_of(
                 self.adjoined[generator], name
             )
@@ -263,14 +263,14 @@ class Field(Rationals):
         """
         factors = {} if factors is None else factors
         known = dict(values)
-        for generator in self._needed(element):
+        for generator in self._calls_in(element):
             argument = self.adjoined[generator].argument
             inner = self.evaluate(argument, known, number, call, factors)
             known[generator] = call(self.adjoined[generator].function, inner)
         quotients = [self._quotient(q, known, number, factors) for q in element.parts]
         return total(quotients) if quotients else number(Fraction(0))
 
-    def _needed(self, element: Element) -> list[str]:
+    def _calls_in(self, element: Element) -> list[str]:
         """Adjoined generators that occur, in the order in which they were adjoined."""
         present = self.names_in(element) if self.adjoined else frozenset()
         return [generator for generator in self.adjoined if generator in present]
@@ -285,7 +285,7 @@ class Field(Rationals):
     def reach(self, element: Element) -> frozenset[str]:
         """Symbols that occur in an element or in the arguments of its functions."""
         names = self.names_in(element) - self.adjoined.keys()
-        for generator in self._needed(element):
+        for generator in self._calls_in(element):
             names |= self.reach(self.adjoined[generator].argument)
         return names
 
@@ -303,6 +303,6 @@ class Field(Rationals):
             sympy.Symbol(generator): _SYMPY_FUNCTIONS[self.adjoined[generator].function](
                 self.to_sympy(self.adjoined[generator].argument)
             )
-            for generator in self._needed(element)
+            for generator in self._calls_in(element)
         }
         return sympy.sympify(element).xreplace(functions)

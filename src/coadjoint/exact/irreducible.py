@@ -47,10 +47,10 @@ def all_factors(field: Field, element: Element) -> Iterator[Element]:
     forms = filter(lambda form: len(form) <= FACTORED, _other_forms(field, top))
     split = (list(_irreducible(form)) for form in (top, *forms))
     whole = next(split)
-    found = whole if len(whole) > 1 else next((f for f in split if len(f) > 1), whole)
-    for names, factor in found:
+    result = whole if len(whole) > 1 else next((f for f in split if len(f) > 1), whole)
+    for names, factor in result:
         part = field.normal(field.polynomial(names, dict(factor)))
-        yield from all_factors(field, part) if len(found) > 1 else (part,)
+        yield from all_factors(field, part) if len(result) > 1 else (part,)
 
 
 def _other_forms(field: Field, top: PolyElement) -> Iterator[PolyElement]:
@@ -85,25 +85,25 @@ def _relations_in(
                 yield gens[own] ** 2 - argument.numer
 
 
-def divided_factors(field: Field, element: Element, known: Sequence[Element] = ()) -> list[Element]:
+def find_factors(field: Field, element: Element, known: Sequence[Element] = ()) -> list[Element]:
     """The irreducible factors of the numerator of an element, without numbers and repetition.
 
     Known ones are divided out first: to find factors of many terms takes far longer.
 
     >>> field = Field(["x", "y"])
     >>> x, y = field["x"], field["y"]
-    >>> divided_factors(field, (x**2 - y**2) ** 3 / x)
+    >>> find_factors(field, (x**2 - y**2) ** 3 / x)
     [x - y, x + y]
-    >>> divided_factors(field, (x**2 - y**2) ** 3 / x, [x + y, x - 2])
+    >>> find_factors(field, (x**2 - y**2) ** 3 / x, [x + y, x - 2])
     [x + y, x - y]
     """
     if element == 0:
         return []
-    rest, found = numerator(element), list[Element]()
+    rest, result = numerator(element), list[Element]()
     for divisor in (p for p in map(numerator, known) if not p.is_ground):
         count, rest = remove_factor(rest, divisor)
-        found += [field.from_polynomial(divisor)] * bool(count)
-    return [*found, *(field.polynomial(names, dict(f)) for names, f in _irreducible(rest))]
+        result += [field.from_polynomial(divisor)] * bool(count)
+    return [*result, *(field.polynomial(names, dict(f)) for names, f in _irreducible(rest))]
 
 
 def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
@@ -140,10 +140,10 @@ def _eliminations(relation: PolyElement) -> Iterator[Elimination]:
 def _eliminate(polynomial: PolyElement, elimination: Elimination) -> PolyElement:
     """A polynomial with a power of a symbol replaced."""
     place, degree, value = elimination
-    symbol, found = polynomial.ring.gens[place], polynomial.ring.zero
+    symbol, result = polynomial.ring.gens[place], polynomial.ring.zero
     for power, part in _powers(polynomial, place).items():
-        found += part * symbol ** (power % degree) * value ** (power // degree)
-    return found
+        result += part * symbol ** (power % degree) * value ** (power // degree)
+    return result
 
 
 def factors_of(polynomial: PolyElement) -> list[PolyElement]:
@@ -155,12 +155,12 @@ def factors_of(polynomial: PolyElement) -> list[PolyElement]:
     >>> factors_of(x**2 * (x - y) * (x + y) / 2)
     [x, x - y, x + y]
     """
-    found = list[PolyElement]()
+    result = list[PolyElement]()
     for factor in _factors_of(polynomial):
         whole = factor.primitive()[1]
         whole = -whole if whole.LC < 0 else whole
-        found += [whole] if whole not in found else []
-    return sorted(found, key=_place_of)
+        result += [whole] if whole not in result else []
+    return sorted(result, key=_place_of)
 
 
 def _place_of(factor: PolyElement) -> tuple[Any, ...]:
@@ -184,7 +184,7 @@ def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
     if degree > 2:
         yield from (factor for factor, _ in polynomial.factor_list()[1])
         return
-    content, own = _parted(polynomial, place)
+    content, own = _split_content(polynomial, place)
     yield from _factors_of(content)
     if degree == 1:
         yield own
@@ -195,20 +195,20 @@ def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
     if root is None:
         yield own
         return
-    yield _parted(2 * a * symbol + b - root, place)[1]
-    yield _parted(2 * a * symbol + b + root, place)[1]
+    yield _split_content(2 * a * symbol + b - root, place)[1]
+    yield _split_content(2 * a * symbol + b + root, place)[1]
 
 
 def _powers(polynomial: PolyElement, place: int) -> dict[int, PolyElement]:
     """The coefficients of the powers of a symbol."""
-    found: dict[int, dict[tuple[int, ...], Any]] = {}
+    result: dict[int, dict[tuple[int, ...], Any]] = {}
     for exponents, value in polynomial.terms():
         rest = (*exponents[:place], 0, *exponents[place + 1 :])
-        found.setdefault(exponents[place], {})[rest] = value
-    return {power: polynomial.ring.from_dict(terms) for power, terms in found.items()}
+        result.setdefault(exponents[place], {})[rest] = value
+    return {power: polynomial.ring.from_dict(terms) for power, terms in result.items()}
 
 
-def _parted(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
+def _split_content(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
     """The greatest factor without a symbol, and the rest."""
     content = polynomial.ring.zero
     for part in _powers(polynomial, place).values():

@@ -34,16 +34,16 @@ def lattice_basis(vectors: Sequence[Sequence[Fraction]]) -> list[Row]:
         pending = [row for row in pending if not row[column]]
         while len(meeting) > 1:
             least = min(meeting, key=lambda row: abs(row[column]))
-            others = [_reduced(row, least, column) for row in meeting if row is not least]
+            others = [_reduce(row, least, column) for row in meeting if row is not least]
             pending += [row for row in others if not row[column]]
             meeting = [least, *(row for row in others if row[column])]
         for row in meeting:
             pivot = row if row[column] > 0 else [-x for x in row]
-            basis = [*(_reduced(above, pivot, column) for above in basis), pivot]
+            basis = [*(_reduce(above, pivot, column) for above in basis), pivot]
     return [tuple(Fraction(x, scale) for x in row) for row in basis]
 
 
-def _reduced(row: Sequence[int], by: Sequence[int], column: int) -> list[int]:
+def _reduce(row: Sequence[int], by: Sequence[int], column: int) -> list[int]:
     """A row minus the multiple of another that leaves the least entry, not negative, there."""
     count = (row[column] - row[column] % abs(by[column])) // by[column]
     return [a - count * b for a, b in zip(row, by, strict=True)]
@@ -56,15 +56,15 @@ def coordinates(vector: Sequence[Fraction], basis: Sequence[Row]) -> list[int]:
     >>> coordinates((Fraction(1), Fraction(4)), basis)
     [2, 2]
     """
-    found, rest = [], list(vector)
+    result, rest = [], list(vector)
     for row in basis:
         column = next(n for n, x in enumerate(row) if x)
         count = rest[column] / row[column]
         assert count.denominator == 1, (vector, basis)
-        found.append(int(count))
+        result.append(int(count))
         rest = [a - count * b for a, b in zip(rest, row, strict=True)]
     assert not any(rest), (vector, basis)
-    return found
+    return result
 
 
 class Lattice:
@@ -86,9 +86,9 @@ class Lattice:
         monomials = sorted({monomial for p in tops for monomial in p}, reverse=True)
         self.vectors = [tuple(exact(p.get(m, 0)) for m in monomials) for p in tops]
         wanted = [tuple(x / 2 for x in v) for v in self.vectors] if halved else self.vectors
-        found = lattice_basis(wanted) if wanted else []
-        self.rows = [coordinates(vector, found) for vector in self.vectors]
+        result = lattice_basis(wanted) if wanted else []
+        self.rows = [coordinates(vector, result) for vector in self.vectors]
         self.basis = [
             below * field.polynomial(field.generators, dict(zip(monomials, row, strict=True)))
-            for row in found
+            for row in result
         ]

@@ -160,9 +160,9 @@ def nullspace(
         prime = 2**exponent - 1
         residues = nullspace_modulo(equations, unknowns, prime)
         basis = [rational_vector(row, prime) for row in residues]
-        found = [vector for vector in basis if vector is not None]
-        if len(found) == len(basis) and _solves(equations, found):
-            return found
+        result = [vector for vector in basis if vector is not None]
+        if len(result) == len(basis) and _solves(equations, result):
+            return result
     raise LimitError(
         f"the null space of {len(equations)} equations has numbers of more than 2000 bits; "
         "expected coefficients that fit. Scale the equations.",
@@ -296,7 +296,7 @@ class SpanModulo:
         self._order.append(pivot)
         return True
 
-    def reduced(self) -> dict[int, Row]:
+    def reduce(self) -> dict[int, Row]:
         """The rows, each with no pivot but its own: the last one has none, so go backwards."""
         done: dict[int, Row] = {}
         for pivot, row in reversed(self.pivots.items()):
@@ -331,7 +331,7 @@ def echelon_modulo(rows: Iterable[Row], prime: int = PRIME) -> dict[int, Row]:
     >>> echelon_modulo([{0: 1, 1: 2}, {0: 2, 1: 4, 2: 3}], 7)
     {2: {2: 1}, 0: {0: 1, 1: 2}}
     """
-    return SpanModulo(prime, rows).reduced()
+    return SpanModulo(prime, rows).reduce()
 
 
 def nullspace_modulo(equations: list[Row], unknowns: int, prime: int = PRIME) -> list[Row]:
@@ -340,7 +340,7 @@ def nullspace_modulo(equations: list[Row], unknowns: int, prime: int = PRIME) ->
     frequency = Counter(column for row in equations for column in row)
     solved = SpanModulo(
         prime, equations, lambda columns: min(columns, key=lambda c: (frequency[c], c))
-    ).reduced()
+    ).reduce()
     vectors: dict[int, Row] = {free: {free: 1} for free in range(unknowns) if free not in solved}
     for pivot, row in solved.items():
         for column, value in row.items():
@@ -352,7 +352,7 @@ def nullspace_modulo(equations: list[Row], unknowns: int, prime: int = PRIME) ->
 
 def rational_vector(row: Row, prime: int = PRIME) -> dict[int, Fraction] | None:
     """The rational vector that a row modulo a prime is the image of, if it is small enough."""
-    found = {}
+    result = {}
     bound = isqrt(prime // 2)
     for column, value in sorted(row.items()):
         # The half extended Euclidean algorithm (Wang 1981): u = v * value modulo the prime.
@@ -362,8 +362,8 @@ def rational_vector(row: Row, prime: int = PRIME) -> dict[int, Fraction] | None:
             u, last, v, before = last - step * u, u, before - step * v, v
         if v == 0 or abs(v) > bound:
             return None
-        found[column] = Fraction(u, v)
-    return found
+        result[column] = Fraction(u, v)
+    return result
 
 
 def _solves(equations: list[Row], vectors: list[dict[int, Fraction]]) -> bool:

@@ -86,10 +86,10 @@ class Products:
         """Cosine and sine of a new angle."""
         cosine = self.new()
         sine = self.new(square=1 - cosine**2)
-        self._radicals.append(Radical(sine, self.factored(1 - cosine**2), signed=True))
+        self._radicals.append(Radical(sine, self.factor(1 - cosine**2), signed=True))
         return cosine, sine
 
-    def reduced(self, element: Element, values: Mapping[str, Element] | None = None) -> Element:
+    def normalize(self, element: Element, values: Mapping[str, Element] | None = None) -> Element:
         """An element with squares replaced, and signs that are known."""
         if values:
             element = self.ring.substitute(element, values)
@@ -100,13 +100,13 @@ class Products:
     def known_signs(self) -> dict[str, Element]:
         """The signs of factors by others, as all that is positive together says."""
         rows = eliminate_signs(self._rows, list(self._signs))
-        found = {}
+        result = {}
         for factor, generator in self._signs.items():
             left, number = reduce_signs(frozenset([factor]), rows)
             if left != {factor} and left <= self._signs.keys():
                 value = reduce(mul, (self._signs[f] for f in left), self.ring.one)
-                found[str(generator)] = value * (-1) ** number
-        return found
+                result[str(generator)] = value * (-1) ** number
+        return result
 
     # -- roots ----------------------------------------------------------------------------
 
@@ -114,7 +114,7 @@ class Products:
         """The square root of an element."""
         if radicand == 0:
             return radicand
-        vector = self.factored(radicand)
+        vector = self.factor(radicand)
         self.note_positive(vector)
         odd, members = self._dependent(odd_factors(vector))
         if odd:
@@ -126,16 +126,16 @@ class Products:
             value = radical.value
             if radical.signed:
                 value = value * self._sign_of({numerator(value): 1})
-            whole = whole * value / self._multiplied(radical.square)
-        return self.reduced(whole)
+            whole = whole * value / self._multiply(radical.square)
+        return self.normalize(whole)
 
     def _new_root(self, vector: Powers) -> Element:
         """A root that no others give: its square factors come out, the rest is a generator."""
         inner = dict.fromkeys(odd_factors(vector), 1)
         outer = self._absolute({f: e // 2 for f, e in vector.items()})
-        root = self.new(positive=True, square=self._multiplied(inner))
+        root = self.new(positive=True, square=self._multiply(inner))
         self._radicals.append(Radical(root, inner))
-        return self.reduced(outer * root)
+        return self.normalize(outer * root)
 
     def _dependent(self, odd: frozenset[Factor]) -> tuple[frozenset[Factor], list[Radical]]:
         """What is left of a product of factors modulo squares and radicands, and which of these."""
@@ -156,7 +156,7 @@ class Products:
     def _absolute(self, vector: Powers) -> Element:
         """The absolute value of a product of powers of factors."""
         positive = {f: e for f, e in vector.items() if f != -1}
-        return self._multiplied(positive) * self._sign_of(positive)
+        return self._multiply(positive) * self._sign_of(positive)
 
     def _sign_of(self, vector: Powers) -> Element:
         """The sign of a product: a number, or a product of generators of square 1."""
@@ -175,9 +175,9 @@ class Products:
         left, number = frozenset[Factor](), 0
         signs = {numerator(sign): factor for factor, sign in self._signs.items()}
         for factor in factors:
-            found = self._own_sign(factor)
-            number += found < 0
-            if not found:
+            result = self._own_sign(factor)
+            number += result < 0
+            if not result:
                 left ^= {signs.get(factor, factor)}  # a sign has that of its factor
         return left, number % 2
 
@@ -200,10 +200,10 @@ class Products:
         """The sum of the logarithms of the absolute values of factors."""
         if argument == 0:
             raise ZeroDivisionError("the logarithm of 0")
-        vector = self.factored(argument)
+        vector = self.factor(argument)
         self.note_positive(vector)
         parts = [self._logarithm_of(f) * e for f, e in vector.items()]
-        return self.reduced(self.ring.sum(parts))
+        return self.normalize(self.ring.sum(parts))
 
     def _logarithm_of(self, factor: Factor) -> Element:
         """The logarithm of the absolute value of a factor."""
@@ -225,7 +225,7 @@ class Products:
 
     # -- factors --------------------------------------------------------------------------
 
-    def factored(self, element: Element) -> Powers:
+    def factor(self, element: Element) -> Powers:
         """A nonzero element as powers of factors."""
         top, bottom = self.ring.fraction(element.combined())
         vector: Powers = {}
@@ -236,7 +236,7 @@ class Products:
             vector = multiply(vector, {f: e * power for f, e in factors})
         return vector
 
-    def _multiplied(self, vector: Powers) -> Element:
+    def _multiply(self, vector: Powers) -> Element:
         """The product of powers of factors."""
         return product(
             self.ring,

@@ -18,7 +18,7 @@ primes are the same in every run.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import islice
@@ -50,7 +50,7 @@ SHOWN = 60
 
 
 def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
-    """The rank of a sparse matrix at almost every point, as found: never above the true one.
+    """The rank of a sparse matrix at random points: never above that at almost every point.
 
     Raises:
         AlgebraError: No real point was found at which all entries are defined.
@@ -64,7 +64,7 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
     if not most:
         return 0
     exact = is_exact(field, _entries(rows))
-    ranks = _ranks_modulo(field, rows) if exact else map(_count, _bounded(field, rows))
+    ranks = _ranks_modulo(field, rows) if exact else map(len, _enclose(field, rows))
     for rank in islice(ranks, POINTS):
         largest = max(largest, rank)
         if largest == most:
@@ -104,8 +104,8 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
     if not _most(rows):
         return []
     if not is_exact(field, _entries(rows)):
-        return max(islice(_bounded(field, rows), POINTS), key=len)
-    spans = ((SpanModulo(prime), numbers) for prime, numbers in _sampled(field, rows))
+        return max(islice(_enclose(field, rows), POINTS), key=len)
+    spans = ((SpanModulo(prime), numbers) for prime, numbers in _sample(field, rows))
     chosen = (span.independent(numbers) for span, numbers in islice(spans, POINTS))
     return max(chosen, key=len)
 
@@ -133,10 +133,10 @@ def _most(rows: Sequence[Mapping[int, Element]]) -> int:
 
 
 def _ranks_modulo(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[int]:
-    return (rank_modulo(numbers, prime) for prime, numbers in _sampled(field, rows))
+    return (rank_modulo(numbers, prime) for prime, numbers in _sample(field, rows))
 
 
-def _sampled(
+def _sample(
     field: Field, rows: Sequence[Mapping[int, Element]]
 ) -> Iterator[tuple[int, list[dict[int, int]]]]:
     """The matrix at random points, each modulo a prime of its own; poles are passed over.
@@ -168,19 +168,19 @@ def _no_call(function: str, argument: Residue) -> Residue:
 # -- at real points -------------------------------------------------------------------------------
 
 
-def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[int]]:
+def _enclose(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[list[int]]:
     """Places of rows that are certainly independent, at several real points.
 
     Raises:
         AlgebraError: No real point was found.
     """
-    found = False
+    result = False
     for point in points_inside(field, list(_entries(rows))):
         with suppress(*UNDEFINED):
             values = [{j: enclosure(field, e, point) for j, e in row.items()} for row in rows]
-            found = True
-            yield _independent(values)
-    if not found:
+            result = True
+            yield certain_rows(values)
+    if not result:
         entry = next(e for e in _entries(rows) if not field.function_free(e))
         text = element_text(field, entry)
         shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
@@ -191,7 +191,24 @@ def _bounded(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
         )
 
 
-def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
+#: Chooses the pivot of a row by its place; None where no entry is certainly not zero.
+Choice = Callable[[int, Mapping[int, Enclosure]], int | None]
+
+
+def on_diagonal(place: int, row: Mapping[int, Enclosure]) -> int | None:
+    """The diagonal entry as a pivot, so that leading minors are looked at."""
+    return place if place in row and row[place].sign else None
+
+
+def largest_pivot(place: int, row: Mapping[int, Enclosure]) -> int | None:
+    """The place of the entry that is farthest from zero."""
+    certain = {column: abs(value.bounds.mid) for column, value in row.items() if value.sign}
+    return max(certain, key=lambda column: mpmath.mpf(certain[column].a), default=None)
+
+
+def certain_rows(
+    rows: Sequence[Mapping[int, Enclosure]], choose: Choice = largest_pivot
+) -> list[int]:
     """Places of rows that are independent of those before, by bounds that exclude zero.
 
     The elimination is one of exact numbers that nobody knows better than their bounds: a pivot is
@@ -208,18 +225,8 @@ def _independent(rows: Sequence[Mapping[int, Enclosure]]) -> list[int]:
                     if other != column:
                         taken = minus * factor * value
                         rest[other] = rest[other] + taken if other in rest else taken
-        largest = _largest(rest)
-        if largest is not None:
-            pivots.append((largest, rest))
+        chosen = choose(place, rest)
+        if chosen is not None:
+            pivots.append((chosen, rest))
             places.append(place)
     return places
-
-
-def _largest(row: Mapping[int, Enclosure]) -> int | None:
-    """The place of the entry that is farthest from zero; None if all may be zero."""
-    certain = {column: abs(value.bounds.mid) for column, value in row.items() if value.sign}
-    return max(certain, key=lambda column: mpmath.mpf(certain[column].a), default=None)
-
-
-def _count(places: Sequence[int]) -> int:
-    return len(places)

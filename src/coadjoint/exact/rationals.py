@@ -81,27 +81,27 @@ class Rationals:
         """
         own = [names.get(str(s), str(s)) for s in element.factors.ring.symbols]
 
-        def moved(p: PolyElement) -> Element:
-            return self._element(self._ring.from_dict(self._placed(own, dict(p))))
+        def move(p: PolyElement) -> Element:
+            return self._element(self._ring.from_dict(self._place(own, dict(p))))
 
-        def divided(quotient: Quotient) -> Element:
+        def divide(quotient: Quotient) -> Element:
             factors = element.factors.known
             return reduce(
                 truediv,
-                (moved(factors[n]) ** exponent for n, exponent in quotient.powers.items()),
-                moved(quotient.numer),
+                (move(factors[n]) ** exponent for n, exponent in quotient.powers.items()),
+                move(quotient.numer),
             )
 
-        return self.sum(map(divided, element.parts))
+        return self.sum(map(divide, element.parts))
 
     def polynomial(
         self, names: Sequence[str], terms: Mapping[tuple[int, ...], Fraction | int]
     ) -> Element:
         """A polynomial in some symbols, by the exponents of its terms in their order."""
         numbers = {e: QQ(value.numerator, value.denominator) for e, value in terms.items()}
-        return self._element(self._ring.from_dict(self._placed(names, numbers)))
+        return self._element(self._ring.from_dict(self._place(names, numbers)))
 
-    def _placed(self, names: Sequence[str], terms: Mapping[Any, Any]) -> dict[Any, Any]:
+    def _place(self, names: Sequence[str], terms: Mapping[Any, Any]) -> dict[Any, Any]:
         """Terms in some symbols as terms of the ring; only symbols that occur must be known."""
         used = [n for n in range(len(names)) if any(exponents[n] for exponents in terms)]
         places = [self._position[names[n]] for n in used]

@@ -14,6 +14,7 @@ from itertools import islice
 
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
+from coadjoint.exact.ranks import certain_rows, on_diagonal
 from coadjoint.exact.witness import (
     TRIES,
     UNDEFINED,
@@ -38,8 +39,8 @@ def witness_regular(field: Field, *matrices: Matrix) -> Point | None:
     >>> witness_regular(field, [[exp, field.one], [field.one, exp]])
     {'x': Fraction(-3, 5)}
     """
-    for point, found in _values(field, matrices):
-        if all(_pivots(rows, choose=True) == len(rows) for rows in found):
+    for point, result in _values(field, matrices):
+        if all(len(certain_rows(rows)) == len(rows) for rows in result):
             return point
     return None
 
@@ -53,17 +54,19 @@ def certain_minors(field: Field, matrix: Matrix) -> int:
     >>> certain_minors(field, [[field.zero, field.one], [field.one, field["x"]]])
     0
     """
-    found = 0
+    most = 0
     for _, (rows,) in _values(field, [matrix]):
-        found = max(found, _pivots(rows, choose=False))
-        if found == len(matrix):
+        pivots = certain_rows(rows, on_diagonal)
+        count = next((n for n, place in enumerate(pivots) if n != place), len(pivots))
+        most = max(most, count)
+        if most == len(matrix):
             break
-    return found
+    return most
 
 
 def _values(
     field: Field, matrices: Sequence[Matrix]
-) -> Iterator[tuple[Point, list[list[list[Enclosure]]]]]:
+) -> Iterator[tuple[Point, list[list[dict[int, Enclosure]]]]]:
     """Points of the domain with bounds of the entries of matrices."""
     entries = [entry for matrix in matrices for row in matrix for entry in row]
     names = frozenset[str]().union(*map(field.reach, entries))
@@ -71,24 +74,7 @@ def _values(
         with suppress(*UNDEFINED):
             values = iter(enclosures(field, entries, point))
             shown = {name: value for name, value in point.items() if name in names}
-            yield shown, [[[next(values) for _ in row] for row in matrix] for matrix in matrices]
-
-
-def _pivots(rows: list[list[Enclosure]], *, choose: bool) -> int:
-    """How many steps of the elimination have a pivot that excludes zero.
-
-    Args:
-        rows: A square matrix, which is spent.
-        choose: Whether the rows may change places.
-    """
-    for k in range(len(rows)):
-        found = [n for n in range(k, len(rows) if choose else k + 1) if rows[n][k].sign]
-        if not found:
-            return k
-        best = max(found, key=lambda n: rows[n][k].size)
-        rows[k], rows[best] = rows[best], rows[k]
-        for n in range(k + 1, len(rows)):
-            factor = rows[n][k] / rows[k][k]
-            minus = Enclosure.of(-1) * factor
-            rows[n] = [x + minus * y for x, y in zip(rows[n], rows[k], strict=True)]
-    return len(rows)
+            yield (
+                shown,
+                [[{j: next(values) for j in range(len(row))} for row in m] for m in matrices],
+            )

@@ -84,7 +84,7 @@ class Relations:
             self._images[known.generator] = self._image_of(known)
         for condition in field.region.conditions:
             if condition.element and field.functions_in(condition.element) <= self.names:
-                self.products.note_positive(self.products.factored(self._image(condition.element)))
+                self.products.note_positive(self.products.factor(self._image(condition.element)))
 
     # -- the test -------------------------------------------------------------------------
 
@@ -93,8 +93,8 @@ class Relations:
         if not element:
             return True
         top, _ = self.field.fraction(element.combined())
-        return not self.products.reduced(
-            self.products.reduced(self._of_polynomial(top)), self.products.known_signs()
+        return not self.products.normalize(
+            self.products.normalize(self._of_polynomial(top)), self.products.known_signs()
         )
 
     @cached_property
@@ -118,7 +118,7 @@ class Relations:
         """An element in the new ring, as one quotient."""
         values = {name: self.ring[name] for name in self.field.names} | self._images
         result = self.field.rewritten(element, values, self.ring.number)
-        return self.products.reduced(result)
+        return self.products.normalize(result)
 
     def _of_polynomial(self, p: PolyElement) -> Element:
         return self._image(self.field.from_polynomial(p))
@@ -142,10 +142,10 @@ class Relations:
             case "log":
                 return self.products.logarithm(self._image(known.argument))
         place = self._angles_of[known.generator]
-        cosine, sine = self._turned(place)
+        cosine, sine = self._turn(place)
         return cosine if known.function == "cos" else sine
 
-    def _turned(self, place: int) -> tuple[Element, Element]:
+    def _turn(self, place: int) -> tuple[Element, Element]:
         """Cosine and sine of the argument in a place, by the addition theorem."""
         row = self._angles.rows[place]
         if place in self._lonely:
@@ -158,7 +158,7 @@ class Relations:
             for _ in range(abs(count)):
                 s_turn = s if count > 0 else -s
                 cosine, sine = cosine * c - sine * s_turn, sine * c + cosine * s_turn
-        return self.products.reduced(cosine), self.products.reduced(sine)
+        return self.products.normalize(cosine), self.products.normalize(sine)
 
 
 def relations_of(field: Field, names: frozenset[str]) -> Relations | None:
@@ -187,10 +187,10 @@ def relations_of(field: Field, names: frozenset[str]) -> Relations | None:
 def _found_relations(field: Field, names: frozenset[str]) -> Relations | str | None:
     """The relations; None if the functions are independent, or why they were not found."""
     try:
-        found = Relations(field, names)
+        result = Relations(field, names)
     except (OverflowError, ZeroDivisionError) as error:  # no room, or defined nowhere
         return str(error)
-    return found if found.are_any else None
+    return result if result.are_any else None
 
 
 def vanish_by_relations(field: Field, element: Element, called: frozenset[str]) -> bool:

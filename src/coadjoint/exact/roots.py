@@ -11,13 +11,13 @@ from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
 
 
-def lifted(field: Field, element: Element) -> Element:
+def simplify_roots(field: Field, element: Element) -> Element:
     """An element with ``u/sqrt(u)^k`` written as ``1/sqrt(u)^(k - 2)``, if that has fewer terms.
 
     >>> field = Field(["x", "y"], slots=1)
     >>> x, y = field["x"], field["y"]
     >>> h = field.call("sqrt", x**2 + y)
-    >>> field.terms(lifted(field, y * (x**2 + y) / h**3))
+    >>> field.terms(simplify_roots(field, y * (x**2 + y) / h**3))
     (y/_f1,)
     """
     short = field.normal(element)

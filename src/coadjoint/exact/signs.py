@@ -42,7 +42,7 @@ def sign_of_sum(p: PolyElement, known: KnownSign, *, strict: bool) -> int:
         strict: Whether the sum may nowhere be 0: one term at least is a product of positive ones.
     """
     for side in (1, -1):
-        left = _unpaired({e: side * c for e, c in p.terms()}, known)
+        left = _pair_off({e: side * c for e, c in p.terms()}, known)
         if left is None:
             continue
         if not strict or any(
@@ -52,7 +52,7 @@ def sign_of_sum(p: PolyElement, known: KnownSign, *, strict: bool) -> int:
     return 0
 
 
-def _unpaired(terms: dict[tuple[int, ...], Any], known: KnownSign) -> set[tuple[int, ...]] | None:
+def _pair_off(terms: dict[tuple[int, ...], Any], known: KnownSign) -> set[tuple[int, ...]] | None:
     """The positive terms that are left when each of the others has its pair; None without one."""
     positive = {
         e: c
@@ -117,11 +117,11 @@ class Signs:
     def of(self, element: Element) -> int:
         """The sign of a nonzero element that is one quotient."""
         top, bottom = self.field.fraction(element)
-        found = self._of_polynomial(top)
+        result = self._of_polynomial(top)
         for factor, exponent in bottom:  # nowhere 0 where the element is defined
             if exponent % 2:
-                found *= Signs(self.field, strict=False)._of_polynomial(factor)
-        return found
+                result *= Signs(self.field, strict=False)._of_polynomial(factor)
+        return result
 
     def is_nonzero(self, element: Element, given: Sequence[Element] = ()) -> bool:
         """Whether a numerator is known to vanish nowhere, without a search for its factors.
@@ -166,25 +166,25 @@ class Signs:
 
     def _of_polynomial(self, p: PolyElement) -> int:
         """The sign of a nonzero polynomial: of the whole, else the product of its factors'."""
-        found = self._plain(p)
-        if found:
-            return found
+        result = self._plain(p)
+        if result:
+            return result
         content, factors = factors_of(p)
-        found = 1 if content > 0 else -1
+        result = 1 if content > 0 else -1
         for factor, exponent in factors:
             if exponent % 2 or self.strict:
                 single = self._plain(factor)
-                found *= single if exponent % 2 else abs(single)
-        return found
+                result *= single if exponent % 2 else abs(single)
+        return result
 
     def _plain(self, p: PolyElement) -> int:
         """The sign of a polynomial that conditions or its terms give."""
         for given, strict in self._given:
-            if found := self._exceeds(p, given, strict=strict):
-                return found
+            if result := self._exceeds(p, given, strict=strict):
+                return result
         for each, known in self._forms(p):
-            if found := sign_of_sum(each, known, strict=self.strict):
-                return found
+            if result := sign_of_sum(each, known, strict=self.strict):
+                return result
         low, high = (self._bound(p, side) for side in (-1, 1))
         for bound, wanted in ((low, 1), (high, -1)):
             if bound and sign_of_sum(bound, self.known, strict=self.strict) == wanted:
@@ -260,7 +260,7 @@ class Signs:
     @cached_property
     def _bounds(self) -> dict[str, tuple[int, Any]]:
         """Bounds of symbols: the side on which they lie, and the bound: ``q > 3``, ``q < 3``."""
-        found: dict[str, tuple[int, Any]] = dict.fromkeys(self.field.positive, (1, 0))
+        result: dict[str, tuple[int, Any]] = dict.fromkeys(self.field.positive, (1, 0))
         for given, strict in self._given:
             places = [n for n, degree in enumerate(given.degrees()) if degree > 0]
             name = self.field.generators[places[0]]
@@ -269,10 +269,10 @@ class Signs:
             if name not in self.field.adjoined:
                 slope, side = given.LC, 1 if given.LC > 0 else -1
                 bound = -given.get(given.ring.zero_monom, 0) / slope
-                known = found.get(name)
+                known = result.get(name)
                 if known is None or (known[0] == side == 1 and bound > known[1]):
-                    found[name] = side, bound
-        return found
+                    result[name] = side, bound
+        return result
 
     # -- sums of squares ------------------------------------------------------------------
 
@@ -312,7 +312,7 @@ def complete_squares(field: Field, element: Element) -> list[Element]:
         return []
     if field.normal(element).combined().parts[0].powers:
         return []
-    rest, found, sign = element, list[Element](), 0
+    rest, result, sign = element, list[Element](), 0
     for name in names:
         slope = field.derivative(rest, name)
         curve = field.as_number(field.derivative(slope, name))
@@ -325,9 +325,9 @@ def complete_squares(field: Field, element: Element) -> list[Element]:
         if sign * curve < 0:
             return []
         sign = 1 if curve > 0 else -1
-        found.append(slope)
+        result.append(slope)
         rest = field.normal(rest - slope**2 / (2 * curve))
     number = field.as_number(rest)
-    if number is None or not found or number * sign < 0:
+    if number is None or not result or number * sign < 0:
         return []
-    return [field.one] if number else found if len(found) > 1 else []
+    return [field.one] if number else result if len(result) > 1 else []

@@ -31,7 +31,7 @@ def element_text(field: Field, element: Element) -> str:
 def _fraction(field: Field, quotient: Written) -> str:
     """One quotient as text."""
     top = _sum(field, quotient.monomials)
-    bottom = [_power(_bracketed(field, d), e) for d, e in quotient.divisors]
+    bottom = [_power(_bracket(field, d), e) for d, e in quotient.divisors]
     if not bottom:
         return top
     lead = f"({top})" if len(quotient.monomials) > 1 else top
@@ -59,7 +59,7 @@ def _power(base: str, exponent: int) -> str:
     return base if exponent == 1 else f"{base}^{exponent}"
 
 
-def _bracketed(field: Field, element: Element) -> str:
+def _bracket(field: Field, element: Element) -> str:
     """A factor of a denominator: in brackets unless it is a single name."""
     text = element_text(field, element)
     return text if text.isidentifier() else f"({text})"

@@ -67,8 +67,8 @@ def _root(field: Field, argument: Element) -> Element | None:
         return None
     parts = (field.from_polynomial(f) ** (e // 2) for f, e in powers)
     root = reduce(mul, parts, field.number(number))
-    found = sign(field, root, strict=False)
-    return root * found if found else None
+    result = sign(field, root, strict=False)
+    return root * result if result else None
 
 
 def _exponent(field: Field, argument: Element) -> Element | None:

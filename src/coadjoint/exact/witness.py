@@ -83,7 +83,7 @@ class Enclosure:
         return Enclosure(self.bounds / other.bounds)
 
 
-def enclosed_function(function: str, argument: Enclosure) -> Enclosure:
+def enclose_function(function: str, argument: Enclosure) -> Enclosure:
     """Bounds of an elementary function.
 
     Raises:
@@ -113,7 +113,7 @@ def enclosures(
     numbers = {name: Enclosure.of(value) for name, value in point.items()}
     factors: dict[int, Enclosure] = {}
     return [
-        field.evaluate(each, numbers, Enclosure.of, enclosed_function, factors) for each in elements
+        field.evaluate(each, numbers, Enclosure.of, enclose_function, factors) for each in elements
     ]
 
 
@@ -190,13 +190,13 @@ def points_inside(
             almost every point.
     """
     domain = Domain(field, tuple(elements))
-    found = False
+    result = False
     for start in islice(_starts(field, domain.names), drawn):
-        point = domain.moved_inside(start)
+        point = domain.move_inside(start)
         if point is not None:
-            found = True
+            result = True
             yield point
-    if not found and is_entire(field, domain.elements):
+    if not result and is_entire(field, domain.elements):
         yield from islice(_starts(field, domain.names), TRIES)
 
 
@@ -268,7 +268,7 @@ class Domain:
             return all(enclosure(self.field, each, point).sign > 0 for each in self.positive)
         return False
 
-    def moved_inside(self, start: Point) -> Point | None:
+    def move_inside(self, start: Point) -> Point | None:
         """The point itself where it is inside, else one that steps along gradients lead to."""
         if self.contains(start):
             return start

@@ -110,10 +110,10 @@ def adjoint(matrix: Matrix) -> Matrix:
     return tuple(tuple(z.conjugate for z in column) for column in zip(*matrix, strict=True))
 
 
-def realified(matrix: Matrix) -> Matrix:
+def realify(matrix: Matrix) -> Matrix:
     """The real matrix ``[[A, -B], [B, A]]`` of a complex one ``A + i B``.
 
-    >>> realified(((I,),)) == ((0, -1), (1, 0))
+    >>> realify(((I,),)) == ((0, -1), (1, 0))
     True
     """
     rows = tuple(tuple(map(_complex, row)) for row in matrix)

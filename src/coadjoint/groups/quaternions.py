@@ -95,7 +95,7 @@ class Hypercomplex:
 
     def __mul__(self, other: Self | Any) -> Self:
         if not isinstance(other, Hypercomplex):
-            return self.scaled(other)
+            return self.scale(other)
         if type(other) is not type(self):
             raise AlgebraError(
                 f"{self} is a {type(self).__name__} and {other} a {type(other).__name__}; "
@@ -113,9 +113,9 @@ class Hypercomplex:
         )
 
     def __rmul__(self, factor: Any) -> Self:
-        return self.scaled(factor)
+        return self.scale(factor)
 
-    def scaled(self, factor: Any) -> Self:
+    def scale(self, factor: Any) -> Self:
         """The product with a real number."""
         return type(self)(*(factor * component for component in self.components))
 

@@ -1,4 +1,4 @@
-r"""Casimirs, found: polynomial ones up to a degree, then rational ones and matrix invariants.
+r"""The search for Casimirs: polynomials up to a degree, quotients, and matrix invariants.
 
 Comes in: a Poisson structure, or an algebra for its Lie-Poisson bracket. Goes out: a
 `CasimirSearch`, which says how many there can be, which were found and what was searched. Each
@@ -24,7 +24,7 @@ from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Polynomial
 from coadjoint.poisson.search import independent_polynomials, polynomial_casimirs, quotients
 from coadjoint.poisson.structure import PoissonStructure
-from coadjoint.poisson.summands import restricted_algebra, restricted_structure, summands
+from coadjoint.poisson.summands import restrict_algebra, restrict_structure, summands
 
 #: Coordinates that name a direct summand.
 NAMED = 3
@@ -143,13 +143,13 @@ def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearc
     (J1*P1 + J2*P2 + J3*P3, P1**2 + P2**2 + P3**2)
     """
     if isinstance(of, LieAlgebra):
-        found = search_summands(lie_poisson_dual(of), of, degree)
+        result = search_summands(lie_poisson_dual(of), of, degree)
     else:
-        found = search_summands(of, None, degree)
-    for part in found.summands:
+        result = search_summands(of, None, degree)
+    for part in result.summands:
         if part.obstacle is not None:
             raise part.obstacle
-    return found
+    return result
 
 
 def search_summands(
@@ -166,20 +166,20 @@ def search_summands(
         degree: The largest degree of the polynomials that are searched.
         known: Independent Casimirs; a summand that has all of its own among them is not searched.
     """
-    found = list[SummandSearch]()
+    result = list[SummandSearch]()
     for places in summands(structure):
-        part = restricted_structure(structure, places)
+        part = restrict_structure(structure, places)
         expected = part.dimension - part.generic_rank()
         given = [f for f in known if set(structure.gradient(f)) <= set(places)]
-        own = None if algebra is None else restricted_algebra(algebra, places)
+        own = None if algebra is None else restrict_algebra(algebra, places)
         if len(given) >= expected:
-            found.append(SummandSearch(part, len(given), (), expected))
+            result.append(SummandSearch(part, len(given), (), expected))
             continue
         try:
-            found.append(_search(part, own, degree, expected, given))
+            result.append(_search(part, own, degree, expected, given))
         except AlgebraError as error:
-            found.append(SummandSearch(part, len(given), (), expected, obstacle=error))
-    return CasimirSearch(structure, tuple(found))
+            result.append(SummandSearch(part, len(given), (), expected, obstacle=error))
+    return CasimirSearch(structure, tuple(result))
 
 
 def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
@@ -261,7 +261,7 @@ def _search(
         generators = independent(structure, [*generators, *rational])
         ways += ["quotients of semi-invariants"] * (len(generators) > count)
         searched.append(f"products of powers of semi-invariants of degree <= {reached}")
-    skipped = "" if reached == degree else _skipped(structure.dimension, degree, reached)
+    skipped = "" if reached == degree else _explain_skipped(structure.dimension, degree, reached)
     if known:  # long functions; these are independent of each other by now
         generators = independent(structure, [*known, *generators])[len(known) :]
     return SummandSearch(
@@ -287,7 +287,7 @@ def _monomials(dimension: int, degree: int) -> int:
     return comb(dimension + degree, degree) - 1
 
 
-def _skipped(dimension: int, degree: int, reached: int) -> str:
+def _explain_skipped(dimension: int, degree: int, reached: int) -> str:
     """What was not searched, and why."""
     count = _monomials(dimension, reached + 1)
     text = f"degree {reached + 1}" + (f" to {degree}" if degree > reached + 1 else "")

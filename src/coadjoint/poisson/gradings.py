@@ -51,14 +51,14 @@ class Gradings:
 
 def _relations(entries: Entries, size: int) -> list[dict[int, int]]:
     """``w_i + w_j + s - sum_k e_k w_k = 0`` for each term of each entry; s is the last unknown."""
-    found = set()
+    result = set()
     for (i, j), entry in entries.items():
         for exponents in entry.terms:
             row = [-e for e in exponents] + [1]
             row[i] += 1
             row[j] += 1
-            found.add(tuple(row))
-    return [{k: value for k, value in enumerate(row) if value} for row in sorted(found)]
+            result.add(tuple(row))
+    return [{k: value for k, value in enumerate(row) if value} for row in sorted(result)]
 
 
 def _parities(relations: Sequence[Mapping[int, int]], unknowns: int) -> list[int]:

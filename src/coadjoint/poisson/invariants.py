@@ -48,8 +48,8 @@ def matrix_invariants(algebra: LieAlgebra, bracket: PolynomialBracket) -> list[P
     """
     dual, size = dual_matrix(algebra), _size(algebra)
     signs = _orthogonal_signs(algebra, size)
-    found = _traces(dual, size, algebra) if signs is None else _pfaffians(dual, signs)
-    primitive = [p.primitive() for p in found if p.degree > 0]
+    result = _traces(dual, size, algebra) if signs is None else _pfaffians(dual, signs)
+    primitive = [p.primitive() for p in result if p.degree > 0]
     for p in primitive:
         assert bracket.is_casimir(p), p
     return sorted(primitive, key=lambda p: (p.degree, len(p.terms)))

@@ -24,8 +24,8 @@ def slopes_by(field: Field, names: Sequence[str]) -> Slopes:
 
     def slopes(element: Element) -> list[tuple[int, Element]]:
         present = field.reach(element)
-        found = ((m, field.derivative(element, x)) for m, x in enumerate(names) if x in present)
-        return [(m, slope) for m, slope in found if slope]
+        result = ((m, field.derivative(element, x)) for m, x in enumerate(names) if x in present)
+        return [(m, slope) for m, slope in result if slope]
 
     return slopes
 

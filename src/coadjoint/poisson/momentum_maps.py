@@ -51,7 +51,7 @@ class MomentumMap:
     >>> plane = canonical(field, [("x", "px"), ("y", "py")])
     >>> pairs = [("x", "px", field.one), ("y", "py", field.one)]
     >>> turn = {"x": -field["y"], "y": field["x"]}
-    >>> field_of_turn = lifted(plane, pairs, turn)
+    >>> field_of_turn = lift(plane, pairs, turn)
     >>> value = generating_function(plane, field_of_turn)
     >>> J = MomentumMap(algebra_by_name("so(2)"), plane, (field_of_turn,), (value,))
     >>> J.values, any(J.field_defects()), J.rates(field["x"] ** 2 + field["y"] ** 2)
@@ -95,11 +95,11 @@ class MomentumMap:
         field, places = self.structure.field, range(self.structure.dimension)
         defects = []
         for i, j in self._pairs():
-            found = lie_derivative(self.generators[i], self.generators[j])
+            result = lie_derivative(self.generators[i], self.generators[j])
             expected = self._in_algebra(i, j).items()
             for n in places:
                 moved = field.sum(c * self.generators[k].components[n] for k, c in expected)
-                defects.append(found.components[n] + moved)
+                defects.append(result.components[n] + moved)
         return defects
 
     def bracket_defects(self) -> list[Element]:
@@ -130,13 +130,13 @@ class MomentumMap:
     def cocycle(self) -> Mapping[tuple[int, int], Element]:
         """``Sigma(e_i, e_j) = {J_i, J_j} -+ J_[i, j]`` for i < j, where it is not zero."""
         field = self.structure.field
-        found = {
+        result = {
             (i, j): field.normal(
                 self.structure.bracket(self.values[i], self.values[j]) - self._along(i, j)
             )
             for i, j in self._pairs()
         }
-        return {pair: value for pair, value in found.items() if value != 0}
+        return {pair: value for pair, value in result.items() if value != 0}
 
     def constancy_defects(self) -> list[Element]:
         """``{x_a, Sigma}``: the cocycle is constant on each symplectic leaf."""
@@ -172,7 +172,7 @@ class MomentumMap:
 # -- the map of an action -------------------------------------------------------------------------
 
 
-def lifted(
+def lift(
     structure: PoissonStructure, pairs: Sequence[Pair], generator: Mapping[str, Element]
 ) -> VectorField:
     """The cotangent lift of a vector field on positions: ``dp/ds = -(D xi_Q)^T p``.
@@ -211,14 +211,14 @@ def generating_function(structure: PoissonStructure, X: VectorField) -> Element:
         {i: row[j] for i, row in enumerate(structure.tensor) if row[j]} for j in range(len(names))
     ]
     span = Span(columns)
-    found = span.coordinates({i: x for i, x in enumerate(X.components) if x})
-    if span.dependent or found is None:
+    result = span.coordinates({i: x for i, x in enumerate(X.components) if x})
+    if span.dependent or result is None:
         raise AlgebraError(
             f"{structure.label}: the bracket is degenerate, so a generator does not say its "
             "momentum map; expected the map beside the generators.",
             found=len(span.dependent),
         )
-    slopes = [field.zero + found.get(j, 0) for j in range(len(names))]
+    slopes = [field.zero + result.get(j, 0) for j in range(len(names))]
     if any(not field.is_zero(x) for row in exterior_derivative(field, names, slopes) for x in row):
         raise AlgebraError(
             f"{structure.label}: a generator does not preserve the bracket: no function "

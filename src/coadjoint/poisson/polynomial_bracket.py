@@ -85,12 +85,12 @@ class PolynomialBracket:
     @cached_property
     def scalings(self) -> dict[int, dict[int, Number]]:
         """The coordinates with ``{x_i, x_j} = a_ij x_j`` for every j, and their factors."""
-        found = {}
+        result = {}
         for i, entries in enumerate(self._acting):
             single = all(set(terms) == set(coordinate(j, self.size).terms) for j, terms in entries)
             if entries and single:
-                found[i] = {j: value for j, terms in entries for value in terms.values()}
-        return found
+                result[i] = {j: value for j, terms in entries for value in terms.values()}
+        return result
 
     def character(self, monomial: Exponents) -> tuple[Number, ...]:
         """``chi_i`` with ``{x_i, m} = chi_i m``, for each coordinate that scales all others."""

@@ -58,13 +58,13 @@ def quotients(
     if not bracket.scalings:
         return []
     others = [i for i in range(bracket.size) if i not in bracket.scalings]
-    found = [
+    result = [
         (character, solution)
         for character, members in monomial_classes(bracket, degree)
         for solution in _solutions(bracket, members, others)
     ]
-    kept = independent_polynomials((solution for _, solution in found), bracket.size, bracket.size)
-    characters = [next(c for c, solution in found if solution is p) for p in kept]
+    kept = independent_polynomials((solution for _, solution in result), bracket.size, bracket.size)
+    characters = [next(c for c, solution in result if solution is p) for p in kept]
     balance = conditions_on(dict(enumerate(character)) for character in characters)
     bases = [p.element(structure.field, structure.names) for p in kept]
     return [
@@ -96,8 +96,8 @@ def _solutions(
         {(i, product): x for i in asked for product, x in bracket.along(i, monomial).items()}
         for monomial in order
     )
-    found = [Polynomial(terms).primitive() for terms in solve_exactly(order, conditions)]
-    return sorted(found, key=lambda p: (p.degree, len(p.terms)))
+    result = [Polynomial(terms).primitive() for terms in solve_exactly(order, conditions)]
+    return sorted(result, key=lambda p: (p.degree, len(p.terms)))
 
 
 def independent_polynomials(

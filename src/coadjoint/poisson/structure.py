@@ -184,10 +184,10 @@ class PoissonStructure:
                 if i < j:
                     if id(entry) not in read:
                         read[id(entry)] = self._affine(entry)
-                    found = read[id(entry)]
-                    if found is None:
+                    result = read[id(entry)]
+                    if result is None:
                         return None
-                    constants[i, j] = found
+                    constants[i, j] = result
         central = any(self.dimension in row for row in constants.values())
         basis = (*self.names, "1") if central else self.names
         return LieAlgebra(self.label, basis, constants)
@@ -197,29 +197,29 @@ class PoissonStructure:
         plain = self._linear(entry)
         if plain is not None:
             return plain
-        field, found, rest = self.field, {}, entry
+        field, result, rest = self.field, {}, entry
         for m, slope in self.gradient(entry).items():
             rest = rest - slope * field[self.names[m]]
-            found[m] = slope
+            result[m] = slope
         if rest:
-            found[self.dimension] = rest
-        if any(field.reach(value) & set(self.names) for value in found.values()):
+            result[self.dimension] = rest
+        if any(field.reach(value) & set(self.names) for value in result.values()):
             return None
-        return {m: _number(field, value) for m, value in found.items()}
+        return {m: _number(field, value) for m, value in result.items()}
 
     def _linear(self, entry: Element) -> dict[int, Fraction | Element] | None:
         """Coefficients of a sum of numbers times coordinates, which most entries are."""
-        found: dict[int, Fraction | Element] = {}
+        result: dict[int, Fraction | Element] = {}
         for written in self.field.quotients(entry):
             if written.divisors:
                 return None
             for monomial in written.monomials:
                 match monomial.powers:
                     case ((name, 1),) if name in self._places:
-                        found[self._places[name]] = monomial.number
+                        result[self._places[name]] = monomial.number
                     case _:
                         return None
-        return found
+        return result
 
     @cached_property
     def _places(self) -> Mapping[str, int]:

@@ -39,10 +39,10 @@ def summands(structure: PoissonStructure) -> list[tuple[int, ...]]:
                     names = structure.field.reach(entry) & place.keys()
                     reached[id(entry)] = [place[name] for name in names]
                 linked.append((i, j, *reached[id(entry)]))
-    return _connected(structure.dimension, linked)
+    return _connect(structure.dimension, linked)
 
 
-def _connected(size: int, linked: Iterable[Sequence[int]]) -> list[tuple[int, ...]]:
+def _connect(size: int, linked: Iterable[Sequence[int]]) -> list[tuple[int, ...]]:
     """The classes of the smallest equivalence in which the members of each tuple are equivalent."""
     leader = list(range(size))
 
@@ -61,7 +61,7 @@ def _connected(size: int, linked: Iterable[Sequence[int]]) -> list[tuple[int, ..
     return [tuple(members) for members in classes.values()]
 
 
-def restricted_structure(structure: PoissonStructure, places: Sequence[int]) -> PoissonStructure:
+def restrict_structure(structure: PoissonStructure, places: Sequence[int]) -> PoissonStructure:
     """The structure of a summand, on its own coordinates."""
     if len(places) == structure.dimension:
         return structure
@@ -70,7 +70,7 @@ def restricted_structure(structure: PoissonStructure, places: Sequence[int]) -> 
     return PoissonStructure(structure.field, names, tensor, structure.label)
 
 
-def restricted_algebra(algebra: LieAlgebra, places: Sequence[int]) -> LieAlgebra:
+def restrict_algebra(algebra: LieAlgebra, places: Sequence[int]) -> LieAlgebra:
     """A summand of an algebra, with the rows and columns of matrices that it acts on.
 
     Args:
@@ -86,10 +86,10 @@ def restricted_algebra(algebra: LieAlgebra, places: Sequence[int]) -> LieAlgebra
             constants[min(a, b), max(a, b)] = turned
     basis = tuple(algebra.basis[n] for n in places)
     matrices = [algebra.matrices[n] for n in places] if algebra.matrices else []
-    return LieAlgebra(algebra.name, basis, constants, {}, _trimmed(matrices))
+    return LieAlgebra(algebra.name, basis, constants, {}, _trim(matrices))
 
 
-def _trimmed(matrices: Sequence[SparseMatrix]) -> tuple[SparseMatrix, ...]:
+def _trim(matrices: Sequence[SparseMatrix]) -> tuple[SparseMatrix, ...]:
     """Matrices without the rows and columns that are zero in all of them."""
     acted = sorted({n for matrix in matrices for place in matrix for n in place})
     number = {place: n for n, place in enumerate(acted)}

@@ -1,4 +1,4 @@
-r"""Integrals of a constrained motion up to a degree: all of them, by an exact linear solve.
+r"""Integrals of a motion up to a degree: all of them, by an exact linear solve.
 
 A function F that is a polynomial of the velocities and of the positions has unknown numbers as
 coefficients; ``dF/dt = 0`` at random points modulo a prime is linear in them. Functions that agree
@@ -21,13 +21,13 @@ values, with numbers for these numbers.
 What is not made of known integrals is written out with the numbers that the parameters have by
 default, lowest degrees first, and kept if it is proved by its rate there. So Jellett's and Routh's
 integrals of a ball of revolution are found (Routh 1884; Holm 2011, section 12.2.1).
-Comes in: the rates of a constrained motion. Goes out: what is known and found, as claims and
+Comes in: a motion. Goes out: what is known and found, as claims and
 findings. Read next: `coadjoint.prove.measures`, which asks for a volume instead.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -36,17 +36,18 @@ from itertools import islice, product
 from math import prod
 from operator import add, mul
 
-from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.integrals import lax_integrals
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import Exponents, Solution, monomials, solve
 from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
 from coadjoint.exact.residues import residue
+from coadjoint.exact.written import Written
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
-from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.measures import Measure
+from coadjoint.prove.motion import Motion, vector_names
 from coadjoint.prove.reversibility import reversal_defects
-from coadjoint.prove.samples import AtNumbers, Point, Samples, Slopes, leading
+from coadjoint.prove.samples import Point, Samples, Slopes, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
 
@@ -59,6 +60,8 @@ MONOMIALS = 200
 SPARE = 5
 #: Products of known integrals that are tried.
 PRODUCTS = 1000
+#: Terms of a known integral, and quotients in it, beyond which no common denominator is made.
+LONG, QUOTIENTS = 500, 6
 #: How a function that a search has found is called.
 FOUND = "those found"
 #: How likely it is that more is wrong than what is certain.
@@ -99,7 +102,7 @@ class CandidateSearch:
 
     def __init__(
         self,
-        motion: ConstrainedRates,
+        motion: Motion,
         known: Sequence[Known] = (),
         parameters: Mapping[str, Fraction] | None = None,
     ) -> None:
@@ -108,15 +111,15 @@ class CandidateSearch:
         self._source = self.samples.points()
         self._points: list[Point] = []
         self.values_at: list[tuple[list[int], list[int]]] = []
-        self._rates = motion if parameters is None else AtNumbers(motion, parameters)
+        self._rates = motion if parameters is None else motion.at(parameters)
         self._decided: dict[Element, Decision] = {}
 
     # -- the ansatz -----------------------------------------------------------------------
 
     @cached_property
     def velocities(self) -> tuple[str, ...]:
-        """The independent velocities."""
-        return self.motion.distribution.independent
+        """The velocities or momenta of the state."""
+        return self.motion.fibre
 
     @cached_property
     def positions(self) -> tuple[str, ...]:
@@ -125,11 +128,11 @@ class CandidateSearch:
             known
             for known in self.samples.functions.known
             if known.function != "sqrt"
-            and self.field.reach(known.argument) & set(self.motion.distribution.frame.positions)
+            and self.field.reach(known.argument) & set(self.motion.positions)
         ]
         inside = {name for known in functions for name in self.field.reach(known.argument)}
         moved = set(self.samples.state) - inside - set(self.velocities)
-        plain = [name for name in self.motion.distribution.frame.positions if name in moved]
+        plain = [name for name in self.motion.positions if name in moved]
         return (*plain, *(known.generator for known in functions))
 
     def monomials(self, degrees: Degrees) -> list[Exponents]:
@@ -255,20 +258,35 @@ class CandidateSearch:
         return {exponents: value for exponents, value in terms.items() if value}
 
     def _degrees(self, function: Element) -> Degrees | None:
-        """The degrees of a polynomial, reduced by the relations; None for other functions."""
+        """The degrees of a polynomial, reduced by the relations; None for other functions.
+
+        Of a long one the largest degree of an addend, which is enough: too high a degree leaves
+        products out.
+        """
         state = set(self.samples.state)
-        whole = self.field.normal(function).combined()
-        if any(
-            self.field.reach(d) & state for q in self.field.quotients(whole) for d, _ in q.divisors
-        ):
+        written = self.field.quotients(function)
+        is_long = len(written) > QUOTIENTS or sum(len(q.monomials) for q in written) > LONG
+        whole = function if is_long else self.field.normal(function).combined()
+        quotients = self.field.quotients(whole)
+        if any(self.field.reach(d) & state for q in quotients for d, _ in q.divisors):
             return None
+        if is_long:
+            return self._largest(quotients)
         forms = [self._terms(whole), self._terms(self.samples.where.remainder(whole))]
-        count, found = len(self.velocities), list[Degrees]()
-        for terms in forms:
-            if terms is not None:
-                sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
-                found.append((max(a for a, _ in sums), max(b for _, b in sums)))
-        return min(found, default=None)
+        return min(
+            (_sums(terms, len(self.velocities)) for terms in forms if terms is not None),
+            default=None,
+        )
+
+    def _largest(self, quotients: Sequence[Written]) -> Degrees | None:
+        """The largest degrees of the addends of a function without functions of the state."""
+        names, found = (*self.velocities, *self.positions), list[Exponents]()
+        state = set(self.samples.state)
+        for powers in (dict(m.powers) for q in quotients for m in q.monomials):
+            found.append(tuple(powers.pop(name, 0) for name in names))
+            if any(self.field.reach(self.field[name]) & state for name in powers):
+                return None
+        return _sums(found, len(self.velocities))
 
     def polynomials(self, degrees: Degrees) -> tuple[int, list[str]]:
         """How many polynomials in known integrals are independent, and in which of these.
@@ -354,13 +372,15 @@ class CandidateSearch:
         return -whole if leading(whole) < 0 else whole
 
 
-def about_candidates(motion: ConstrainedRates, known: Sequence[Known]) -> Iterator[Examined]:
-    """All integrals up to a degree: from those that are known, or found beyond them.
+def _sums(terms: Iterable[Exponents], count: int) -> Degrees:
+    """The largest degrees in the first generators and in the others."""
+    sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
+    return max(a for a, _ in sums), max(b for _, b in sums)
 
-    Args:
-        motion: The motion.
-        known: Its known integrals; those that are constant where the motion is looked at may stay.
-    """
+
+def about_candidates(motion: Motion) -> Iterator[Examined]:
+    """All integrals up to a degree: from those that are known, or found beyond them."""
+    known = known_integrals(motion)
     search, where = CandidateSearch(motion, known), _almost_all(motion)
     if search.samples.obstacle:
         yield _passed_over(search)
@@ -398,16 +418,18 @@ def _counted(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     return f"{scope}: {text}", "integrals", lambda: discovery
 
 
-def _almost_all(motion: ConstrainedRates) -> str:
-    return ", for almost all parameters" if motion.equations.setting.parameters else ""
+def _almost_all(motion: Motion) -> str:
+    almost = ", for almost all parameters" if motion.setting.parameters else ""
+    return almost + motion.at_all_times
 
 
-def _at_defaults(motion: ConstrainedRates) -> str:
+def _at_defaults(motion: Motion) -> str:
     """The numbers of the parameters, in words."""
-    if not motion.equations.setting.parameters:
-        return ""
-    whole = all(each.default is not None for each in motion.equations.spec.parameters)
-    return ", at the default parameters" + ("" if whole else " and 1 where there is none")
+    if not motion.setting.parameters:
+        return motion.at_all_times
+    whole = all(each.default is not None for each in motion.spec.parameters)
+    others = "" if whole else " and 1 where there is none"
+    return f", at the default parameters{others}{motion.at_all_times}"
 
 
 def _passed_over(search: CandidateSearch) -> Examined:
@@ -417,33 +439,38 @@ def _passed_over(search: CandidateSearch) -> Examined:
     return text, "integrals", lambda: Discovery("no search")
 
 
-def known_integrals(motion: ConstrainedRates, names: Mapping[str, Quantity]) -> list[Known]:
-    """The energy, if it is conserved, and what a spec claims to be, as functions of the state.
+def known_integrals(motion: Motion) -> list[Known]:
+    """What may be conserved as a spec or a theorem has it, as functions of the state.
 
     What changes at a random point is none; what does not is proved where a proof rests on it.
-
-    Args:
-        motion: The motion.
-        names: What claims may name beside the state.
     """
-    equations, found = motion.equations, list[Known]()
-    setting, where = equations.setting, Samples(motion).where
-    energy = [] if equations.exact.energy is None else [motion.closed(equations.exact.energy)]
-    stated = [("energy", energy)]
-    for claim in equations.spec.conserved:
+    setting, spec, where = motion.setting, motion.spec, Samples(motion).where
+    names, energy = motion.emitted, motion.equations.exact.energy
+    stated = {} if energy is None else {"energy": [motion.closed(energy)]}
+    for claim in spec.conserved:
         level = [motion.closed(g) for f in claim.where for g in setting.components(f, names)]
         if all(where.contains(g) for g in level):
             parts = list(map(motion.closed, setting.components(claim.formula, names)))
-            stated.append((claim.formula.in_one_line, parts))
-    known = {*setting.state, *setting.parameters}
-    for text, parts in dict(stated).items():
+            stated[claim.formula.in_one_line] = parts
+    for casimir in spec.casimirs:
+        stated[casimir.in_one_line] = list(map(motion.closed, setting.components(casimir)))
+    emitted = dict(motion.equations.exact.observables)
+    named = [(each.name, each.components) for each in spec.sections]
+    named += [(each.name, each.components) for each in spec.symmetries]
+    named += [(each.name, each.components) for each in spec.spatial]
+    for name, components in named:
+        stated[name] = [motion.closed(emitted[component]) for component in components]
+    pair = lax_integrals(setting)
+    stated |= {} if pair is None else {name: [motion.closed(x)] for name, x in pair.named}
+    known, found = {*setting.state, *setting.parameters}, list[Known]()
+    for text, parts in stated.items():
         plain = parts and all(motion.field.reach(part) <= known for part in parts)
         if plain and not _changes(motion, parts):
             found.append(Known(text, tuple(parts)))
     return found
 
 
-def _changes(motion: ConstrainedRates, parts: Sequence[Element]) -> bool:
+def _changes(motion: Motion, parts: Sequence[Element]) -> bool:
     """Whether functions certainly change along the motion, or have no values at its points."""
     samples = Samples(motion, None, parts)
     point = next(samples.points(), None)
@@ -464,8 +491,8 @@ def default_numbers(spec: Spec) -> dict[str, Fraction]:
 def affordable(search: CandidateSearch) -> Degrees:
     """The degrees that are searched, lower where there are very many monomials."""
     most, degree = DEGREES
-    while max(map(len, search.sectors((most, degree)))) > MONOMIALS and degree:
-        degree -= 1
+    while max(map(len, search.sectors((most, degree)))) > MONOMIALS and most + degree > 1:
+        most, degree = (most, degree - 1) if degree else (most - 1, degree)
     return most, degree
 
 
@@ -480,12 +507,9 @@ def _scope(search: CandidateSearch, degrees: Degrees) -> str:
 
 def _named(search: CandidateSearch, names: Sequence[str]) -> str:
     """Generators as a statement names them: whole vectors by their name."""
-    spec, left, shown = search.motion.equations.spec, dict.fromkeys(names), list[str]()
-    for each in spec.state:
-        if len(each.components) > 1 and left.keys() >= set(each.components):
-            shown.append(each.name)
-            left = {name: None for name in left if name not in each.components}
-    return ", ".join([*shown, *(element_text(search.field, search.field[name]) for name in left)])
+    whole, field = {each.name for each in search.motion.spec.state}, search.field
+    shown = vector_names(search.motion, names)
+    return ", ".join(n if n in whole else element_text(field, field[n]) for n in shown)
 
 
 def _factors(known: Sequence[Degrees], degrees: Degrees) -> Iterator[tuple[int, ...]]:

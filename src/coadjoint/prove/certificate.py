@@ -47,6 +47,7 @@ class Claim:
         defect: What should have been zero, at that point; else empty.
         accepted: Whether the spec that makes this claim accepts numerical support; None for a
             claim of the engine, which never does.
+        leaves: Whether not the claimed function has a rate there, but the relations of its set.
     """
 
     statement: str
@@ -57,6 +58,7 @@ class Claim:
     counterexample: Mapping[str, str] = field(default_factory=dict)
     defect: str = ""
     accepted: bool | None = None
+    leaves: bool = False
 
     @property
     def holds(self) -> bool:
@@ -70,7 +72,7 @@ class Claim:
             "statement": self.statement,
             "kind": self.kind,
             "verdict": str(self.verdict),
-            "method": self.method,
+            "method": f"{self.method}: {LEAVES}" if self.leaves else self.method,
         }
         if self.verdict is Verdict.REFUTED:
             record |= {"counterexample": dict(self.counterexample), "defect": self.defect}
@@ -202,7 +204,7 @@ _FIXES = MappingProxyType(
 )
 
 
-#: What a method says where not the claimed function but the relations of its set have a rate.
+#: What is said where not the claimed function but the relations of its set have a rate.
 LEAVES = "the motion leaves this set"
 
 
@@ -215,7 +217,7 @@ def failure_text(claim: Claim) -> str:
         )
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
     found = f"At {point} the difference" if point else f"By {claim.method} what is left"
-    if claim.method.endswith(LEAVES):
+    if claim.leaves:
         found = f"At {point} {LEAVES}: the rate of a relation"
     return (
         f"refuted: {claim.statement}. {found} is {claim.defect}; expected 0. "

@@ -307,19 +307,19 @@ def reach(chart_map: ChartMap) -> tuple[str, Decision | Discovery]:
     A rank at a point bounds the dimension from below, and independent relations that vanish on the
     image bound it from above: where the two meet, both are proved.
     """
-    route, dimension = chart_map.other.route, len(chart_map.first.setting.state)
+    way, dimension = chart_map.other.way, len(chart_map.first.setting.state)
     try:
         missing = dimension - chart_map.rank
     except AlgebraError as error:
-        return f"what the route {route} reaches was not decided", Discovery(str(error))
+        return f"what {way} reaches was not decided", Discovery(str(error))
     if not missing:
-        return f"the route {route} reaches an open set of states", _decision(chart_map, True)
+        return f"{way} reaches an open set of states", _decision(chart_map, True)
     relations = chart_map.image_relations
     met = len(relations) == missing and chart_map.is_certain
     least = "" if met else "at least " if chart_map.is_certain else "probably "
     named = ", ".join(f"{relation.text} = 0" for relation in relations)
     statement = (
-        f"the states that the route {route} reaches have dimension {least}{chart_map.rank} of "
+        f"the states that {way} reaches have dimension {least}{chart_map.rank} of "
         f"{dimension}" + (f": {named}" if named else "")
     )
     return statement, _decision(chart_map, met)

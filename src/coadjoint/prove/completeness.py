@@ -21,7 +21,7 @@ from coadjoint.exact.witness import is_entire
 from coadjoint.poisson import PoissonStructure
 from coadjoint.poisson.casimirs import CasimirSearch, independent, search_summands
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.summands import restricted_algebra
+from coadjoint.poisson.summands import restrict_algebra
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import casimir_defects
 from coadjoint.prove.zero import Decision, Discovery, decide_zero
@@ -193,12 +193,12 @@ def _search(
 ) -> CasimirSearch:
     """Casimirs beyond those known, in the coordinates of the state."""
     setting = equations.setting
-    if setting.spec.algebra is None:
+    if setting.spec.algebra is None or not setting.momenta:  # velocities are the state
         return search_summands(emitted, None, degree, known)
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = [*setting.momenta, *advected]
     order = [coordinates.index(name) for name in setting.state]
-    algebra = restricted_algebra(momentum_algebra(setting), order)
+    algebra = restrict_algebra(momentum_algebra(setting), order)
     return search_summands(poisson_structure(setting), algebra, degree, known)
 
 

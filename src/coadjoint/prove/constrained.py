@@ -20,10 +20,10 @@ from types import MappingProxyType
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
-from coadjoint.derive.mechanics.constrained import section_components
-from coadjoint.derive.mechanics.distribution import Distribution, Row
+from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
+from coadjoint.derive.mechanics.sections import section_components
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import determinant, dot
@@ -32,7 +32,8 @@ from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.zero import Decision, Examined, decide_zero
+from coadjoint.prove.motion import Motion
+from coadjoint.prove.zero import Decision, Examined
 
 #: No combination of the equations of motion.
 NO_DIRECTION: Mapping[str, Element] = MappingProxyType({})
@@ -40,21 +41,39 @@ NO_DIRECTION: Mapping[str, Element] = MappingProxyType({})
 SHORT = 60
 
 
-class ConstrainedRates:
-    """Rates of functions along a constrained motion, as functions of the state alone.
+class ConstrainedRates(Motion):
+    """A motion along a frame, whose accelerations the kernel solves for.
 
-    Args:
-        equations: By a route with constraints.
+    The equations are by a route with a distribution.
     """
 
-    def __init__(self, equations: Equations) -> None:
-        assert equations.distribution is not None, equations.route
-        self.equations, self.distribution = equations, equations.distribution
-        self.field = equations.setting.field
+    @property
+    def distribution(self) -> Distribution:
+        """The velocities that the constraints allow."""
+        found = self.equations.distribution
+        assert found is not None, self.equations.route
+        return found
 
-    def closed(self, element: Element) -> Element:
-        """An element in the state, the parameters and the accelerations alone."""
-        return self.equations.closed(element)
+    @cached_property
+    def fibre(self) -> tuple[str, ...]:
+        """The independent velocities."""
+        return self.distribution.independent
+
+    @cached_property
+    def positions(self) -> tuple[str, ...]:
+        """What the velocities move."""
+        state = {*self.setting.state}
+        return tuple(name for name in self.distribution.frame.positions if name in state)
+
+    @property
+    def kept(self) -> tuple[tuple[Equation, Element], ...]:
+        """The constraints that give no velocity, with their residuals."""
+        return self.distribution.kept
+
+    @property
+    def kept_rows(self) -> list[Row]:
+        """``(A, -b)`` of these."""
+        return kept_rows(self.distribution)
 
     @cached_property
     def where(self) -> Ideal:
@@ -67,12 +86,6 @@ class ConstrainedRates:
         text = ", ".join(f"{equation.name} = 0" for equation, _ in kept)
         nonzero = _rank_drops(self.distribution)
         return Ideal(self.field, [residual for _, residual in kept], text, nonzero=nonzero)
-
-    @cached_property
-    def rates(self) -> dict[str, Element]:
-        """``dx/dt`` of the state, the accelerations by their names."""
-        names = self.equations.setting.state
-        return dict(zip(names, map(self.closed, self.equations.exact.rates), strict=True))
 
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and velocities, or of reactions."""
@@ -97,6 +110,15 @@ class ConstrainedRates:
         slopes = zip(self.field.gradient(function, names), names, strict=True)
         return own + self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
+    @cached_property
+    def written_rates(self) -> dict[str, Element]:
+        """The rates in the state, without accelerations."""
+        return {name: self.rate(self.field[name]) for name in self.setting.state}
+
+    def written(self, function: Element) -> Element:
+        """A function of the state alone."""
+        return self.in_state(function)
+
     def in_state(self, function: Element) -> Element:
         """A function of the state alone, also where it names reactions."""
         closed = self.closed(function)
@@ -112,11 +134,11 @@ class ConstrainedRates:
         """
         rest = self.field.substitute(self.closed(element), self.resting)
         parts = []
-        for block in self._blocks:
+        for block in self.solves:
             slopes = self.field.gradient(rest, block.names)
             if any(slope != 0 for slope in slopes):
                 parts.append(self._along(block, slopes, direction))
-        unknown = {name: self.field.zero for block in self._blocks for name in block.names}
+        unknown = {name: self.field.zero for block in self.solves for name in block.names}
         return self.field.sum([self.field.substitute(rest, unknown), *parts])
 
     def _along(self, block: Solve, c: Row, direction: Mapping[str, Element]) -> Element:
@@ -148,7 +170,7 @@ class ConstrainedRates:
     def _directions(self) -> list[dict[str, Element]]:
         """The velocities and the declared sections, by the names of the accelerations."""
         found = self.distribution
-        sections = (section_components(found, each) for each in found.setting.spec.sections)
+        sections = (section_components(self.setting, each) for each in self.spec.sections)
         velocities = self.equations.setting.elements(found.independent)
         return [
             dict(zip(map(rate_name, found.independent), map(self.closed, values), strict=True))
@@ -166,8 +188,56 @@ class ConstrainedRates:
                 known[name] = self.closed(self.field.substitute(value, known))
         return known
 
+    @property
+    def solved_velocities(self) -> Sequence[str]:
+        """None: velocities are the state, or follow from it in closed form."""
+        return ()
+
+    @property
+    def determinant(self) -> str:
+        """What the determinant of the whole matrix below is called."""
+        corner = "A^T" if all(solve.symmetric for solve in self.solves) else "A^T + C"
+        return f"|det [[B^T M B, {corner}], [A, 0]]|" if self.kept else "det(B^T M B)"
+
     @cached_property
-    def _blocks(self) -> list[Solve]:
+    def matrices(self) -> list[tuple[Row, ...]]:
+        """The matrices that accelerations are solved with."""
+        return [tuple(map(tuple, solve.matrix)) for solve in self.solves]
+
+    @cached_property
+    def divergence(self) -> Element:
+        """``div X`` in velocities and positions."""
+        rates, field = self.rates, self.field
+        parts = [field.derivative(rates[name], name) for name in self.positions]
+        for solve in self.solves:
+            whole = determinant(tuple(map(tuple, solve.matrix)))
+            for place, name in enumerate(solve.names):
+                velocity = next((v for v in self.fibre if rates[v] == field[name]), None)
+                if velocity is None:  # a multiplier
+                    continue
+                slopes = [self._slope(solve, n, velocity) for n in range(len(solve.names))]
+                turned = tuple(
+                    (*row[:place], k, *row[place + 1 :])
+                    for row, k in zip(solve.matrix, slopes, strict=True)
+                )
+                parts.append(determinant(turned) / whole)  # Cramer's rule
+        return field.sum(parts)
+
+    def _slope(self, solve: Solve, row: int, velocity: str) -> Element:
+        """How ``(k - A x)_row`` changes with a velocity at fixed x.
+
+        A depends on velocities where a force is proportional to a reaction.
+        """
+        field = self.field
+        slope = field.derivative(solve.known[row], velocity)
+        if solve.symmetric:
+            return slope
+        entries = (field.derivative(entry, velocity) for entry in solve.matrix[row])
+        pairs = zip(entries, solve.names, strict=True)
+        return slope - field.sum(a * self.in_state(field[x]) for a, x in pairs if a != 0)
+
+    @cached_property
+    def solves(self) -> Sequence[Solve]:
         """Every solve, in the state alone."""
         return [
             replace(
@@ -180,47 +250,44 @@ class ConstrainedRates:
 
     def energy_balance(self) -> Element:
         """``dE/dt`` minus the power of declared forces and of constraints that move."""
-        energy = self.equations.exact.energy
-        assert energy is not None, "a Lagrangian has an energy"
-        return self.value(self._carried(self.closed(energy)) - Balance(self.equations).power)
+        balance = Balance(self.equations)
+        return self.value(self._carried(self.closed(balance.energy)) - balance.power)
 
 
-def about_constraints(motion: ConstrainedRates, others: Sequence[Equations]) -> Iterator[Examined]:
-    """The constraints, the solve in the kernel, the equality with other routes and the energy."""
-    first, found = motion.equations, motion.distribution
+def motion_of(equations: Equations) -> Motion:
+    """The motion of Equations, whatever binds it."""
+    return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)
+
+
+def about_constraints(motion: ConstrainedRates) -> Iterator[Examined]:
+    """The constraints, and the solve in the kernel."""
+    found = motion.distribution
     if found.equations:
         count = len(found.equations)
         text = f"the {count} constraints are" if count > 1 else "the constraint is"
         rank, decision = _rank(found)
         yield f"{text} independent: {rank}", "constraint", lambda: decision
     matrix, factored = "B^T M B", "L D L^T"
-    if not all(solve.symmetric for solve in first.exact.solves):
+    if not all(solve.symmetric for solve in motion.equations.exact.solves):
         matrix, factored = "[[B^T M B, A^T + C], [A, 0]], with forces k + C lambda", "W U"
     yield (
         f"the kernel solves for the accelerations: {factored} = {matrix}",
         "constraint",
-        lambda: _solved(first),
+        lambda: _solved(motion.equations),
     )
-    for other in others:
-        yield (
-            f"{first.route} and {other.route} give the same motion",
-            "equivalence",
-            partial(_same_solves, first, other),
-        )
-    yield (
-        Balance(first).statement,
-        "conserved",
-        lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
-    )
-    for equation, residual in found.kept:
+
+
+def about_kept(motion: ConstrainedRates) -> Iterator[Examined]:
+    """That constraints which give no velocity keep their values."""
+    for equation, residual in motion.kept:
         yield (
             f"the motion keeps {equation.name}",
             "constraint",
-            partial(_kept, motion, residual),
+            partial(_residual_rate, motion, residual),
         )
 
 
-def _kept(motion: ConstrainedRates, residual: Element) -> list[Element]:
+def _residual_rate(motion: ConstrainedRates, residual: Element) -> list[Element]:
     return [motion.rate(residual)]
 
 
@@ -281,7 +348,7 @@ def _solved(first: Equations) -> list[Element]:
     ]
 
 
-def _same_solves(first: Equations, other: Equations) -> list[Element]:
+def same_solves(first: Equations, other: Equations) -> list[Element]:
     """Differences of the linear equations of two routes, of the rates and of the reactions.
 
     The equations are compared entry by entry, whatever blocks each route has found in them.

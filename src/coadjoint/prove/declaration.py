@@ -18,7 +18,7 @@ from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.lower.program import Program
 from coadjoint.prove.driven import while_constant
-from coadjoint.prove.energy import is_conserved
+from coadjoint.prove.integrals import is_conserved
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Reconstructed
 

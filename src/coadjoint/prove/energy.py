@@ -17,7 +17,6 @@ from functools import cached_property
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.distribution import Distribution
-from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element, Field
 from coadjoint.prove.driven import (
     OWN_CHANGE,
@@ -29,17 +28,11 @@ from coadjoint.prove.driven import (
 
 
 def keeps_energy(equations: Equations) -> bool:
-    """Whether nothing changes the energy: no force, no moving constraint, and not time."""
-    return equations.keeps_energy and not changes_by_time(equations)
-
-
-def is_conserved(equations: Equations, each: Emitted) -> bool:
-    """Whether the motion conserves what is emitted, by claims that are proved."""
-    if each.kept is Kept.AS_ENERGY:
-        return keeps_energy(equations)
-    if each.kept is Kept.UNLESS_WORKED_ON:
-        return all(equations.setting.field.is_zero(equations.work(x)) for x in each.values)
-    return each.kept is Kept.ALWAYS
+    """Whether nothing changes the energy: forces, double brackets, moving constraints or time."""
+    spec, found = equations.spec, equations.distribution
+    acted_on = spec.is_forced or (spec.relaxation is not None and spec.relaxation.S is None)
+    moved = found is not None and not found.is_linear
+    return not acted_on and not moved and not changes_by_time(equations)
 
 
 class Balance:
@@ -57,9 +50,11 @@ class Balance:
     @property
     def statement(self) -> str:
         """The law in words."""
-        held = while_constant(self.equations, [self._energy])
+        held = while_constant(self.equations, [self.energy])
         if keeps_energy(self.equations):
             return f"the energy is conserved{held}"
+        if self._only_falls:
+            return f"dh/dt = -<P dh, G P dh>: the energy never grows{held}"
         terms = ["the power of the forces"] if self.spec.forces else []
         if self.spec.dissipation is not None:
             terms.append("-2 R" if self._is_quadratic else "-<dR/dxi, xi>")
@@ -74,7 +69,14 @@ class Balance:
         return f"the energy changes by {', '.join(others)}{' and ' * bool(others)}{last}{held}"
 
     @property
-    def _energy(self) -> Element:
+    def _only_falls(self) -> bool:
+        """Whether a double bracket alone changes the energy; that G has no sign is a claim."""
+        double = self.spec.relaxation is not None and self.spec.relaxation.S is None
+        return double and not self.spec.is_forced and not changes_by_time(self.equations)
+
+    @property
+    def energy(self) -> Element:
+        """What is balanced."""
         energy = self.equations.exact.energy
         assert energy is not None, "only an energy has a balance"
         return energy

@@ -30,16 +30,22 @@ from coadjoint.groups.galilean import (
     subgroups,
     transformation_defects,
 )
-from coadjoint.prove.zero import Decision, Examined, decide_zero
+from coadjoint.prove.motion import Motion
+from coadjoint.prove.zero import Decision, Examined, claimed_by, decide_zero
 
 #: The subgroup that moves time.
 SHIFT = "time shift"
 
 
-def about_galilean(first: Equations) -> Iterator[Examined]:
+def about_galilean(motion: Motion) -> Iterator[Examined]:
     """One claim for each subgroup, if the spec claims Galilean relativity."""
-    if not first.spec.galilean:
-        return
+    if motion.spec.galilean:
+        examined = _about_subgroups(motion.equations)
+        yield from claimed_by(motion.spec, ("claims", "galilean"), examined, motion.field)
+
+
+def _about_subgroups(first: Equations) -> Iterator[Examined]:
+    """The claims of all subgroups."""
     system, names = _particles(first.setting)
     moved = accelerations(_with_names(first.setting, system, names))
     laws = [moved[n : n + 3] for n in range(0, len(moved), 3)]

@@ -9,7 +9,7 @@ each point.
 Candidates are the velocities, the factors of their rates, and the factors of the determinant of
 :math:`\eta, \dot\eta, \ddot\eta, \dots`, which every invariant linear function of the velocities
 divides (the extactic polynomial of Lagutinskii; Christopher, Llibre and Pereira 2007).
-Comes in: the rates of a constrained motion. Goes out: factors, each of which passed the test.
+Comes in: a motion. Goes out: factors, each of which passed the test.
 Read next: `coadjoint.prove.measures`.
 """
 
@@ -21,8 +21,8 @@ from functools import cached_property, reduce
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.element import remove_factor
-from coadjoint.exact.irreducible import divided_factors, numerator
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.exact.irreducible import find_factors, numerator
+from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import leading
 
 #: Terms of a polynomial that is factored, and symbols of the state in it: more may take minutes.
@@ -42,9 +42,9 @@ class InvariantFactors:
         allowed: The velocities that kept constraints give in terms of the others.
     """
 
-    def __init__(self, motion: ConstrainedRates, allowed: Mapping[str, Element]) -> None:
+    def __init__(self, motion: Motion, allowed: Mapping[str, Element]) -> None:
         self.motion, self.field, self.allowed = motion, motion.field, allowed
-        self.free = [n for n in motion.distribution.independent if n not in allowed]
+        self.free = [n for n in motion.fibre if n not in allowed]
 
     def short(self) -> list[Element]:
         """Those among the velocities and the factors of the common divisor of their rates."""
@@ -89,13 +89,13 @@ class InvariantFactors:
             return []
         divisor = reduce(lambda p, q: p.gcd(q), numerators)
         whole = self.field.from_polynomial(divisor)
-        return divided_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
+        return find_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
 
     def _factored(self) -> Iterator[Element]:
         """The factors of the rates and of the determinant."""
         for element in (*self.rates, *self._determinant()):
             if self._is_short(element):
-                yield from divided_factors(self.field, element)
+                yield from find_factors(self.field, element)
 
     def _is_short(self, element: Element) -> bool:
         """Whether a function can be factored in little time."""

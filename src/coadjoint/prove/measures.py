@@ -1,4 +1,4 @@
-r"""Invariant measures :math:`\rho(z)\, d\eta\, dz` of constrained motions, or that there is none.
+r"""Invariant measures :math:`\rho(z)\, d\eta\, dz` of motions, or that there is none.
 
 A density of the positions alone is invariant if :math:`d \ln\rho / dt = -\operatorname{div} X`.
 The left side is affine in the velocities, so the right side has to be, and with
@@ -20,7 +20,9 @@ Closed forms are looked for among products of powers of the minors of the matrix
 solves with, and of their factors (Chaplygin 1903: the ball; Veselov and Veselova 1986; Fedorov and
 Jovanovic 2004; Borisov and Mamaev 2002: bodies of revolution). Kozlov (1987) shows that most
 systems with constraints have none.
-Comes in: the rates of a constrained motion. Goes out: a claim.
+A Hamiltonian motion has the divergence of its bracket: zero where pairs are canonical (Liouville),
+and on the dual of a unimodular algebra.
+Comes in: a motion. Goes out: a claim.
 """
 
 from __future__ import annotations
@@ -32,19 +34,19 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
-from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import solve_with_right_side
 from coadjoint.exact.dense import determinant
-from coadjoint.exact.irreducible import divided_factors
+from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.linear import SpanModulo
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, described
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.findings import shown
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors
-from coadjoint.prove.samples import AtNumbers, Point, Samples, leading
+from coadjoint.prove.motion import Motion
+from coadjoint.prove.samples import Point, Samples, leading
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 #: Largest denominator of an exponent that is taken for one.
@@ -60,7 +62,7 @@ POINTS = 6
 LONGEST = 240
 #: Among what densities are looked for that depend on velocities.
 SEARCHED = (
-    "products of powers of invariant factors: velocities, the common divisor of rates of up to "
+    "products of powers of invariant factors: {}, the common divisor of rates of up to "
     f"{COMMON} terms, and in up to {SYMBOLS} symbols of the state and {TERMS} terms the factors of "
     "rates and of det(eta, d eta/dt, ...)"
 )
@@ -91,62 +93,22 @@ class Measure:
         motion: The motion; at given parameters all is much shorter.
     """
 
-    def __init__(self, motion: ConstrainedRates) -> None:
+    def __init__(self, motion: Motion) -> None:
         self.motion, self.field = motion, motion.field
-        found = motion.distribution
-        self.velocities = found.independent
-        self.positions = tuple(
-            name for name in found.frame.positions if name in motion.equations.setting.state
-        )
+        self.velocities, self.positions = motion.fibre, motion.positions
 
     @cached_property
     def divergence(self) -> Element:
-        """``div X`` in velocities and positions."""
-        equations, field = self.motion.equations, self.field
-        of_positions = [
-            field.derivative(rate, name)
-            for name, rate in self.motion.rates.items()
-            if name in self.positions
-        ]
-        parts = list[Element]()
-        for solve in equations.exact.solves:
-            matrix = [tuple(map(self.motion.closed, row)) for row in solve.matrix]
-            whole = determinant(tuple(matrix))
-            for place, name in enumerate(solve.names):
-                velocity = self._accelerated(name)
-                if velocity is None:
-                    continue
-                slopes = [self._slope(solve, n, velocity) for n in range(len(matrix))]
-                turned = tuple(
-                    (*row[:place], k, *row[place + 1 :])
-                    for row, k in zip(matrix, slopes, strict=True)
-                )
-                parts.append(determinant(turned) / whole)  # Cramer's rule
-        return field.sum([*of_positions, *parts])
-
-    def _slope(self, solve: Solve, row: int, velocity: str) -> Element:
-        """How ``(k - A x)_row`` changes with a velocity at fixed x.
-
-        A depends on velocities where a force is proportional to a reaction.
-        """
-        field, motion = self.field, self.motion
-        slope = field.derivative(motion.closed(solve.known[row]), velocity)
-        if solve.symmetric:
-            return slope
-        entries = (field.derivative(motion.closed(a), velocity) for a in solve.matrix[row])
-        pairs = zip(entries, solve.names, strict=True)
-        return slope - field.sum(a * motion.in_state(field[x]) for a, x in pairs if a != 0)
-
-    def _accelerated(self, name: str) -> str | None:
-        """The velocity of which a solved name is the rate; None for a multiplier."""
-        rates = self.motion.rates.items()
-        return next((v for v, rate in rates if rate == self.field[name]), None)
+        """``div X`` in velocities and positions, which is asked for only where it is known."""
+        found = self.motion.divergence
+        assert found is not None, self.motion.equations.route
+        return found
 
     @cached_property
     def allowed(self) -> Mapping[str, Element]:
         """The velocities that kept constraints give in terms of the others."""
         field, known = self.field, dict[str, Element]()
-        for _, residual in self.motion.distribution.kept:
+        for _, residual in self.motion.kept:
             value = field.substitute(self.motion.closed(residual), known)
             slopes = zip(self.velocities, field.gradient(value, self.velocities), strict=True)
             name, slope = next((n, s) for n, s in slopes if not field.is_zero(s))
@@ -175,6 +137,18 @@ class Measure:
             for name in self.free
         ]
         return [*along, *([Condition(REST, still)] if any(x != 0 for x in still) else [])]
+
+    @cached_property
+    def is_affine(self) -> bool:
+        """Whether positions move by rates that are affine in the velocities.
+
+        With constraints they do; a Hamiltonian that is not quadratic in momenta makes others. The
+        conditions above then are some of those that a density must satisfy, and not all.
+        """
+        field = self.field
+        rates = [field.substitute(self.motion.rates[n], self.allowed) for n in self.positions]
+        slopes = (s for rate in rates for s in field.gradient(rate, self.free))
+        return not any(x for slope in slopes for x in field.gradient(slope, self.free))
 
     @cached_property
     def curved(self) -> list[Element]:
@@ -226,8 +200,7 @@ class Measure:
     def minors(self) -> list[Element]:
         """Leading minors of the matrices of the solve, for each the large ones first."""
         found = list[Element]()
-        for solve in self.motion.equations.exact.solves:
-            matrix = [tuple(map(self.motion.closed, row)) for row in solve.matrix]
+        for matrix in self.motion.matrices:
             found += [
                 determinant(tuple(row[:size] for row in matrix[:size]))
                 for size in range(len(matrix), 0, -1)
@@ -270,13 +243,19 @@ def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]], prime: in
     return [(factors[n], x) for n, x in numbers.items()]
 
 
-def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
+def about_measure(motion: Motion) -> Iterator[Examined]:
     """Whether a measure is invariant: first with a density of the positions alone."""
+    if not motion.matrices and motion.divergence == 0:  # also of many unknowns
+        statement = f"an invariant measure: {_form(motion)}{motion.at_all_times}"
+        yield statement, "measure", lambda: [Measure(motion).divergence]
+        return
     numbers = _numbers(motion)
-    measure, samples = Measure(AtNumbers(motion, numbers)), Samples(motion, numbers)
-    coupled = max(len(solve.block) for solve in motion.equations.exact.solves)
+    measure, samples = Measure(motion.at(numbers)), Samples(motion, numbers)
+    coupled = max(map(len, motion.matrices), default=0)
     obstacle = samples.obstacle
-    if coupled > SIZE:
+    if motion.divergence is None:
+        obstacle = "the rates rest on velocities that the kernel solves for"
+    elif coupled > SIZE:
         obstacle = f"{coupled} unknowns are solved for together, more than {SIZE}"
     if obstacle:
         skipped = Discovery("no search")
@@ -285,16 +264,13 @@ def about_measure(motion: ConstrainedRates) -> Iterator[Examined]:
     points = list(islice(samples.points(), POINTS))
     assert points, "a motion without an obstacle has points"
     refusal = _refusal(motion, measure, samples, points[0])
-    if refusal is None:
-        yield _of_positions(motion, measure, samples, points)
-        return
-    yield refusal
-    yield _of_velocities(motion, measure, samples)
+    if refusal is not None:
+        yield refusal
+    found = _of_positions(motion, measure, samples, points) if refusal is None else None
+    yield found or _of_velocities(motion, measure, samples)
 
 
-def _refusal(
-    motion: ConstrainedRates, measure: Measure, samples: Samples, point: Point
-) -> Examined | None:
+def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -> Examined | None:
     """That there is no density of the positions alone; None where nothing speaks against one."""
     moved = [
         v.name for v in motion.equations.spec.state if set(v.components) & {*measure.positions}
@@ -304,9 +280,13 @@ def _refusal(
         f"no measure rho {_form(motion)} with {density} is invariant on any open set of states"
         f"{_where(samples)}{_generic(motion)}"
     )
-    if any(point.value(second) for second in measure.curved):
+    if not moved and (value := point.value(measure.divergence)):
+        proof = Decision(Verdict.PROVED, f"{value} at a random point modulo {samples.prime}")
+        shown_text = shown(motion.field, Measure(motion).divergence)
+        return f"{none}: div X{shown_text}", "measure", lambda: proof
+    if measure.is_affine and any(point.value(second) for second in measure.curved):
         decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
-        return f"{none}: div X is not affine in the velocities", "measure", lambda: decision
+        return f"{none}: div X is not affine in {motion.fibre_word}", "measure", lambda: decision
     contradiction = measure.contradiction(point)
     if contradiction is None:
         return None
@@ -324,7 +304,7 @@ def _refusal(
 
 
 def _is_certain(
-    motion: ConstrainedRates,
+    motion: Motion,
     measure: Measure,
     samples: Samples,
     found: Sequence[Condition],
@@ -342,12 +322,16 @@ def _is_certain(
 
 
 def _of_positions(
-    motion: ConstrainedRates, measure: Measure, samples: Samples, points: Sequence[Point]
-) -> Examined:
-    """A density of the positions alone, as a formula if there is one."""
+    motion: Motion, measure: Measure, samples: Samples, points: Sequence[Point]
+) -> Examined | None:
+    """A density of the positions alone, as a formula if there is one.
+
+    None where the conditions do not show that there is one: where they are not all, and where they
+    were looked at for one value of the inputs.
+    """
     powers = measure.exponents(_factors_of_minors(motion, measure), points)
     found = None if powers is None else _stated(motion, powers)
-    if found is not None:
+    if found is not None or not measure.is_affine or motion.setting.driving:
         return found
     search = Discovery(
         f"ranks of brackets at a random point modulo {samples.prime}",
@@ -362,7 +346,7 @@ def _of_positions(
     return statement, "measure", lambda: search
 
 
-def _of_velocities(motion: ConstrainedRates, measure: Measure, samples: Samples) -> Examined:
+def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examined:
     """A density that depends on velocities: a product of powers of invariant factors."""
     short, tried = InvariantFactors(measure.motion, measure.allowed), list[Element]()
     if short.short() or short.all():
@@ -375,16 +359,17 @@ def _of_velocities(motion: ConstrainedRates, measure: Measure, samples: Samples)
             if found is not None:
                 return found
     names = ", ".join(described(motion.field, factor) for factor in tried)
-    text = f" that is a product of powers of {names}" if names else " that depends on velocities"
-    ended = Discovery(SEARCHED, _generic(motion).lstrip(", "))
+    word = motion.fibre_word
+    text = f" that is a product of powers of {names}" if names else f" that depends on {word}"
+    ended = Discovery(SEARCHED.format(word), _generic(motion).lstrip(", "))
     return f"no invariant measure was found with a density{text}", "measure", lambda: ended
 
 
-def _stated(motion: ConstrainedRates, powers: Powers) -> Examined | None:
+def _stated(motion: Motion, powers: Powers) -> Examined | None:
     """A measure, on vectors of any length if it can be; None if it is refuted."""
     defect, samples = [Measure(motion).defect(powers)], Samples(motion)
     finite = ", where its density is finite" if any(x < 0 for _, x in powers) else ""
-    written = f"{_written(motion, powers)}{_form(motion)}"
+    written = f"{_written(motion, powers)}{_form(motion)}{motion.at_all_times}"
     proof = decide_zero(defect, motion.field, motion.where)
     if proof.verdict is Verdict.PROVED:
         return f"an invariant measure{finite}: {written}", "measure", lambda: proof
@@ -398,9 +383,10 @@ def _stated(motion: ConstrainedRates, powers: Powers) -> Examined | None:
     return statement, "measure", lambda: seen
 
 
-def _generic(motion: ConstrainedRates) -> str:
+def _generic(motion: Motion) -> str:
     """The scope of what was found at random parameters."""
-    return ", for almost all parameters" if motion.equations.setting.parameters else ""
+    almost = ", for almost all parameters" if motion.setting.parameters else ""
+    return almost + motion.at_all_times
 
 
 def _where(samples: Samples) -> str:
@@ -409,7 +395,7 @@ def _where(samples: Samples) -> str:
     return f" where {', '.join(lengths)}" if lengths else ""
 
 
-def _numbers(motion: ConstrainedRates) -> dict[str, Fraction]:
+def _numbers(motion: Motion) -> dict[str, Fraction]:
     """Numbers for the parameters, without relations among them; the square roots exist."""
     for seed in range(SEEDS):
         source = random.Random(seed)  # noqa: S311 (not for secrets)
@@ -420,7 +406,7 @@ def _numbers(motion: ConstrainedRates) -> dict[str, Fraction]:
     return numbers
 
 
-def _factors_of_minors(motion: ConstrainedRates, measure: Measure) -> list[Element]:
+def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     """The factors of the minors of the mass matrix that depend on positions.
 
     With numbers for the parameters it shows at once whether there are factors; the others are not
@@ -428,8 +414,8 @@ def _factors_of_minors(motion: ConstrainedRates, measure: Measure) -> list[Eleme
     """
     whole, found = Measure(motion), list[Element]()
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
-        reducible = len(divided_factors(measure.field, short)) > 1
-        own = divided_factors(measure.field, minor, found) if reducible else [minor]
+        reducible = len(find_factors(measure.field, short)) > 1
+        own = find_factors(measure.field, minor, found) if reducible else [minor]
         (written,) = motion.field.quotients(minor.combined())
         found = [*own, *(divisor for divisor, _ in written.divisors), *found]
     known = list[Element]()
@@ -441,18 +427,15 @@ def _factors_of_minors(motion: ConstrainedRates, measure: Measure) -> list[Eleme
     return known
 
 
-def _form(motion: ConstrainedRates) -> str:
+def _form(motion: Motion) -> str:
     """The volume: ``dOmega dGamma``."""
-    spec, found = motion.equations.spec, motion.distribution
-    moved = {*found.independent, *found.frame.positions}
-    names = [v.name for v in spec.state if set(v.components) <= moved]
-    kept = f" on {motion.where.text}" if found.kept else ""
-    return " ".join(f"d{name}" for name in names) + kept
+    kept = f" on {motion.where.text}" if motion.kept else ""
+    return " ".join(f"d{each.name}" for each in motion.spec.state) + kept
 
 
-def _written(motion: ConstrainedRates, powers: Powers) -> str:
+def _written(motion: Motion, powers: Powers) -> str:
     """A density in front of a volume; a long determinant goes by its name."""
-    text, velocities = "", {*motion.distribution.independent}
+    text, velocities = "", {*motion.fibre}
     for factor, exponent in powers:
         base = _name(motion, factor)
         if not base:
@@ -464,14 +447,12 @@ def _written(motion: ConstrainedRates, powers: Powers) -> str:
     return text
 
 
-def _name(motion: ConstrainedRates, factor: Element) -> str:
+def _name(motion: Motion, factor: Element) -> str:
     """The name of a determinant of the kernel's matrix that has too many terms to be shown."""
     if len(described(motion.field, factor)) <= SHOWN // 2:
         return ""
-    kept = motion.distribution.kept
-    for solve in motion.equations.exact.solves:
-        whole = determinant(tuple(tuple(map(motion.closed, row)) for row in solve.matrix))
-        if len(solve.block) == len(motion.distribution.independent) + len(kept) and whole == factor:
-            corner = "A^T" if solve.symmetric else "A^T + C"
-            return f"|det [[B^T M B, {corner}], [A, 0]]|" if kept else "det(B^T M B)"
+    for matrix in motion.matrices:
+        whole = len(motion.fibre) + len(motion.kept)
+        if len(matrix) == whole and determinant(tuple(matrix)) == factor:
+            return motion.determinant
     return ""

@@ -10,8 +10,8 @@ Theorem (Bloch, Krishnaprasad, Marsden and Murray 1996, momentum equation; Holm 
 
 where the reactions do no work. Noether's theorem keeps the momentum of a symmetry only if its
 field is in the distribution; Jellett's integral is such a momentum.
-Comes in: Equations with a distribution and declared sections. Goes out: claims for the certificate.
-Read next: `coadjoint.derive.mechanics.constrained` on sections.
+Comes in: a motion with declared sections. Goes out: claims for the certificate.
+Read next: `coadjoint.derive.mechanics.sections`.
 """
 
 from __future__ import annotations
@@ -21,17 +21,19 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.constrained import section_momenta, section_vector
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.frames import frame_of
+from coadjoint.derive.mechanics.sections import section_momenta, section_vector
 from coadjoint.exact import Element, element_text
-from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.exact.dense import dot
 from coadjoint.prove.findings import SHOWN
+from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.model import Section
 
 
-def about_momenta(motion: ConstrainedRates) -> Iterator[Examined]:
+def about_momenta(motion: Motion) -> Iterator[Examined]:
     """The momentum equation of every declared section."""
     for section in motion.equations.spec.sections:
         law = momentum_law(motion.equations, section)
@@ -44,14 +46,13 @@ def momentum_law(equations: Equations, section: Section) -> Element:
     A section that a kept constraint does not allow gains the work of its reaction.
     """
     found, setting = equations.distribution, equations.setting
-    assert found is not None, equations.route
-    field, frame = setting.field, found.frame
-    lagrangian, along = setting.lagrangian, section_vector(found, section)
+    field, frame, bound = setting.field, frame_of(setting), () if found is None else found.equations
+    lagrangian, along = setting.lagrangian, section_vector(setting, section)
     turned = frame.bracket(setting.elements(frame.velocities), along)
     momenta = mechanics(setting).momenta
     forces = external_forces(setting, frame.velocities)
-    reactions = setting.elements([each.reaction for each in found.equations])
-    worked = [field.sum(a * x for a, x in zip(row, along, strict=True)) for row in found.A]
+    reactions = setting.elements([each.reaction for each in bound])
+    worked = [dot(field.gradient(each.residual, frame.velocities), along) for each in bound]
     return field.sum(
         [
             frame.along(along, lagrangian),
@@ -63,7 +64,7 @@ def momentum_law(equations: Equations, section: Section) -> Element:
     )
 
 
-def _statement(motion: ConstrainedRates, section: Section, law: Element) -> str:
+def _statement(motion: Motion, section: Section, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     spec = motion.equations.spec
     closed = motion.field.normal(motion.equations.closed(law)).combined()
@@ -76,8 +77,8 @@ def _statement(motion: ConstrainedRates, section: Section, law: Element) -> str:
     return f"d{section.name}/dt = {text}"
 
 
-def _changes(motion: ConstrainedRates, section: Section, law: Element) -> Decision:
+def _changes(motion: Motion, section: Section, law: Element) -> Decision:
     """The rate of the momentum minus its law."""
-    momenta = dict(section_momenta(motion.distribution))
-    rest = motion.rate(momenta[section.name]) - motion.value(law)
+    momentum = dict(section_momenta(motion.setting))[section.name]
+    rest = motion.rate(momentum) - motion.in_state(law)
     return decide_zero([rest], motion.field, motion.where)

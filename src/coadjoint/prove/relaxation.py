@@ -23,7 +23,6 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.external import added_rates, metric
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, dot
-from coadjoint.prove.driven import changes_by_time, while_constant
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
@@ -31,7 +30,7 @@ from coadjoint.prove.zero import Examined, claimed_by
 
 
 def about_relaxation(first: Equations) -> Iterator[Examined]:
-    """The conditions, and the balance of the energy or the entropy."""
+    """The conditions, and the balance of the entropy; that of the energy is told of all motions."""
     spec, relaxation = first.spec, first.spec.relaxation
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if relaxation is None or energy is None or tensor is None:
@@ -54,9 +53,6 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
         if not spec.is_forced:
             law = ("dS/dt = <dS, G dS>: the entropy never falls", "conserved", known.entropy)
             claims.append(law)
-    elif not spec.is_forced and not changes_by_time(first):
-        text = "dh/dt = -<P dh, G P dh>: the energy never grows" + while_constant(first, [energy])
-        claims.append((text, "conserved", known.energy))
     claims.append((f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.added))
     yield from claimed_by(spec, (relaxation.table,), claims, first.setting.field)
 
@@ -88,11 +84,6 @@ class _Relaxed:
     def on_energy(self) -> tuple[Element, ...]:
         """``G dh``."""
         return apply(self.G, self._dh)
-
-    def energy(self) -> list[Element]:
-        """``dh/dt + <P dh, G P dh>``."""
-        lost = dot(self._free, apply(self.G, self._free))
-        return [rate + lost for rate in drift(self.first, self._energy)]
 
     def entropy(self) -> list[Element]:
         """``dS/dt - <dS, G dS>``."""

@@ -1,89 +1,203 @@
-r"""Time reversal: whether the motion runs back when its velocities are turned round.
+r"""Time reversal: whether the motion runs back when signs of the state are turned round.
 
-The map :math:`(\eta, z) \mapsto (-\eta, z)` takes a motion to its reverse if and only if
-accelerations are even and rates of positions odd in the velocities, and constraints that are kept
-hold on both sides. The kernel solves :math:`\mathcal{M}\,\dot\eta = k`, so that it is enough
-that k is even, and :math:`\mathcal{M}` where forces proportional to reactions make it depend on
-velocities. Dissipation, forces linear in velocities and moving constraints break it.
-Comes in: rates along a constrained motion. Goes out: a finding for the certificate.
+The map :math:`(\eta, z) \mapsto (-\eta, z)` of velocities or momenta takes a motion to its reverse
+if and only if their rates are even and rates of positions odd in them, and constraints that are
+kept hold on both sides. With constraints the kernel solves :math:`\mathcal{M}\,\dot\eta = k`, so
+that it is enough that k is even, and :math:`\mathcal{M}` where forces proportional to reactions
+make it depend on velocities. Dissipation, forces linear in velocities and moving constraints break
+it. Time and the rates of inputs turn their signs as well.
+
+Where that map does not reverse a free motion, another change of signs S may: :math:`f(Sx) = -S
+f(x)`. Its signs :math:`(-1)^{s_k}` solve linear equations modulo 2, one for each monomial
+:math:`x^e` of each rate :math:`f_i`, namely :math:`\sum_k e_k s_k = s_i + 1`; where these
+contradict each other and rates are polynomials, there is none.
+Comes in: a motion. Goes out: a finding for the certificate.
 Read next: `coadjoint.prove.constrained`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+from coadjoint.derive.mechanics.driving import turned_by_time
 from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
 from coadjoint.exact import Element
+from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.findings import finding, first_nonzero, for_parameters, nonzero_at_a_point
-from coadjoint.prove.zero import Examined
+from coadjoint.prove.motion import Motion
+from coadjoint.prove.zero import Decision, Examined, decide_zero
+
+#: An equation modulo 2: the places of the unknowns, and the right side.
+Parity = tuple[frozenset[str], int]
 
 
-def about_reversal(motion: ConstrainedRates) -> Iterator[Examined]:
+def about_reversal(motion: Motion) -> Iterator[Examined]:
     """Whether the motion is time reversible."""
     if all(solve.symmetric for solve in motion.equations.exact.solves):
         values = reversal_defects(motion)
         name, decision = first_nonzero(values, motion.field, motion.where)
-        if name and motion.distribution.kept:  # a force along a constraint is lost in its reaction
+        if name and motion.kept:  # a force along a constraint is lost in its reaction
             values = rate_defects(motion)
             name, decision = first_nonzero(values, motion.field, motion.where)
     else:  # normal forms of accelerations with friction take minutes
         values = rate_defects(motion)
         name, decision = nonzero_at_a_point(values, motion.field, motion.where)
-    names = [v.name for v in motion.equations.spec.state if v.role == "velocity"]
-    turned = ", ".join(f"{name} -> -{name}" for name in names)
-    scope = for_parameters(motion.equations.setting, [values.get(name, motion.field.zero)])
+    if name and motion.is_explicit and not isinstance(motion, ConstrainedRates):
+        found = _other_signs(motion)
+        if found is not None:
+            yield found
+            return
+    scope = for_parameters(motion.setting, [values.get(name, motion.field.zero)])
     yield finding(
         "transformation",
         decision,
-        f"the motion is time reversible: it runs back with {turned}",
-        f"the motion is not time reversible by {turned}{scope}: {name}",
+        f"the motion is time reversible: it runs back with {_turned(motion, motion.fibre)}",
+        f"the motion is not time reversible by {_turned(motion, motion.fibre)}{scope}: {name}",
     )
 
 
-def rate_defects(motion: ConstrainedRates) -> dict[str, Element]:
+def _turned(motion: Motion, names: Sequence[str]) -> str:
+    """The map in words: ``Pi -> -Pi, t -> -t``."""
+    shown = list[str]()
+    for each in motion.spec.state:
+        turned = [name for name in each.components if name in names]
+        shown += [each.name] if len(turned) == len(each.components) else turned
+    shown += turned_by_time(motion.setting)
+    text = ", ".join(f"{name} -> -{name}" for name in shown)
+    return text + " and inputs run backwards" * bool(motion.setting.inputs)
+
+
+def rate_defects(motion: Motion) -> dict[str, Element]:
     """What is zero if and only if the motion is reversible: of accelerations, not of forces."""
-    field, found = motion.field, motion.distribution
-    back = {name: -field[name] for name in found.independent}
+    field, back = motion.field, _back(motion)
     values = {}
     for name in motion.rates:
         rate = motion.rate(field[name])
         turned = field.substitute(rate, back)
-        parity = "even" if name in back else "odd"
-        defect = rate - turned if name in back else rate + turned
+        parity = "even" if name in motion.fibre else "odd"
+        defect = rate - turned if name in motion.fibre else rate + turned
         values[f"{rate_name(name)} is not {parity} in them"] = defect
+    for name in motion.fibre if motion.solved_velocities else ():
+        momentum = motion.in_state(field[name])
+        values[f"{name} is not odd in velocities"] = momentum + field.substitute(momentum, back)
     return values | _kept_defects(motion)
 
 
-def reversal_defects(motion: ConstrainedRates) -> dict[str, Element]:
+def reversal_defects(motion: Motion) -> dict[str, Element]:
     """What is zero if the motion is reversible, by what it is."""
-    field, equations, found = motion.field, motion.equations, motion.distribution
-    back = {name: -field[name] for name in found.independent}
+    if not isinstance(motion, ConstrainedRates):
+        return rate_defects(motion)
+    field, back = motion.field, _back(motion)
     values = {}
-    for solve in equations.exact.solves:
+    for solve in motion.equations.exact.solves:
         for name, known, row in zip(solve.names, solve.known, solve.matrix, strict=True):
             shares = dict(zip(solve.names, row, strict=True)) if not solve.symmetric else {}
             parts = {"": known} | {
-                f", as far as it is a multiple of {found.kept[n][0].reaction},": shares[unknown]
-                for n in range(len(found.kept))
+                f", as far as it is a multiple of {motion.kept[n][0].reaction},": shares[unknown]
+                for n in range(len(motion.kept))
                 if (unknown := multiplier_name(n)) in shares
             }
             for which, part in parts.items():
-                force = equations.closed(part)
+                force = motion.equations.closed(part)
                 defect = force - field.substitute(force, back)
                 values[f"the force of {name}{which} is not even in them"] = defect
     for name, rate in motion.rates.items():
-        if name not in back:
+        if name not in motion.fibre:
             values[f"{rate_name(name)} is not odd in them"] = rate + field.substitute(rate, back)
     return values | _kept_defects(motion)
 
 
-def _kept_defects(motion: ConstrainedRates) -> dict[str, Element]:
+def _kept_defects(motion: Motion) -> dict[str, Element]:
     """What is zero if kept constraints hold on both sides."""
-    field, found = motion.field, motion.distribution
-    back = {name: -field[name] for name in found.independent}
+    field, back = motion.field, _back(motion)
     return {
         f"{equation.name} is not odd in them": residual + field.substitute(residual, back)
-        for equation, residual in found.kept
+        for equation, residual in motion.kept
     }
+
+
+def _back(motion: Motion) -> dict[str, Element]:
+    """The map: velocities or momenta turned round, and time."""
+    names = (*motion.fibre, *motion.solved_velocities, *turned_by_time(motion.setting))
+    return {name: -motion.field[name] for name in names}
+
+
+# -- other signs ----------------------------------------------------------------------------------
+
+
+def _other_signs(motion: Motion) -> Examined | None:
+    """Another change of signs that reverses a free motion; or that none does; else None."""
+    field, time = motion.field, {*turned_by_time(motion.setting)}
+    parities, is_complete = _parities(motion, time)
+    signs = _solved(parities, motion.setting.state)
+    if signs is None:
+        if not is_complete:
+            return None
+        scope = for_parameters(motion.setting, motion.rates.values())
+        text = f"no change of signs of the state takes the motion to its reverse{scope}"
+        proof = Decision(Verdict.PROVED, "parities of the monomials of the rates, modulo 2")
+        return text, "transformation", lambda: proof
+    back = {name: -field[name] for name in (*signs, *time)}
+    defects = [
+        (-rate if name in signs else rate) + field.substitute(rate, back)
+        for name, rate in motion.rates.items()
+    ]
+    found = decide_zero(defects, field)
+    if found.verdict is not Verdict.PROVED:
+        return None
+    text = f"the motion is time reversible: it runs back with {_turned(motion, signs)}"
+    return text, "transformation", lambda: found
+
+
+def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
+    """The equations of the signs, and whether every solution must satisfy them.
+
+    Arguments of functions, and denominators, may keep their sign or turn it; only what keeps it is
+    looked for, so that a contradiction says nothing where there are such.
+    """
+    field, state = motion.field, {*motion.setting.state}
+    found, is_complete = list[Parity](), True
+    for name, rate in motion.rates.items():
+        if rate == 0:
+            continue
+        (written,) = field.quotients(field.normal(rate).combined())
+        inside = [d for d, _ in written.divisors if field.reach(d) & (state | time)]
+        called = field.functions_in(rate)
+        inside += [a for g in called if field.reach(a := field.adjoined[g].argument) & state]
+        is_complete &= not inside
+        for powers in (dict(each.powers) for each in written.monomials):
+            odd = frozenset(n for n, e in powers.items() if e % 2)
+            right = (1 + len(odd & time)) % 2
+            found.append(((odd & state) ^ {name}, right))
+        for element in inside:
+            for quotient in field.quotients(field.normal(element).combined()):
+                for powers in (dict(each.powers) for each in quotient.monomials):
+                    odd = frozenset(n for n, e in powers.items() if e % 2)
+                    found.append((odd & state, len(odd & time) % 2))
+    return found, is_complete
+
+
+def _solved(parities: Sequence[Parity], state: Sequence[str]) -> list[str] | None:
+    """Names whose signs turn, by elimination modulo 2; None where there are none.
+
+    >>> _solved([(frozenset("ab"), 1), (frozenset("a"), 0)], "ab")
+    ['b']
+    >>> _solved([(frozenset("a"), 1), (frozenset("a"), 0)], "a") is None
+    True
+    """
+    pivots: dict[str, Parity] = {}
+    for names, right in parities:
+        for pivot, (others, value) in pivots.items():
+            if pivot in names:
+                names, right = names ^ others, right ^ value
+        if not names and right:
+            return None
+        if names:
+            new = min(names, key=list(state).index)
+            pivots = {
+                pivot: (rest ^ names, value ^ right) if new in rest else (rest, value)
+                for pivot, (rest, value) in pivots.items()
+            }
+            pivots[new] = (names, right)
+    return [name for name in state if name in pivots and pivots[name][1]]

@@ -1,6 +1,6 @@
-r"""Random points of a constrained motion modulo a prime, and the motion there.
+r"""Random points of a motion modulo a prime, and the motion there.
 
-Comes in: the rates of a constrained motion. Goes out: points at which its constraints hold and its
+Comes in: a motion. Goes out: points at which its constraints hold and its
 unit vectors are of length one, with the values of any function and of its rate.
 
 A point is a homomorphism from the functions of the motion to the integers modulo the prime: what is
@@ -24,13 +24,12 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import islice
 
-from coadjoint.derive.mechanics.kinematics import kept_rows
 from coadjoint.exact import Element
 from coadjoint.exact.linear import PRIME, echelon_modulo, primes
 from coadjoint.exact.residues import Residue, residue
-from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
 from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.motion import Motion
 from coadjoint.spec import Variable
 
 #: Why there are no points where no prime has all that is needed.
@@ -82,7 +81,7 @@ class Point:
 
 
 class Samples:
-    """Points of a constrained motion modulo a prime, the same in every run.
+    """Points of a motion modulo a prime, the same in every run.
 
     Args:
         motion: The motion.
@@ -95,12 +94,13 @@ class Samples:
 
     def __init__(
         self,
-        motion: ConstrainedRates,
+        motion: Motion,
         parameters: Mapping[str, Fraction] | None = None,
         others: Iterable[Element] = (),
     ) -> None:
         self.motion, self.field = motion, motion.field
-        self.state = motion.equations.setting.state
+        self.state = motion.setting.state
+        self.moving = (*self.state, *motion.setting.driving)
         self.prime, self._source = PRIME, random.Random(3)  # noqa: S311 (not for secrets)
         self._given, self._others = parameters, tuple(others)
         self._parameters = Values()
@@ -126,7 +126,7 @@ class Samples:
     def functions(self) -> Functions:
         """The elementary functions of the motion, with what is known of relations between them."""
         parameters = self.motion.equations.setting.parameters
-        return Functions(self.field, self._evaluated, self.state, parameters, self._given or {})
+        return Functions(self.field, self._evaluated, self.moving, parameters, self._given or {})
 
     @cached_property
     def _evaluated(self) -> list[Element]:
@@ -232,10 +232,10 @@ class Samples:
         Raises:
             ZeroDivisionError: It is a pole, or a square root is missing there.
         """
-        values = self._parameters | {name: self._draw() for name in self.state}
+        values = self._parameters | {name: self._draw() for name in self.moving}
         for variable in self.unit:
             values |= dict(zip(variable.components, self._on_sphere(variable), strict=True))
-        velocities = self.motion.distribution.independent
+        velocities = self.motion.fibre
         call = FunctionsAtPoint(self._experiment)
         call.learn({name: x for name, x in values.items() if name not in velocities})
         point = Point(self, values, call)
@@ -263,7 +263,7 @@ class Samples:
             ZeroDivisionError: The rank of the constraints drops here, and velocities would be free
                 that are not so elsewhere.
         """
-        names = self.motion.distribution.independent
+        names = self.motion.fibre
         rows = [
             {n: v for n, entry in enumerate(row) if (v := point.value(entry))} for row in self._kept
         ]
@@ -282,30 +282,13 @@ class Samples:
 
     @cached_property
     def _kept(self) -> list[tuple[Element, ...]]:
-        return kept_rows(self.motion.distribution)
+        return self.motion.kept_rows
 
     @cached_property
     def _needed(self) -> list[tuple[str, Element]]:
         """The definitions on which the rates rest, in order."""
         equations = self.motion.equations
         return equations.definitions_of(equations.exact.rates)
-
-
-class AtNumbers(ConstrainedRates):
-    """The rates of a motion at given parameters, which are much shorter.
-
-    Args:
-        motion: The motion.
-        numbers: Values of all parameters.
-    """
-
-    def __init__(self, motion: ConstrainedRates, numbers: Mapping[str, Fraction]) -> None:
-        super().__init__(motion.equations)
-        self._numbers = {name: self.field.number(x) for name, x in numbers.items()}
-
-    def closed(self, element: Element) -> Element:
-        """An element without parameters."""
-        return self.field.substitute(super().closed(element), self._numbers)
 
 
 def leading(element: Element) -> Fraction:

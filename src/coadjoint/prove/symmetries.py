@@ -11,12 +11,12 @@ Source:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Quantity, entries
-from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.driving import explicit, turned_by_time
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
@@ -24,38 +24,37 @@ from coadjoint.poisson.momentum_maps import MomentumMap
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import drift
-from coadjoint.prove.zero import Examined, claimed_by, decide_zero
+from coadjoint.prove.motion import Motion
+from coadjoint.prove.zero import Decision, Examined, claimed_by, decide_zero
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
 
 #: Entries of a cocycle that a statement shows.
 SHOWN = 6
 
 
-def about_symmetries(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Examined]:
-    """All claims about symmetries.
-
-    Args:
-        first: The emitted motion.
-        known: Values of the energy, the observables and the momentum maps, which claims may use.
-    """
-    spec, field = first.spec, first.setting.field
+def about_symmetries(motion: Motion) -> Iterator[Examined]:
+    """Claims about actions, their momentum maps, and brackets."""
+    first, spec, field, known = motion.equations, motion.spec, motion.field, motion.emitted
     energy = first.exact.energy
-    if first.exact.poisson_tensor is not None:
-        for symmetry in spec.symmetries:
-            J = momentum_map(first, symmetry)
-            of_map = [*_about_map(first, symmetry, J)]
-            if energy is not None:
-                of_map += _noether(first, symmetry, J, first.closed(energy))
-            yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
+    for symmetry in spec.symmetries:
+        J = momentum_map(first, symmetry)
+        of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
-            yield from _about_integrals(first, known)
-        for place, claim in enumerate(spec.brackets):
-            text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
-            statement = f"{text} = {claim.value.in_one_line}"
-            claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
-            yield from claimed_by(spec, ("claims", "brackets", place), claimed, field)
-    for transformation in spec.transformations:
-        yield from _about_transformation(first, transformation, known)
+            of_map += _noether(first, symmetry, J, first.closed(energy))
+        yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
+    if energy is not None:
+        yield from _about_integrals(first, known)
+    for place, claim in enumerate(spec.brackets):
+        text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
+        statement = f"{text} = {claim.value.in_one_line}"
+        claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
+        yield from claimed_by(spec, ("claims", "brackets", place), claimed, field)
+
+
+def about_transformations(motion: Motion) -> Iterator[Examined]:
+    """Claims about maps of the state."""
+    for transformation in motion.spec.transformations:
+        yield from _about_transformation(motion, transformation)
 
 
 # -- momentum maps --------------------------------------------------------------------------------
@@ -124,7 +123,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
     if first.spec.algebra is not None or first.spec.is_driven:
         return
     for place, claim in enumerate(first.spec.conserved):
-        if claim.where or claim.formula.in_one_line == "energy":
+        if claim.where or claim.everywhere == "energy":
             continue
         flows = _flows(first, claim.formula, known)
         statement = (
@@ -199,77 +198,58 @@ def _claimed_bracket(
     return [a - b for a, b in zip(brackets, parts(claim.value), strict=True)]
 
 
-def _about_transformation(
-    first: Equations, transformation: Transformation, known: Mapping[str, Quantity]
-) -> Iterator[Examined]:
+def _about_transformation(motion: Motion, transformation: Transformation) -> Iterator[Examined]:
     """That a map keeps the motion, and what it does to observables."""
-    name = transformation.name
+    spec, name = motion.spec, transformation.name
     goal = "its reverse" if transformation.reverses_time else "itself"
-    key, kind, field = ("transformations", name), "transformation", first.setting.field
-    moved = (
-        f"{name} takes the motion to {goal}",
-        kind,
-        partial(_motion_defects, first, transformation),
-    )
-    yield from claimed_by(first.spec, key, [moved], field)
+    key, kind, field = ("transformations", name), "transformation", motion.field
+    moved = partial(_motion_defects, motion, transformation)
+    examined = [(f"{name} takes the motion to {goal}", kind, partial(_decide_on, motion, moved))]
+    yield from claimed_by(spec, key, examined, field)
     for observable, formula in transformation.exchanges.items():
-        exchanged = (
-            f"{name} takes {observable} to {formula.in_one_line}",
-            kind,
-            partial(_exchange_defects, first, transformation, observable, formula, known),
-        )
-        yield from claimed_by(first.spec, (*key, "exchanges", observable), [exchanged], field)
+        exchanged = partial(_exchange_defects, motion, transformation, observable, formula)
+        statement = f"{name} takes {observable} to {formula.in_one_line}"
+        examined = [(statement, kind, partial(_decide_on, motion, exchanged))]
+        yield from claimed_by(spec, (*key, "exchanges", observable), examined, field)
 
 
-def _map(first: Equations, transformation: Transformation) -> dict[str, Element]:
-    """What each component of the state becomes."""
-    setting = first.setting
-    found = {name: setting.field[name] for name in setting.state}
+def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision:
+    """Whether defects are zero where the motion is."""
+    return decide_zero(defects(), motion.field, motion.where)
+
+
+def _moved(motion: Motion, transformation: Transformation) -> dict[str, Element]:
+    """What becomes of each component of the state, and of time and rates of inputs."""
+    setting, field = motion.setting, motion.field
+    found = {name: field[name] for name in setting.state}
+    if transformation.reverses_time:
+        found |= {name: -field[name] for name in turned_by_time(setting)}
     return found | moved_components(setting, transformation.map)
 
 
-def _time_after(first: Equations, transformation: Transformation) -> dict[str, Element]:
-    """Time and rates of inputs after a map: where it reverses time, minus what they are before.
-
-    The rate of a rate keeps its value.
-    """
-    setting = first.setting
-    inputs = {each.name: each for each in setting.spec.inputs}
-    first_ones = inputs.keys() - {each.rate for each in inputs.values()}
-    turned = list(setting.time)
-    for name in sorted(first_ones):
-        chain = [name]
-        while inputs[chain[-1]].rate:
-            chain.append(inputs[chain[-1]].rate)
-        turned += [component for rate in chain[1::2] for component in inputs[rate].components]
-    return {t: -setting.field[t] for t in turned if transformation.reverses_time}
-
-
-def _motion_defects(first: Equations, transformation: Transformation) -> list[Element]:
-    """``D phi . X + dphi/dt -+ X o phi``."""
-    setting, phi = first.setting, _map(first, transformation)
-    field, moved = setting.field, phi | _time_after(first, transformation)
-    rates = tuple(map(first.closed, first.exact.rates))
-    motion = VectorField(field, first.setting.state, rates)
+def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:
+    """``D phi . X + dphi/dt -+ X o phi``, and the kept constraints after the map."""
+    setting, field, phi = motion.setting, motion.field, _moved(motion, transformation)
+    rates = motion.written_rates
+    whole = VectorField(field, setting.state, tuple(rates.values()))
     sign = -1 if transformation.reverses_time else 1
     return [
-        motion.derivative(phi[name])
-        + explicit(setting, phi[name])
-        - sign * field.substitute(rate, moved)
-        for name, rate in zip(first.setting.state, rates, strict=True)
+        *(
+            whole.derivative(phi[name])
+            + explicit(setting, phi[name])
+            - sign * field.substitute(rate, phi)
+            for name, rate in rates.items()
+        ),
+        *(field.substitute(residual, phi) for _, residual in motion.kept),
     ]
 
 
 def _exchange_defects(
-    first: Equations,
-    transformation: Transformation,
-    observable: str,
-    formula: Formula,
-    known: Mapping[str, Quantity],
+    motion: Motion, transformation: Transformation, observable: str, formula: Formula
 ) -> list[Element]:
     """``F o phi`` minus what it should be."""
-    field = first.setting.field
-    phi = _map(first, transformation) | _time_after(first, transformation)
-    moved = [field.substitute(first.closed(part), phi) for part in entries(known[observable])]
-    expected = [first.closed(part) for part in first.setting.components(formula, known)]
+    field, known = motion.field, motion.emitted
+    phi, parts = _moved(motion, transformation), entries(known[observable])
+    moved = [field.substitute(motion.written(part), phi) for part in parts]
+    expected = map(motion.written, motion.setting.components(formula, known))
     return [a - b for a, b in zip(moved, expected, strict=True)]

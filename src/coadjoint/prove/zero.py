@@ -62,6 +62,7 @@ class Decision:
         defect: Its value there.
         accepted: Whether the spec that makes this claim accepts numerical support; None for a
             claim of the engine, which never does.
+        leaves: Whether not the claimed function has a rate there, but the relations of its set.
     """
 
     verdict: Verdict
@@ -69,6 +70,7 @@ class Decision:
     point: dict[str, str] = field(default_factory=dict)
     defect: str = ""
     accepted: bool | None = None
+    leaves: bool = False
 
 
 @dataclass(frozen=True)
@@ -97,14 +99,15 @@ def make_entry(
     if isinstance(found, Discovery):
         return Finding(statement, kind, found.method, found.scope, found.error, seconds)
     return Claim(
-        statement,
-        kind,
-        found.verdict,
-        found.method,
-        seconds,
-        found.point,
-        found.defect,
-        found.accepted,
+        statement=statement,
+        kind=kind,
+        verdict=found.verdict,
+        method=found.method,
+        seconds=seconds,
+        counterexample=found.point,
+        defect=found.defect,
+        accepted=found.accepted,
+        leaves=found.leaves,
     )
 
 

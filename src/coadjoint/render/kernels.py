@@ -199,7 +199,9 @@ def _wrapped(lines: Iterable[str]) -> list[str]:
 
 def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
     """The components of an input array, row by row from ``first`` on."""
-    named = [(name, quantity.unit) for quantity in quantities for name in quantity.components]
+    named = [
+        (name, quantity.unit_of(name)) for quantity in quantities for name in quantity.components
+    ]
     return [Row(index, name, unit) for index, (name, unit) in enumerate(named, first)]
 
 

@@ -125,7 +125,7 @@ class Constraints:
         A velocity that is 0 has no roundings of its own size; it has those of its fellows.
         """
         quantities = self.system.STATE.values()
-        units = np.repeat([q.unit for q in quantities], [len(q.components) for q in quantities])
+        units = np.array([q.unit_of(name) for q in quantities for name in q.components])
         sizes = np.array([np.abs(state[units == unit]).max() for unit in units])
         steps = 2.0**-20 * np.where(sizes > 0, sizes, 1.0)
         columns = self._residuals(state[:, None] + np.diag(steps))

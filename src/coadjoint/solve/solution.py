@@ -90,7 +90,7 @@ class Solution:
     def unit(self, name: str) -> str:
         """The unit of a quantity or component; ``"1"`` if dimensionless, ``""`` if not stated."""
         return next(
-            str(quantities.of_component(name).unit)
+            str(quantities.of_component(name).unit_of(name))
             for quantities, _ in self._tables
             if name in quantities or name in quantities.components
         )

@@ -6,7 +6,8 @@ missing and how to write it. Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
@@ -67,6 +68,21 @@ def check_tables(source: Source, file: Any) -> None:
         )
 
 
+@dataclass(frozen=True)
+class _Obstacle:
+    """Why a route cannot be followed.
+
+    Attributes:
+        problem: A predicate, such as ``has no Lagrangian``.
+        missing: Tables of which one would remove it.
+        cure: What would remove it, as a clause; "" if nothing else does.
+    """
+
+    problem: str
+    missing: tuple[str, ...] = ()
+    cure: str = ""
+
+
 def check_routes(reading: Reading) -> None:
     """Each route starts from tables that are there, and every table is used by a route.
 
@@ -74,42 +90,47 @@ def check_routes(reading: Reading) -> None:
         SpecError: Something is missing for a route, or is used by none.
     """
     file = reading.file
+    _check_bare(reading)
     for place, route in enumerate(file.routes):
-        problem = _find_obstacle(file, route)
-        if problem:
+        obstacles = list(_find_obstacles(file, route))
+        if obstacles:
             others = _list_fitting(file)
             raise reading.source.fault(
                 ("routes", place),
-                f"the route {route} {problem}",
+                f"the route {route} {obstacles[0].problem}",
                 found=route,
                 expected=f"one of {listed(others)}" if others else "a route that fits the tables",
-                hint=_advise(reading, route, others),
+                hint=_advise(reading, obstacles, others),
             )
-        if not ROUTES[route].needs_energy:
-            _check_moved(reading.source, file)
     _check_first(reading.source, file)
     _check_use(reading.source, file)
 
 
-def _find_obstacle(file: Any, route: str) -> str:
-    """Why a route cannot be followed with the tables of a spec, as a predicate; "" if it can."""
+def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
+    """Why a route cannot be followed with the tables of a spec."""
     start, kinds = ROUTES[route], kinds_of(file)
     if not set(start.kinds) & set(kinds):
-        return f"starts from {' or '.join(_KINDS[kind] for kind in start.kinds)}, which is missing"
+        starts = " or ".join(_KINDS[kind] for kind in start.kinds)
+        yield _Obstacle(f"starts from {starts}, which is missing")
     if start.table and not getattr(file, start.table):
-        return f"has no table [{start.table}]"
+        yield _Obstacle(f"has no table [{start.table}]", (start.table,))
     if not start.takes_driving and (file.inputs or file.time):
-        return "knows neither inputs nor time"
-    if _lacks_bracket(file, route):
-        return "knows no bracket of coordinates with velocities or momenta"
+        yield _Obstacle("knows neither inputs nor time")
     energies = energies_of(route, kinds)
-    if start.needs_energy and energies and not any(getattr(file, each) for each in energies):
-        names = [f"a {each.title()}" for each in energies]
-        return f"has neither {' nor '.join(names)}" if len(names) > 1 else f"has no {names[0][2:]}"
+    if not start.needs_energy:
+        if not _is_bare(file) and kinds == ("configuration",):
+            yield _Obstacle(
+                "knows no bracket of coordinates with velocities or momenta",
+                cure="declare the momenta as coordinates, with [poisson] and "
+                'canonical = [["q", "p"]]',
+            )
+    elif energies and not any(getattr(file, each) for each in energies):
+        names = [each.title() for each in energies]
+        one_of = f"no {names[0]}" if len(names) == 1 else f"neither a {' nor a '.join(names)}"
+        yield _Obstacle(f"has {one_of}", energies)
     for table in TABLES:
         if table.acts and getattr(file, table.key) and table.key not in start.options:
-            return f"knows no {table.key}"
-    return ""
+            yield _Obstacle(f"knows no {table.key}", cure=f"remove [{table.key}]")
 
 
 def _is_bare(file: Any) -> bool:
@@ -117,24 +138,16 @@ def _is_bare(file: Any) -> bool:
     return bool(file.lax) and not (file.hamiltonian or file.lagrangian or file.newton)
 
 
-def _lacks_bracket(file: Any, route: str) -> bool:
-    """Whether a Lax pair stands beside an energy, and no bracket says how that moves the state."""
-    bare = ROUTES[route].needs_energy or _is_bare(file)
-    return not bare and kinds_of(file) == ("configuration",)
-
-
-def _check_moved(source: Source, file: Any) -> None:
-    """Without an energy there are no velocities that follow from the momenta."""
-    velocities = [name for name, part in file.variables.items() if part.role == "velocity"]
-    if _is_bare(file) and velocities:
-        key: KeyPath = ("variables", velocities[0])
-        raise source.fault(
-            key,
+def _check_bare(reading: Reading) -> None:
+    """Where a Lax pair alone moves the state, there are no velocities."""
+    velocities = [each.name for each in VARIABLES.of(reading) if each.role == "velocity"]
+    if _is_bare(reading.file) and velocities:
+        raise reading.at_key(
+            ("variables", velocities[0]),
             f"the velocity {velocities[0]!r} has no energy to follow from",
-            found=velocities[0],
-            expected="a Lax pair of the state alone, or a table [hamiltonian] beside it",
-            hint="Write M in variables of the state, or declare [hamiltonian].",
-            at=source.positions.key(key),
+            velocities[0],
+            "a Lax pair of the state alone, or a table [hamiltonian] beside it",
+            "Write M in variables of the state, or declare [hamiltonian].",
         )
 
 
@@ -144,29 +157,25 @@ def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
     They move the same state: velocities along a frame, or momenta and coordinates.
     """
     moves = [name for name, each in ROUTES.items() if each.in_frame == is_in_frame(file)]
-    roles = {part.role for part in file.variables.values()}
-    paired = file.poisson is not None or "momentum" in roles or file.lagrangian is None
     if first:
+        roles = {part.role for part in file.variables.values()}
+        paired = file.poisson is not None or "momentum" in roles or file.lagrangian is None
         moves = [name for name in moves if ROUTES[name].emitted]
         moves = [name for name in moves if name != "canonical" or paired]
-    return [name for name in moves if not _find_obstacle(file, name)]
+    return [name for name in moves if not any(_find_obstacles(file, name))]
 
 
-def _advise(reading: Reading, route: str, others: Sequence[str]) -> str:
-    """What to do about a route that cannot be followed."""
-    file, start = reading.file, ROUTES[route]
-    left = [other for other in file.routes if other in others]
-    ways = [f'remove "{route}"'] if left else []
-    if not left and others:
+def _advise(reading: Reading, obstacles: Sequence[_Obstacle], others: Sequence[str]) -> str:
+    """What to do about a route that cannot be followed; a single obstacle may be removed."""
+    routes = reading.file.routes
+    route = next(each for each in routes if any(_find_obstacles(reading.file, each)))
+    ways = [f'remove "{route}"'] if any(each in others for each in routes) else []
+    if not ways and others:
         ways = [f'write "{others[0]}" in its place']
-    tables = [table for table in (start.table, *energies_of(route, kinds_of(file))) if table]
-    if not any(getattr(file, table) for table in tables):
-        ways += list(filter(None, (_write_table(reading, table) for table in tables)))[:1]
-    acting = [t.key for t in TABLES if t.acts and getattr(file, t.key)]
-    ways += [f"remove [{key}]" for key in acting if key not in start.options]
-    if _lacks_bracket(file, route):
-        way = 'declare the momenta as coordinates, with [poisson] and canonical = [["q", "p"]]'
-        ways.append(way)
+    (obstacle, *more) = obstacles
+    if not more:
+        ways += list(filter(None, (_write_table(reading, each) for each in obstacle.missing)))[:1]
+        ways += [obstacle.cure] if obstacle.cure else []
     text = ", or ".join(ways)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 

@@ -249,12 +249,6 @@ class Spec:
         return bool(self.forces) or self.dissipation is not None
 
     @property
-    def keeps_energy(self) -> bool:
-        """Whether nothing that acts beside the energy changes it."""
-        metriplectic = self.relaxation is None or self.relaxation.S is not None
-        return metriplectic and not self.is_forced
-
-    @property
     def in_frame(self) -> bool:
         """Whether the state has velocities along a frame, which constraints may bind."""
         return any(variable.independent is not None for variable in self.variables)

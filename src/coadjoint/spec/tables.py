@@ -17,6 +17,7 @@ from coadjoint.algebra.representation import Representation
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.reading import Table
 from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.charts import CHARTS
 from coadjoint.spec.sections.claims import CLAIMS
 from coadjoint.spec.sections.constraints import CONSTRAINTS
 from coadjoint.spec.sections.definitions import DEFINITIONS
@@ -67,6 +68,7 @@ TABLES: tuple[Table[Any], ...] = (
     OBSERVABLES,
     SYMMETRIES,
     TRANSFORMATIONS,
+    CHARTS,
     CLAIMS,
 )
 BY_KEY: Mapping[str, Table[Any]] = MappingProxyType({table.key: table for table in TABLES})

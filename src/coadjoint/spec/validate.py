@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
-from difflib import get_close_matches
 from types import MappingProxyType, NoneType
 from typing import Annotated, Any, get_args, get_origin
 
@@ -20,10 +19,10 @@ from pydantic_core import ErrorDetails
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.core.decimals import read_float
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, find_near, listed
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, Span
-from coadjoint.spec.core.source import Source, joined, shown
+from coadjoint.spec.core.source import Source, join_faults, show_value
 from coadjoint.spec.schema import Head, SpecFile
 
 #: Faults that one message shows at the most; each takes three rows of a screen.
@@ -67,7 +66,7 @@ def validate(source: Source) -> Head:
     except ValidationError as error:
         details = _without_echoes(error.errors(include_url=False))
         faults = [_fault(source, document, detail) for detail in details[:MOST_FAULTS]]
-        raise joined(faults, len(details) - len(faults)) from None
+        raise join_faults(faults, len(details) - len(faults)) from None
 
 
 # -- TOML -----------------------------------------------------------------------------------------
@@ -116,7 +115,7 @@ def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointErro
         first = source.line(source.positions.key(key))
         return source.fault(
             key,
-            f"{shown(key[-1])} is declared twice",
+            f"{show_value(key[-1])} is declared twice",
             found=str(key[-1]),
             expected="one declaration",
             hint=f"The first is in line {first}.",
@@ -168,7 +167,7 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     limit = next(iter(_LIMIT.findall(expected)), "")
     return source.fault(
         present,
-        f"found {shown(found)}",
+        f"found {show_value(found)}",
         found=found,
         expected=expected,
         hint=did_you_mean(found, re.findall("'([^']+)'", expected)) if literal else "",
@@ -198,7 +197,7 @@ def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
     for detail in details:
         *table, key = detail["loc"]
         if detail["type"] == "extra_forbidden":
-            meant |= {(*table, near) for near in get_close_matches(str(key), _keys(detail["loc"]))}
+            meant |= {(*table, near) for near in find_near(str(key), _keys(detail["loc"]))}
     return [d for d in details if d["type"] != "missing" or tuple(d["loc"]) not in meant]
 
 
@@ -224,7 +223,7 @@ def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
     known = _keys(path)
     return source.fault(
         path,
-        f"unknown key {shown(path[-1])}",
+        f"unknown key {show_value(path[-1])}",
         found=str(path[-1]),
         expected=f"one of {listed(known, most=len(known))}",
         hint=did_you_mean(str(path[-1]), known),

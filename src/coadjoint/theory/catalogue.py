@@ -16,7 +16,7 @@ from coadjoint.algebra import LieAlgebra, algebra_by_name, from_matrices
 from coadjoint.algebra.matrices import size
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.exact.dense import Matrix, identity, weighted
+from coadjoint.exact.dense import Matrix, identity, weighted_sum
 from coadjoint.theory.group import MatrixGroup
 from coadjoint.theory.linear_part import InvertibleMatrices, Isometries, LinearPart
 
@@ -36,19 +36,19 @@ def _whole(algebra: LieAlgebra, form: Matrix, **more: Any) -> Parts:
 
 
 def _diagonal(*entries: int) -> Matrix:
-    return weighted(entries, [{(n, n): 1} for n in range(len(entries))], len(entries))
+    return weighted_sum(entries, [{(n, n): 1} for n in range(len(entries))], len(entries))
 
 
 def _symplectic(n: int, size: int) -> Matrix:
     """``J = [[0, 1], [-1, 0]]`` on the first 2 n axes, 1 on the others."""
     upper = [{(k, k + n): 1, (k + n, k): -1} for k in range(n)]
     rest = [{(k, k): 1} for k in range(2 * n, size)]
-    return weighted([1] * (n + size - 2 * n), [*upper, *rest], size)
+    return weighted_sum([1] * (n + size - 2 * n), [*upper, *rest], size)
 
 
 def _complex_structure(n: int) -> Matrix:
     """Multiplication by i of ``A + i B -> [[A, -B], [B, A]]``."""
-    return weighted([-1], [_sparse(_symplectic(n, 2 * n))], 2 * n)
+    return weighted_sum([-1], [_sparse(_symplectic(n, 2 * n))], 2 * n)
 
 
 def _sparse(matrix: Matrix) -> dict[tuple[int, int], Any]:
@@ -123,8 +123,8 @@ def _sl2_r2() -> Parts:
 
 def _unit_quaternions() -> Parts:
     """Left multiplications by unit quaternions; they commute with all right multiplications."""
-    by_i = weighted([1, 1], [{(1, 0): 1, (0, 1): -1}, {(2, 3): 1, (3, 2): -1}], 4)
-    by_j = weighted([1, 1], [{(2, 0): 1, (0, 2): -1}, {(3, 1): 1, (1, 3): -1}], 4)
+    by_i = weighted_sum([1, 1], [{(1, 0): 1, (0, 1): -1}, {(2, 3): 1, (3, 2): -1}], 4)
+    by_j = weighted_sum([1, 1], [{(2, 0): 1, (0, 2): -1}, {(3, 1): 1, (1, 3): -1}], 4)
     return _whole(algebra_by_name("quaternions"), identity(4), structure=by_i, commuting=(by_j,))
 
 

@@ -69,7 +69,7 @@ def point_motion(parameters: Sequence[str] = ("mu", "lam")) -> PointMotion:
 
 def alignment(r: Sequence[Element], w: Sequence[Element]) -> Quaternion:
     """``[r . w, r x w] / r^2``: ``[alpha, chi]`` for w = v and ``[beta, psi]`` for w = F."""
-    return Quaternion(dot(r, w), *cross(r, w)).scaled(1 / dot(r, r))
+    return Quaternion(dot(r, w), *cross(r, w)).scale(1 / dot(r, r))
 
 
 def alignment_defect(motion: PointMotion, force: Sequence[Element]) -> Quaternion:

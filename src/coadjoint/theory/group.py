@@ -16,7 +16,7 @@ from typing import Any
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field, element_text
-from coadjoint.exact.dense import Matrix, identity, product, subtract, transpose, weighted
+from coadjoint.exact.dense import Matrix, identity, product, subtract, transpose, weighted_sum
 from coadjoint.theory.linear_part import LinearPart
 from coadjoint.theory.matrix import (
     coordinate_readers,
@@ -98,7 +98,7 @@ class MatrixGroup:
                 found=[str(value) for value in values[:taken]],
             ) from None
         for i, value in zip(self.nilpotent, values[taken:], strict=True):
-            step = weighted([value], [self.algebra.matrices[i]], self.size)
+            step = weighted_sum([value], [self.algebra.matrices[i]], self.size)
             g = product(exponential(step), g)
         return self._in_field(g)
 
@@ -144,7 +144,7 @@ class MatrixGroup:
         """The matrix of ``Ad_g`` in the basis: its column j holds ``Ad_g e_j``."""
         inverse, columns = self.inverse(g), []
         for j in range(self.algebra.dimension):
-            unit = weighted([1], [self.algebra.matrices[j]], self.size)
+            unit = weighted_sum([1], [self.algebra.matrices[j]], self.size)
             columns.append(self.coordinates(product(g, unit, inverse)))
         return transpose(tuple(columns))
 
@@ -169,7 +169,7 @@ class MatrixGroup:
     def matrix(self, xi: Sequence[Any]) -> Matrix:
         """``xi^i e_i`` as a matrix."""
         self._check_length(xi, self.algebra.basis, "components of a vector")
-        return weighted(xi, self.algebra.matrices, self.size)
+        return weighted_sum(xi, self.algebra.matrices, self.size)
 
     def coordinates(self, matrix: Matrix) -> Vector:
         """The ``xi^i`` of a matrix of the algebra.
@@ -183,7 +183,7 @@ class MatrixGroup:
             self.field.zero + sum(matrix[r][c] * weight for (r, c), weight in reader.items())
             for reader in self._readers
         ]
-        left = subtract(matrix, weighted(xi, self.algebra.matrices, self.size))
+        left = subtract(matrix, weighted_sum(xi, self.algebra.matrices, self.size))
         self._check_zero(f"is not in {self.algebra.name}", "X - xi^i e_i", left)
         return tuple(xi)
 
@@ -254,24 +254,24 @@ class MatrixGroup:
             for c, value in enumerate(row):
                 element = self.field.zero + value
                 if not self.field.is_zero(element):
-                    found = element_text(self.field, element)
+                    result = element_text(self.field, element)
                     raise AlgebraError(
                         f"{self.name}: the matrix {verdict}: entry ({r + 1}, {c + 1}) of "
-                        f"{statement} is {found[:200]}; expected 0. Check that entry's sign and "
+                        f"{statement} is {result[:200]}; expected 0. Check that entry's sign and "
                         "the order of the basis.",
                         group=self.name,
                         entry=[r + 1, c + 1],
-                        found=found,
+                        found=result,
                     )
 
     def _check_size(self, matrix: Matrix) -> None:
         sizes = {len(matrix), *map(len, matrix)}
         if sizes != {self.size}:
-            found = f"{len(matrix)} x {'/'.join(map(str, sorted(set(map(len, matrix)))))}"
+            result = f"{len(matrix)} x {'/'.join(map(str, sorted(set(map(len, matrix)))))}"
             raise AlgebraError(
-                f"{self.name}: the matrix is {found}; expected {self.size} x {self.size}.",
+                f"{self.name}: the matrix is {result}; expected {self.size} x {self.size}.",
                 group=self.name,
-                found=found,
+                found=result,
                 expected=self.size,
             )
 

@@ -22,7 +22,7 @@ from coadjoint.exact.dense import (
     scale,
     subtract,
     transpose,
-    weighted,
+    weighted_sum,
 )
 from coadjoint.theory.matrix import determinant, inverse, resolvent
 
@@ -96,7 +96,7 @@ class Isometries:
             ZeroDivisionError: ``1 - X`` is singular.
         """
         one, J = identity(self.size), self.structure
-        X = weighted(values, self.generators, self.size)
+        X = weighted_sum(values, self.generators, self.size)
         adjugate, (a, b) = resolvent(X, J)
         numerator = product(adjugate, add(one, X))
         if J is None or not b:
@@ -166,14 +166,14 @@ class InvertibleMatrices:
         """
         n = self.rank
         if not self.special:
-            return self._embedded(values)
+            return self._embed(values)
         # det is affine in the last entry: its slope is the minor of the others
-        start = self._embedded([*values, 0])
+        start = self._embed([*values, 0])
         constant = determinant(start)[0]
         minor = determinant(tuple(row[: n - 1] for row in start[: n - 1]))[0]
-        return self._embedded([*values, (1 - constant) / minor])
+        return self._embed([*values, (1 - constant) / minor])
 
-    def _embedded(self, entries: Sequence[Any]) -> Matrix:
+    def _embed(self, entries: Sequence[Any]) -> Matrix:
         """Entries in the upper left block, the unit matrix elsewhere."""
         rows = [list(row) for row in identity(self.size)]
         for place, entry in enumerate(entries):
@@ -184,12 +184,12 @@ class InvertibleMatrices:
         """The adjugate over the determinant."""
         n = self.rank
         block = inverse(tuple(row[:n] for row in g[:n]))
-        return self._embedded([entry for row in block for entry in row])
+        return self._embed([entry for row in block for entry in row])
 
     def conditions(self, g: Matrix) -> Iterator[Condition]:
         """The unit matrix outside the block, and the determinant."""
         n = self.rank
-        inner = self._embedded([entry for row in g[:n] for entry in row[:n]])
+        inner = self._embed([entry for row in g[:n] for entry in row[:n]])
         yield "g - 1 outside the upper left block", subtract(g, inner)
         if self.special:
             yield "det g - 1", ((determinant(inner)[0] - 1,),)

@@ -94,12 +94,12 @@ def untilde(matrix: Matrix) -> Vector:
     """
     vector = (-matrix[1][0].im, matrix[1][0].re, -matrix[0][0].im)
     for row, expected in zip(matrix, tilde(vector), strict=True):
-        for found, wanted in zip(row, expected, strict=True):
-            if found != wanted:
+        for result, wanted in zip(row, expected, strict=True):
+            if result != wanted:
                 raise AlgebraError(
-                    f"the matrix is not in su(2): it has the entry {found} where {wanted} would "
+                    f"the matrix is not in su(2): it has the entry {result} where {wanted} would "
                     "make it traceless and skew-Hermitian. For a covector, use dual_tilde.",
-                    found=str(found),
+                    found=str(result),
                     expected=str(wanted),
                 )
     return vector

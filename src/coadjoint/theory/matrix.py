@@ -49,10 +49,10 @@ def inverse(a: Matrix) -> Matrix:
 def determinant(a: Matrix, J: Matrix | None = None) -> Complex:
     """``det a``, as a complex number where a complex structure is given."""
     *_, (_, c) = steps = list(_faddeev_leverrier(a, J))
-    return _scaled(c, -1 if len(steps) % 2 else 1)
+    return _scale(c, -1 if len(steps) % 2 else 1)
 
 
-def _scaled(c: Complex, factor: int) -> Complex:
+def _scale(c: Complex, factor: int) -> Complex:
     """A complex number times an integer."""
     return factor * c[0], factor * c[1]
 

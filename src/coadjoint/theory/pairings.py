@@ -16,7 +16,7 @@ from typing import Any
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra import matrices as sparse
 from coadjoint.errors import AlgebraError
-from coadjoint.exact.dense import Matrix, weighted
+from coadjoint.exact.dense import Matrix, weighted_sum
 from coadjoint.exact.linear import Span, nullspace
 
 #: Whether the form transposes mu, and the number in front of the trace.
@@ -43,7 +43,7 @@ class TracePairing:
 
     def matrix(self, mu: Sequence[Any]) -> Matrix:
         """The matrix of a covector, ``mu_i d_i``."""
-        return weighted(mu, self.dual_basis, sparse.size(self.algebra.matrices))
+        return weighted_sum(mu, self.dual_basis, sparse.size(self.algebra.matrices))
 
     def components(self, matrix: Matrix) -> tuple[Any, ...]:
         """``mu_i = <matrix, e_i>``."""

@@ -78,7 +78,7 @@ def ad_star(xi: Quaternion, mu: Quaternion) -> Quaternion:
 
 def quaternion_rate(q: Quaternion, Omega: Sequence[Any]) -> Quaternion:
     """``dq/dt = q [0, Omega] / 2`` for the body angular velocity Omega; it keeps the norm."""
-    return (q * Quaternion.pure(Omega)).scaled(HALF)
+    return (q * Quaternion.pure(Omega)).scale(HALF)
 
 
 def body_angular_velocity(q: Quaternion, q_dot: Quaternion) -> Vector:

@@ -66,8 +66,8 @@ def tangent_lift(
 
 def divergence(X: VectorField) -> Element:
     """``div X``, with which the volume form grows: ``L_X d^n x = div X d^n x``."""
-    found: Element = trace(X.jacobian())
-    return found
+    result: Element = trace(X.jacobian())
+    return result
 
 
 # -- maps and flows -------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import emitted
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
-from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
+from coadjoint.derive.mechanics.distribution import Equation, Row
 from coadjoint.derive.mechanics.kinematics import (
     Kinematics,
     Matrix,
@@ -36,9 +36,8 @@ from coadjoint.derive.records import Exact
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
-from coadjoint.exact.roots import lifted
+from coadjoint.exact.roots import simplify_roots
 from coadjoint.limits import COUPLED_VELOCITIES
-from coadjoint.spec.model import Section
 
 
 @dataclass(frozen=True)
@@ -184,56 +183,20 @@ def emission(
     rates = tuple(moving[name] for name in setting.state)
     energy = mechanics(setting).energy
     closed = field.substitute(energy, motion.distribution.solved)
-    short = lifted(field, closed)  # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    short = simplify_roots(
+        field, closed
+    )  # sin^2 + cos^2 = 1, where velocities are along a turning frame
     energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
-    along = [
-        *reduced_momenta(motion.distribution),
-        *section_momenta(motion.distribution),
-    ]
     return Exact(
         (*definitions, *solved, *motion.computed(reactions)),
         rates,
         energy,
-        emitted(setting, energy, along),
+        emitted(setting, energy, reduced_momenta(motion.distribution)),
         almost_poisson(setting),
         solves,
         residuals,
     )
-
-
-def section_momenta(found: Distribution) -> list[tuple[str, Element]]:
-    """``<dl/dxi, B sigma>`` of every declared section sigma, in all velocities."""
-    setting = found.setting
-    momenta = mechanics(setting).momenta
-    return [
-        (
-            each.name,
-            setting.field.sum(
-                p * x for p, x in zip(momenta, section_vector(found, each), strict=True) if x != 0
-            ),
-        )
-        for each in setting.spec.sections
-    ]
-
-
-def section_vector(found: Distribution, section: Section) -> Row:
-    """``B sigma``: a section as a vector of the frame."""
-    along = section_components(found, section)
-    return tuple(
-        found.setting.field.sum(b * x for b, x in zip(row, along, strict=True)) for row in found.B
-    )
-
-
-def section_components(found: Distribution, section: Section) -> Row:
-    """``sigma``: the components of a section along the independent velocities."""
-    setting = found.setting
-    parts = dict.fromkeys(found.independent, setting.field.zero)
-    for variable in setting.spec.variables:
-        if variable.name in section.section:
-            values = setting.components(section.section[variable.name])
-            parts |= dict(zip(variable.components, values, strict=True))
-    return tuple(parts.values())
 
 
 def _check_regular(

@@ -64,6 +64,21 @@ def names_inputs(setting: Setting, elements: Iterable[Element]) -> bool:
     )
 
 
+def turned_by_time(setting: Setting) -> list[str]:
+    """What changes its sign where a motion runs backwards: time, and rates of inputs.
+
+    The rate of a rate keeps its value.
+    """
+    inputs = {each.name: each for each in setting.spec.inputs}
+    turned = list(setting.time)
+    for name in sorted(inputs.keys() - {each.rate for each in inputs.values()}):
+        chain = [name]
+        while inputs[chain[-1]].rate:
+            chain.append(inputs[chain[-1]].rate)
+        turned += [component for rate in chain[1::2] for component in inputs[rate].components]
+    return turned
+
+
 def _free(setting: Setting) -> list[str]:
     """Inputs whose rates are not known, by component."""
     return [name for name in setting.inputs if name not in setting.own_rates]

@@ -254,7 +254,6 @@ def _by_differences(setting: Setting, body: Body) -> Pair:
                 f"where I_{i + 1}{j + 1} = {element_text(field, inertia[i, j])}",
                 f"({i + 1}, {j + 1})",
                 "inertia such as I_ij = a_i + a_j",
-                "Such a body has no Manakov pair; take the route lie-poisson.",
             )
     a = [field.zero] * n
     pivots = {min(row): row for row in span.rows}
@@ -282,7 +281,6 @@ def _share(setting: Setting, body: Body, a: Sequence[Element]) -> Element:
                 f"solution in the plane ({i + 1}, {j + 1})",
                 f"({i + 1}, {j + 1})",
                 "a potential trace(S*A)/2 with the A of the inertia I_ij = a_i + a_j",
-                "No pair was found with the A of this inertia; take the route lie-poisson.",
             )
     return share
 

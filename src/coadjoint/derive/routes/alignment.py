@@ -16,16 +16,21 @@ Read next: `coadjoint.groups.quaternions`.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.records import Relation, Step, rate, symbol
+from coadjoint.derive.refusals import leave_route
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
-from coadjoint.exact import Element
 from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec import Spec
+
+ROUTE = "alignment"
 
 
 def derive(setting: Setting) -> Equations:
@@ -41,18 +46,14 @@ def derive(setting: Setting) -> Equations:
     v = add(scale(alpha, r), cross(chi, r))
     moved = dict(zip(setting.velocities, v, strict=True))
     force = tuple(field.substitute(f, moved) for f in accelerations(setting))
-    source = Quaternion(dot(r, force), *cross(r, force)).scaled(1 / dot(r, r))
+    source = Quaternion(dot(r, force), *cross(r, force)).scale(1 / dot(r, r))
     q = Quaternion(alpha, *chi)
-    rates = (*v, *(source - q * q).components)
-    named = dict(zip(setting.positions, r, strict=True)) | moved
-    chart = Chart(
-        (*setting.positions, *own),
-        tuple(named[x] for x in setting.state),
-        "v = alpha r + chi x r",
-        (Relation("chi . r = 0", dot(chi, r)),),
+    rates = zip((*setting.positions, *own), (*v, *(source - q * q).components), strict=True)
+    relation = Relation("chi . r = 0", dot(chi, r))
+    found = in_chart(
+        setting, ROUTE, dict(rates), moved, "v = alpha r + chi x r", relations=[relation]
     )
-    exact = Exact((), rates, None, (), None)
-    return Equations(setting, "alignment", exact, _steps(chart, v, source, rates), chart)
+    return replace(found, steps=_steps(found, v, source))
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
@@ -69,14 +70,13 @@ def _check_particle(setting: Setting) -> None:
             setting,
             laws[0].force,
             f"the route alignment is that of one particle in three dimensions, and the coordinates "
-            f"are {coordinates}; expected one coordinate with shape = [3]. Remove the route.",
+            f"are {coordinates}; expected one coordinate with shape = [3]. "
+            f"{leave_route(setting, 'alignment').capitalize()}.",
             coordinates,
         )
 
 
-def _steps(
-    chart: Chart, v: Vector, source: Quaternion, rates: tuple[Element, ...]
-) -> tuple[Step, ...]:
+def _steps(found: Equations, v: Vector, source: Quaternion) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     letters = zip(("v1", "v2", "v3"), v, strict=True)
     forces = zip(("beta", "psi1", "psi2", "psi3"), source.components, strict=True)
@@ -97,6 +97,6 @@ def _steps(
             "Riccati equation of quaternions",
             "dr/dt = v,  d[alpha, chi]/dt = [beta, psi] - [alpha, chi]^2",
             r"\dot r = v, \quad \frac{d}{dt}[\alpha, \chi] = [\beta, \psi] - [\alpha, \chi]^2",
-            tuple(zip(map(rate, chart.variables), rates, strict=True)),
+            tuple(zip(map(rate, found.variables), found.exact.rates, strict=True)),
         ),
     )

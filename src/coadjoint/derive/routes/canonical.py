@@ -17,8 +17,10 @@ Read next: `coadjoint.derive.routes.newton`, which knows no energy.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
+from coadjoint.derive.charts import in_chart
 from coadjoint.derive.emitted import emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import (
@@ -30,7 +32,7 @@ from coadjoint.derive.mechanics.configuration import (
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
-from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
+from coadjoint.derive.records import Exact, Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.derive.symbols import fresh
@@ -144,10 +146,8 @@ def _in_own_momenta(setting: Setting) -> Equations:
     named = _hamilton(setting, pairs, slopes, {}, {})
     for name, force in zip(own, external_forces(setting, setting.velocities), strict=True):
         named[name] += field.substitute(force, solved)
-    rates = tuple(named[x] for x in variables)
-    state = tuple(solved.get(x, field[x]) for x in setting.state)
-    exact = Exact((), rates, h, (), None)
-    chart = Chart(variables, state, "p = dl/dv")
+    rates = {x: named[x] for x in variables}
+    found = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
     steps = (
         Step(
             "Legendre transform",
@@ -155,9 +155,9 @@ def _in_own_momenta(setting: Setting) -> Equations:
             r"p = \partial l / \partial v",
             tuple((symbol(name), value) for name, value in solved.items()),
         ),
-        *_steps(variables, h, slopes, rates),
+        *_steps(variables, h, slopes, found.exact.rates),
     )
-    return Equations(setting, "canonical", exact, steps, chart)
+    return replace(found, steps=steps)
 
 
 def _steps(

@@ -26,15 +26,16 @@ in the declared state where that has the quaternion. Read next: `coadjoint.group
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.algebra.representation import adjoint
+from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Chart, Exact, Relation, Step, rate, symbol
+from coadjoint.derive.records import Exact, Relation, Step, rate, symbol
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
@@ -104,8 +105,8 @@ def derive(setting: Setting) -> Equations:
         rates = setting.in_state_order(momentum_rate, _advection(body))
         exact = emission(setting, rates)
         return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, setting.state))
-    exact, chart = _in_chart(body, transform, momentum_rate)
-    return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, chart.variables), chart)
+    found = _in_chart(body, transform, momentum_rate)
+    return replace(found, steps=_steps(body, lagrangian, found.exact, found.variables))
 
 
 def check_rotations(setting: Setting) -> None:
@@ -118,7 +119,6 @@ def check_rotations(setting: Setting) -> None:
             f"the algebra is {algebra.name}",
             algebra.name,
             "so(3), or another basis with [e1, e2] = e3 and cyclic",
-            "Remove the route.",
         )
     turning = tuple(map(dict, adjoint(rotations).matrices))
     for variable in setting.advected:
@@ -130,7 +130,6 @@ def check_rotations(setting: Setting) -> None:
                 f"{variable.name} has the representation {action.name!r}",
                 action.name,
                 "vectors or the unit quaternion, on which quaternions act by products",
-                "Remove the route.",
             )
 
 
@@ -218,7 +217,7 @@ def _advection(body: _Body) -> dict[str, tuple[Element, ...]]:
 
 def _in_chart(
     body: _Body, transform: LegendreTransform, momentum_rate: tuple[Element, ...]
-) -> tuple[Exact, Chart]:
+) -> Equations:
     """The motion of q, Pi and the fixed vectors, which stand still."""
     setting, field = body.setting, body.setting.field
     names = symbols(setting.spec)
@@ -227,17 +226,21 @@ def _in_chart(
         for v in setting.advected
         for name, value in zip(v.components, body.seen[v.name].vector, strict=True)
     }
-    fixed = names[4:]
-    rates = (*field.vector(body.q_rate.components), *momentum_rate, *(field.zero for _ in fixed))
+    rates = dict(zip(names[:4], field.vector(body.q_rate.components), strict=True))
+    rates |= zip(setting.momenta, momentum_rate, strict=True)
+    rates |= dict.fromkeys(names[4:], field.zero)
     velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
     length = field.vector((body.q.norm - 1,))[0]
-    chart = Chart(
-        (*names[:4], *setting.momenta, *fixed),
-        tuple(image.get(name, field[name]) for name in setting.state),
+    relation = Relation("dot(q, q) = 1", length)
+    return in_chart(
+        setting,
+        ROUTE,
+        rates,
+        image,
         _through(setting),
-        (Relation("dot(q, q) = 1", length),),
+        relations=[relation],
+        definitions=velocities,
     )
-    return Exact(velocities, rates, None, (), None), chart
 
 
 def _through(setting: Setting) -> str:

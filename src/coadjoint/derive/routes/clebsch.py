@@ -23,13 +23,16 @@ derivatives of one function. Read next: `coadjoint.prove.charts`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from itertools import islice
 
 from coadjoint.algebra import Representation, algebra_by_name
 from coadjoint.algebra.representation import adjoint
+from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import legendre
-from coadjoint.derive.records import Chart, Exact, Step, partial, rate, symbol
+from coadjoint.derive.records import Step, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
@@ -89,19 +92,15 @@ def derive(setting: Setting) -> Equations:
     p = tuple(name for _, each, _ in pairs for name in each)
     pairing = _pairing(setting, pairs)
     action = lagrangian + pairing  # what stands beside <p, dq/dt>
-    rates = (
-        *(-slope for slope in field.gradient(action, p)),
-        *field.gradient(action, q),
-    )
+    rates = dict(zip(q, (-slope for slope in field.gradient(action, p)), strict=True))
+    rates |= zip(p, field.gradient(action, q), strict=True)
     momentum = tuple(-slope for slope in field.gradient(pairing, setting.velocities))
     image = dict(zip(setting.momenta, momentum, strict=True))
     transform = legendre(setting)
     velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
-    state = tuple(image.get(name, field[name]) for name in setting.state)
-    chart = Chart((*q, *p), state, _through(setting, pairs))
-    exact = Exact(velocities, rates, None, (), None)
-    steps = _steps(setting, action, chart, exact)
-    return Equations(setting, "clebsch", exact, steps, chart)
+    through = _through(setting, pairs)
+    found = in_chart(setting, "clebsch", rates, image, through, definitions=velocities)
+    return replace(found, steps=_steps(found, action, image))
 
 
 def _pairing(setting: Setting, pairs: list[_Pair]) -> Element:
@@ -145,13 +144,12 @@ def _turns_vectors(setting: Setting, action: Representation) -> bool:
     return plain and tuple(map(dict, action.matrices)) == tuple(map(dict, rotations))
 
 
-def _steps(setting: Setting, action: Element, chart: Chart, exact: Exact) -> tuple[Step, ...]:
+def _steps(found: Equations, action: Element, image: Mapping[str, Element]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    n = len(chart.variables) // 2
+    setting, exact, n = found.setting, found.exact, len(found.variables) // 2
     sign = "+" if setting.sign == 1 else "-"
     turn, back = ("", "-") if setting.sign == 1 else ("-", "")
-    lines = tuple(zip(map(rate, chart.variables), exact.rates, strict=True))
-    image = dict(zip(setting.state, chart.state, strict=True))
+    lines = tuple(zip(map(rate, found.variables), exact.rates, strict=True))
     return (
         Step(
             "Clebsch action",

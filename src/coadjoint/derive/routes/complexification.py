@@ -103,7 +103,6 @@ def _at_real(setting: Setting, h: Element, real: LieAlgebra) -> Element:
             "the Hamiltonian calls an elementary function",
             str(setting.spec.hamiltonian and setting.spec.hamiltonian.text),
             "a rational function of the momenta",
-            "Remove the route.",
         )
     return found
 

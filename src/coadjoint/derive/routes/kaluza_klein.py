@@ -22,13 +22,13 @@ Chart of momenta, advected quantities and p. Read next: `coadjoint.prove.charts`
 
 from __future__ import annotations
 
-from coadjoint.derive.emitted import emitted_energy
+from dataclasses import replace
+
+from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics
 from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.records import (
-    Chart,
-    Exact,
     Relation,
     Step,
     partial,
@@ -58,7 +58,8 @@ def derive(setting: Setting) -> Equations:
     """Equations of motion as geodesics with cyclic coordinates.
 
     Raises:
-        DerivationError: Nothing is advected, or the Lagrangian is not linear in it.
+        DerivationError: Nothing is advected, or the Lagrangian is not linear in it, with slopes
+            that are the same at all times.
     """
     lagrangian, names = setting.lagrangian, _advected(setting)
     level = _level(setting, lagrangian, names)
@@ -75,17 +76,23 @@ def derive(setting: Setting) -> Equations:
     inner = dict(zip(setting.velocities, transform.velocities, strict=True))
     mu, xi = setting.elements(setting.momenta), setting.elements(setting.velocities)
     energy = field.substitute(dot(mu, xi) + dot(p, qdot) - whole, inner | solved)
-    rates = (*_rates(setting, forces), *(field.zero for _ in p))
-    exact = Exact(transform.definitions, rates, energy, (emitted_energy(setting, energy),), None)
-    relations = tuple(
+    rates = dict(zip(setting.state, _rates(setting, forces), strict=True))
+    rates |= dict.fromkeys(momenta, field.zero)
+    relations = [
         Relation(f"{name} = {element_text(field, value)}", field[name] - value)
         for name, value in zip(momenta, level, strict=True)
+    ]
+    found = in_chart(
+        setting,
+        ROUTE,
+        rates,
+        {},
+        "p = dl/da",
+        relations=relations,
+        definitions=transform.definitions,
+        energy=energy,
     )
-    chart = Chart(
-        (*setting.state, *momenta), setting.elements(setting.state), "p = dl/da", relations
-    )
-    steps = _steps(setting, whole, solved, energy, chart, rates)
-    return Equations(setting, ROUTE, exact, steps, chart)
+    return replace(found, steps=_steps(found, whole, solved, level))
 
 
 def _advected(setting: Setting) -> tuple[str, ...]:
@@ -108,12 +115,11 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
             "nothing is advected",
             setting.spec.name,
             "an advected quantity, beside which a cyclic coordinate turns the potential into "
-            "kinetic energy",
-            "Remove the route: without a potential the motion is geodesic already.",
+            "kinetic energy; without a potential the motion is geodesic already",
         )
     slopes = setting.field.gradient(lagrangian, names)
     for name, slope in zip(names, slopes, strict=True):
-        moving = setting.field.reach(slope) & {*setting.velocities, *names}
+        moving = setting.field.reach(slope) & {*setting.velocities, *names, *setting.time}
         if moving:
             text = element_text(setting.field, slope)
             raise refusal(
@@ -122,7 +128,6 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
                 f"dl/d{name} = {text} depends on {', '.join(sorted(moving))}",
                 text,
                 "a Lagrangian linear in what is advected, such as T - m*g*dot(Gamma, chi)",
-                "Remove the route.",
             )
     return slopes
 
@@ -155,20 +160,15 @@ def _rates(setting: Setting, forces: list[Element]) -> tuple[Element, ...]:
 
 
 def _steps(
-    setting: Setting,
-    whole: Element,
-    solved: dict[str, Element],
-    energy: Element,
-    chart: Chart,
-    rates: tuple[Element, ...],
+    found: Equations, whole: Element, solved: dict[str, Element], level: Vector
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
+    setting, energy = found.setting, found.exact.energy
+    assert energy is not None, "this route has one"
     back = "-" if setting.sign == 1 else ""
     work = signed(setting.sign, "<mu, [xi, eta]> - p . rho(eta) a")
     work_latex = signed(setting.sign, r"\langle\mu, [\xi, \eta]\rangle - p \cdot \rho(\eta) a")
     momenta = setting.field.gradient(whole, setting.velocities)
-    _, names = _cyclic(setting)
-    cyclic = [setting.field[name] for name in names]
     return (
         Step(
             "Lagrangian with cyclic coordinates",
@@ -196,15 +196,12 @@ def _steps(
             f"<dmu/dt, eta> = {work},  da/dt = {back}rho(xi) a,  dp/dt = 0",
             rf"\langle\dot\mu, \eta\rangle = {work_latex}, \quad "
             rf"\dot a = {back}\rho(\xi) a, \quad \dot p = 0",
-            tuple(zip(map(rate, chart.variables), rates, strict=True)),
+            tuple(zip(map(rate, found.variables), found.exact.rates, strict=True)),
         ),
         Step(
             "Level set of the conserved momentum",
             "p = dl/da of the Lagrangian with the potential",
             r"p = \partial l / \partial a",
-            tuple(
-                (symbol(name), own - relation.element)
-                for name, own, relation in zip(names, cyclic, chart.relations, strict=True)
-            ),
+            tuple(zip(map(symbol, _cyclic(setting)[1]), level, strict=True)),
         ),
     )

@@ -61,7 +61,7 @@ def _check_matrices(setting: Setting) -> None:
             f"{name} has no matrices whose commutators are its brackets",
             name,
             "an algebra that is declared by matrices, or by name",
-            "Declare it by matrices, or take the route euler-poincare.",
+            "Declare it by matrices.",
         )
 
 
@@ -149,7 +149,6 @@ def _advection(setting: Setting, variable: Variable) -> Advection:
             f"{variable.name} is advected by the representation {action.name!r}",
             action.name,
             f"products with the matrices of {setting.algebra.name}: {listed(_ADVECTIONS)}",
-            "Take the route euler-poincare.",
         )
     return _ADVECTIONS[action.name]
 

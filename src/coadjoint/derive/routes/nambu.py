@@ -97,7 +97,7 @@ def distinguished_function(setting: Setting) -> Distinguished:
             f"the dual of {momentum_algebra(setting).name} has {structure.dimension} dimensions",
             str(structure.dimension),
             "three, for one distinguished function c beside h",
-            "Remove the route, or declare the functions: [poisson] nambu = [...].",
+            "Declare the functions: [poisson] nambu = [...].",
         )
     x, tensor = setting.elements(structure.names), structure.tensor
     b = tuple(-tensor[i][j] for i, j in ((1, 2), (2, 0), (0, 1)))
@@ -123,7 +123,6 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
             f"found for a multiple of one ({reason})",
             algebra.name,
             "a unimodular algebra, or a rational Casimir",
-            "Remove the route.",
         )
     advected = [name for variable in setting.advected for name in variable.components]
     names = dict(zip(algebra.basis, (*setting.momenta, *advected), strict=True))

@@ -92,7 +92,6 @@ def _check_motions(setting: Setting) -> None:
             f"the algebra is {algebra.name}",
             algebra.name,
             "so(3) or se(3), the motions of a rigid body",
-            "Remove the route.",
         )
     if spec.invariance != "left":
         raise refusal(
@@ -101,7 +100,7 @@ def _check_motions(setting: Setting) -> None:
             "the system is right-invariant",
             spec.invariance,
             "a left-invariant one, since mass points are fixed in the body",
-            'Write invariance = "left", or remove the route.',
+            'Write invariance = "left".',
         )
 
 
@@ -143,8 +142,8 @@ def _check_points(setting: Setting, lagrangian: Element, points: MassPoints) -> 
             ROUTE,
             f"no points fixed in a body have this kinetic energy: {term} {what}",
             term,
-            "m*dot(v, v)/2 + dot(v, cross(Omega, c)) + dot(Omega, J*Omega)/2 with constant m, c, J",
-            "A mass that depends on the direction is that of a fluid, too: remove the route.",
+            "m*dot(v, v)/2 + dot(v, cross(Omega, c)) + dot(Omega, J*Omega)/2 with constant "
+            "m, c, J; a mass that depends on the direction is that of a fluid, too",
         )
 
 

@@ -41,7 +41,7 @@ from coadjoint.derive.mechanics.solver import Definition
 from coadjoint.derive.records import Left, Step, bracket, component, partial, rate, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.exact.roots import lifted
+from coadjoint.exact.roots import simplify_roots
 
 __all__ = ["derive", "symbols"]
 
@@ -79,7 +79,7 @@ def _forces(
     momenta = field.gradient(lagrangian, frame.velocities)
     parts = zip(
         frame.inertial(momenta, xi),
-        (lifted(field, slope) for slope in frame.slopes(lagrangian)),
+        (simplify_roots(field, slope) for slope in frame.slopes(lagrangian)),
         external_forces(frame.setting, frame.velocities),
         mass,
         momenta,

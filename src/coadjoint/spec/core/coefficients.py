@@ -206,12 +206,12 @@ class _Reading:
             case Index(name=name, indices=indices):
                 return self._scalar(node, name, indices)
             case Negate(operand=operand):
-                return _times(found[id(operand)], Fraction(-1))
+                return _multiply(found[id(operand)], Fraction(-1))
             case Power(base=base, exponent=exponent) if exponent >= 0:
                 self._check_constant(node, found[id(base)])
                 return {None: found[id(base)].get(None, Fraction(0)) ** exponent}
             case Binary(operator=operator, left=left, right=right):
-                return self._joined(node, operator, found[id(left)], found[id(right)])
+                return self._join(node, operator, found[id(left)], found[id(right)])
         raise self._refusal(node)
 
     def _single(self, node: Node, name: str) -> str:
@@ -233,7 +233,7 @@ class _Reading:
             raise self._refusal(node)
         return {None: value}
 
-    def _joined(self, node: Node, operator: str, a: _Linear, b: _Linear) -> _Linear:
+    def _join(self, node: Node, operator: str, a: _Linear, b: _Linear) -> _Linear:
         if operator in "+-":
             sign = 1 if operator == "+" else -1
             return {p: a.get(p, Fraction(0)) + sign * b.get(p, Fraction(0)) for p in a | b}
@@ -242,10 +242,10 @@ class _Reading:
         self._check_constant(node, b)
         factor = b.get(None, Fraction(0))
         if operator == "*":
-            return _times(a, factor)
+            return _multiply(a, factor)
         if not isinstance(factor, Fraction) or factor == 0:
             raise self._refusal(node)  # a quotient of parameters, which may be 0
-        return _times(a, 1 / factor)
+        return _multiply(a, 1 / factor)
 
     def _check_constant(self, node: Node, value: _Linear) -> None:
         if not value.keys() <= {None}:
@@ -258,5 +258,5 @@ class _Reading:
         )
 
 
-def _times(a: _Linear, factor: Coefficient) -> _Linear:
+def _multiply(a: _Linear, factor: Coefficient) -> _Linear:
     return {place: value * factor for place, value in a.items()}

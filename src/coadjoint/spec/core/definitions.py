@@ -28,7 +28,7 @@ from coadjoint.spec.core.tree import (
     Name,
     Node,
     children,
-    rebuilt,
+    rebuild,
     walk,
     walk_up,
 )
@@ -94,7 +94,7 @@ def expand(
     made: dict[int, tuple[Node, int]] = {}  # with the number of parts
     for node in walk_up(tree):
         below = [made[id(child)] for child in children(node)]
-        found = rebuilt(node, [part for part, _ in below]), 1 + sum(count for _, count in below)
+        found = rebuild(node, [part for part, _ in below]), 1 + sum(count for _, count in below)
         definition = definitions.get(_called(node))
         if definition is not None:
             put = _put_in(node, definition, below)
@@ -144,7 +144,7 @@ def _put_in(
     made: dict[int, Node] = {}
     count = 0
     for part in walk_up(definition.tree):
-        fresh = rebuilt(part, [made[id(child)] for child in children(part)])
+        fresh = rebuild(part, [made[id(child)] for child in children(part)])
         fresh = replace(fresh, start=node.start, end=node.end, within=definition.name)
         argument = values.get(_called(part)) if isinstance(part, (Name, Index)) else None
         if argument is not None:

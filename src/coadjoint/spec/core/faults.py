@@ -53,8 +53,19 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     >>> did_you_mean("Omgea", ["Gamma", "Omega"])
     "Did you mean 'Omega'?"
     """
-    near = get_close_matches(name, sorted(known), n=1)
+    near = find_near(name, known)
     return f"Did you mean {near[0]!r}?" if near else otherwise
+
+
+def find_near(name: str, known: Iterable[str]) -> list[str]:
+    """The known names like a wrong one, the nearest first; `r` is like `R`.
+
+    >>> find_near("r", ["R", "S"])
+    ['R']
+    """
+    names = sorted(known)
+    alike = [each for each in names if each.casefold() == name.casefold()]
+    return alike or get_close_matches(name, names)
 
 
 def listed(names: Iterable[str], most: int = 12) -> str:

@@ -18,7 +18,7 @@ from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of, words
 from coadjoint.spec.core.sizes import check_size
-from coadjoint.spec.core.source import Source, dotted
+from coadjoint.spec.core.source import Source, write_key
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
@@ -180,7 +180,7 @@ def read_formula(
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
-    return Formula(text, tree, shape, dotted(key), line)
+    return Formula(text, tree, shape, write_key(key), line)
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

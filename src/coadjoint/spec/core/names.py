@@ -49,7 +49,7 @@ def refusal(name: str) -> tuple[str, str, str] | None:
     """
     if not NAME.fullmatch(name):
         expected = "a letter, then letters and digits, with single underscores inside"
-        return f"{name!a} is not a name", expected, _tidied(name)
+        return f"{name!a} is not a name", expected, _tidy(name)
     if len(name) > NAME_CHARACTERS:
         problem = f"{name!r} has {len(name)} characters"
         return problem, f"at most {NAME_CHARACTERS} (NAME_CHARACTERS)", ""
@@ -70,7 +70,7 @@ def better(name: str) -> str:
     return _BETTER.get(name, f"my_{name}" if _OURS_PATTERN.fullmatch(name) else f"{name}_0")
 
 
-def _tidied(name: str) -> str:
+def _tidy(name: str) -> str:
     """A hint for a string that is no name."""
     near = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     fits = NAME.fullmatch(near) and len(near) <= NAME_CHARACTERS and refusal(near) is None

@@ -188,10 +188,10 @@ class Reading:
         every = dict.fromkeys((naming.name, *naming.components, *naming.rates))
         for derived in every:
             if derived in self.owners:
-                raise self._doubled(derived, naming, self.owners[derived])
+                raise self._explain_doubled(derived, naming, self.owners[derived])
         self.owners |= dict.fromkeys(every, naming)
 
-    def _doubled(self, derived: str, naming: Naming, owner: Naming) -> CoadjointError:
+    def _explain_doubled(self, derived: str, naming: Naming, owner: Naming) -> CoadjointError:
         """An error for a name that two things would have."""
         problem = f"{derived!r} is doubled: {owner.key[0]}.{owner.name} has that name too"
         usual = "Rename one of them; the components of I with shape [3] are I1, I2, I3."

@@ -24,10 +24,10 @@ from coadjoint.spec.core.positions import KeyPath, Positions, Span
 _SHOWN = 96
 
 
-def dotted(path: KeyPath) -> str:
+def write_key(path: KeyPath) -> str:
     """A path as messages write it, array entries counted from 1.
 
-    >>> dotted(("claims", "casimirs", 0))
+    >>> write_key(("claims", "casimirs", 0))
     'claims.casimirs[1]'
     """
     text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{_key(part)}" for part in path)
@@ -36,13 +36,13 @@ def dotted(path: KeyPath) -> str:
 
 def _key(part: str) -> str:
     """A key for a message; one with control characters could draw on the reader's terminal."""
-    return part if part.isascii() and part.isprintable() and len(part) <= 60 else shown(part)
+    return part if part.isascii() and part.isprintable() and len(part) <= 60 else show_value(part)
 
 
-def shown(value: object, most: int = 60) -> str:
+def show_value(value: object, most: int = 60) -> str:
     r"""A found value for a message, on one line and cut where it is long.
 
-    >>> shown("spin\nner"), shown(True), shown("x" * 99, most=8)
+    >>> show_value("spin\nner"), show_value(True), show_value("x" * 99, most=8)
     ("'spin\\nner'", 'true', "'xxxx...")
     """
     if isinstance(value, int) and value.bit_length() > 1000:
@@ -58,7 +58,7 @@ def shown(value: object, most: int = 60) -> str:
 def _plain(found: object) -> object:
     """A found value as JSON can carry it."""
     short = isinstance(found, int) and found.bit_length() <= 64
-    return found if short or isinstance(found, str) else shown(found)
+    return found if short or isinstance(found, str) else show_value(found)
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ class Source:
         span = self.positions.value(key) if at is None else at
         line = self.line(span)
         column = span[0] - self.text.rfind("\n", 0, span[0])
-        message = f"{self.path}:{line}:{column}: {dotted(key)}: {problem}"
+        message = f"{self.path}:{line}:{column}: {write_key(key)}: {problem}"
         message += f"; expected {expected}." if expected else "." * (problem[-1] not in ".?")
         message += f" {hint}" if hint else ""
         return kind(
@@ -116,7 +116,7 @@ class Source:
             path=self.path,
             line=line,
             column=column,
-            key=dotted(key),
+            key=write_key(key),
             found=_plain(found),
             expected=expected,
             hint=hint,
@@ -163,7 +163,7 @@ class Source:
         return f"    {window.strip()}\n    {' ' * (column - cut - indent)}{'^' * carets}"
 
 
-def joined(faults: Sequence[CoadjointError], more: int = 0) -> CoadjointError:
+def join_faults(faults: Sequence[CoadjointError], more: int = 0) -> CoadjointError:
     """Several errors as one: every message, the parts of the first, and all parts as ``faults``.
 
     Args:

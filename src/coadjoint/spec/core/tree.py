@@ -106,7 +106,7 @@ def children(node: Node) -> tuple[Node, ...]:
     return ()
 
 
-def rebuilt(node: Node, below: Sequence[Node]) -> Node:
+def rebuild(node: Node, below: Sequence[Node]) -> Node:
     """``node`` with other nodes directly below it, as many as it has."""
     match node:
         case Negate() | Component():

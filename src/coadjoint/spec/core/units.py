@@ -38,7 +38,7 @@ def parse_unit(text: str) -> Unit | None:
         if factor[1]:
             exponent = Fraction(factor[2] or 1) * (-1 if divided else 1)
             found[factor[1]] = found.get(factor[1], Fraction(0)) + exponent
-    return _kept(found)
+    return _nonzero(found)
 
 
 def unit_text(unit: Unit | None) -> str:
@@ -77,7 +77,7 @@ def product_of(units: Mapping[str, Unit | None], powers: Iterable[tuple[str, int
     """
     whole: Unit | None = {}
     for name, exponent in powers:
-        whole = _combined("*", whole, _raised(units.get(name), Fraction(exponent)))
+        whole = _combine("*", whole, _raise_to(units.get(name), Fraction(exponent)))
     return whole
 
 
@@ -93,9 +93,9 @@ def _unit(
         case tree.Negate() | tree.Component():
             return below[0]
         case tree.Power(exponent=exponent):
-            return _raised(below[0], Fraction(exponent))
+            return _raise_to(below[0], Fraction(exponent))
         case tree.Binary(operator=operator):
-            return _combined(operator, *below)
+            return _combine(operator, *below)
         case tree.Call(function=function):
             return _of_call(function, below)
     raise AssertionError(node)
@@ -107,18 +107,18 @@ def _of_call(function: str, arguments: list[Unit | None]) -> Unit | None:
     if function in _SAME:
         return first
     if function in _PRODUCT:
-        return _combined("*", first, arguments[1])
+        return _combine("*", first, arguments[1])
     if function in ("rows", "vector"):
         return first if all(argument == first for argument in arguments) else None
     if function == "inverse":
-        return _raised(first, Fraction(-1))
+        return _raise_to(first, Fraction(-1))
     if function == "sqrt":
-        return _raised(first, Fraction(1, 2))
+        return _raise_to(first, Fraction(1, 2))
     # The determinant's unit depends on the size; sin, exp and so on take and give pure numbers.
     return {} if first == {} else None
 
 
-def _combined(operator: str, left: Unit | None, right: Unit | None) -> Unit | None:
+def _combine(operator: str, left: Unit | None, right: Unit | None) -> Unit | None:
     """The unit of a sum, product or quotient."""
     if left is None or right is None:
         return None
@@ -127,15 +127,15 @@ def _combined(operator: str, left: Unit | None, right: Unit | None) -> Unit | No
     sign = 1 if operator == "*" else -1
     names = left.keys() | right.keys()
     zero = Fraction(0)
-    return _kept({name: left.get(name, zero) + sign * right.get(name, zero) for name in names})
+    return _nonzero({name: left.get(name, zero) + sign * right.get(name, zero) for name in names})
 
 
-def _raised(unit: Unit | None, exponent: Fraction) -> Unit | None:
+def _raise_to(unit: Unit | None, exponent: Fraction) -> Unit | None:
     """A unit to a power."""
-    return None if unit is None else _kept({name: e * exponent for name, e in unit.items()})
+    return None if unit is None else _nonzero({name: e * exponent for name, e in unit.items()})
 
 
-def _kept(unit: Mapping[str, Fraction]) -> Unit:
+def _nonzero(unit: Mapping[str, Fraction]) -> Unit:
     return {name: exponent for name, exponent in unit.items() if exponent}
 
 

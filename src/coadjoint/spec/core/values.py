@@ -22,7 +22,7 @@ from coadjoint.spec.core.source import Source
 
 NAME_PATTERN = "^[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*$"
 # Printed in comments of generated code: no text that opens or closes one.
-_UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.()-]+", re.ASCII)
+_UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.(),-]+", re.ASCII)
 _LICENSE = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*", re.ASCII)
 #: Keys such as ``[e1, e2]`` of a bracket in an algebra, ``{X1, X2}`` of one of functions.
 BRACKET_PATTERN = r"^\[ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\]$"
@@ -45,7 +45,7 @@ def _is_prose(text: str) -> str:
 
 def _is_unit(text: str) -> str:
     if not _UNIT.fullmatch(text):
-        raise ValueError("letters, digits, space and ^ / * . ( ) -, as in 'kg m^2/s'")
+        raise ValueError("letters, digits, space and ^ / * . ( ) , -, as in 'kg m^2/s'")
     return text
 
 

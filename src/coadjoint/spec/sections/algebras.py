@@ -51,8 +51,8 @@ from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.matrices import (
     by_matrices,
     check_basis_names,
-    located,
     places_of,
+    point_at_faults,
     read_matrices,
     representation_of,
 )
@@ -142,7 +142,7 @@ class _Algebras:
 
     def _by_name(self, name: str, key: KeyPath) -> LieAlgebra:
         key = self.source.place_of(key, "name")
-        with located(self.source, key):
+        with point_at_faults(self.source, key):
             return algebra_by_name(name, most=STATE_COMPONENTS)
 
     def _with_blocks(
@@ -166,7 +166,7 @@ class _Algebras:
             pair: read_combination(self.source, (*key, text), texts[text], basis, self.scalars)
             for pair, text in self._pairs(texts, key, basis).items()
         }
-        with located(self.source, key):
+        with point_at_faults(self.source, key):
             return from_brackets(self.system, basis, brackets)
 
     def _pairs(
@@ -226,11 +226,11 @@ class _Algebras:
                 )
         chosen = [matrices[name] for name in basis]
         if bracket is None:
-            with located(self.source, key):
+            with point_at_faults(self.source, key):
                 return from_matrices(self.system, basis, chosen)
         inner = (*key[:-1], "bracket")
         of_two = read_bracket(self.source, inner, bracket, size, self.scalars)
-        with located(self.source, inner):
+        with point_at_faults(self.source, inner):
             return from_bracket(self.system, basis, chosen, of_two)
 
     # -- products -----------------------------------------------------------------------
@@ -240,7 +240,7 @@ class _Algebras:
         for place, part in enumerate(parts):
             summands.append(self.algebra(part, (*key, place)))
             self._check_dimension(sum(summand.dimension for summand in summands), key)
-        with located(self.source, key):
+        with point_at_faults(self.source, key):
             return direct_sum(summands)
 
     def _semidirect(self, part: SemidirectPart, key: KeyPath) -> LieAlgebra:
@@ -250,7 +250,7 @@ class _Algebras:
             self._check_dimension(acting.dimension + ideal.dimension, key)
             inner = (*key, "action")
             action = self._action(acting, part.action, inner, "action")
-            with located(self.source, inner):
+            with point_at_faults(self.source, inner):
                 return semidirect_sum(acting, ideal, action)
         spaces: list[tuple[str, Representation]] = []
         for prefix, space in (part.representations or {}).items():
@@ -258,7 +258,7 @@ class _Algebras:
             check_basis_names(self.source, inner, (prefix,))
             spaces.append((prefix, self._action(acting, space, inner, prefix)))
             self._check_dimension(acting.dimension + sum(s.dimension for _, s in spaces), key)
-        with located(self.source, key):
+        with point_at_faults(self.source, key):
             return semidirect_product(acting, spaces)
 
     def _action(
@@ -279,19 +279,19 @@ class _Algebras:
             pair: read_coefficient(self.source, (*inner, text), part.cocycle[text], self.scalars)
             for pair, text in self._pairs(part.cocycle, inner, algebra.basis).items()
         }
-        with located(self.source, inner):
+        with point_at_faults(self.source, inner):
             return central_extension(algebra, cocycle, part.center)
 
     def _leibniz(self, part: LeibnizPart, key: KeyPath) -> LieAlgebra:
         algebra = self.algebra(part.algebra, (*key, "algebra"))
         self._check_dimension(algebra.dimension * part.order, key)
-        with located(self.source, key):
+        with point_at_faults(self.source, key):
             return leibniz_extension(algebra, part.order)
 
     def _complexification(self, part: OperandPart, key: KeyPath) -> LieAlgebra:
         algebra = self.algebra(part, key)
         self._check_dimension(2 * algebra.dimension, key)
-        with located(self.source, key):
+        with point_at_faults(self.source, key):
             return complexification(algebra)
 
     def _subalgebra(self, part: SubalgebraPart, key: KeyPath) -> LieAlgebra:
@@ -302,7 +302,7 @@ class _Algebras:
             found = read_combination(self.source, (*inner, name), text, algebra.basis, self.scalars)
             places = range(algebra.dimension)
             vectors[name] = tuple(found.get(place, Fraction(0)) for place in places)
-        with located(self.source, inner):
+        with point_at_faults(self.source, inner):
             return subalgebra(algebra, vectors)
 
     # -- what any product must be -------------------------------------------------------

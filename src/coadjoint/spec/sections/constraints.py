@@ -133,25 +133,30 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
 
 
 def _check_unasked(source: Source, file: Any) -> None:
-    """Nothing is asked of a constrained motion that rests on a Poisson bracket.
+    """Nothing is asked of a constrained motion for which it has no bracket.
 
     Raises:
         SpecError: Something is, with what to declare instead.
     """
-    asked: dict[KeyPath, tuple[str, bool]] = {
-        ("claims", "casimirs"): ("claims of Casimirs", bool(file.claims.casimirs)),
-        ("claims", "brackets"): ("claims of brackets", bool(file.claims.brackets)),
-        ("symmetries",): ("[symmetries]", bool(file.symmetries)),
-        ("transformations",): ("[transformations]", bool(file.transformations)),
+    gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
+    unbracketed = "none, since a constraint that gives no velocity leaves no bracket of the state"
+    asked: dict[KeyPath, tuple[str, bool, str]] = {
+        ("claims", "casimirs"): ("claims of Casimirs", not gives, unbracketed),
+        ("claims", "brackets"): ("claims of brackets", not gives, unbracketed),
+        ("symmetries",): (
+            "[symmetries]",
+            bool(file.constraints),
+            "none, since symmetries of a constrained motion need not keep their momenta",
+        ),
     }
-    for key, (what, there) in asked.items():
-        if there:
+    for key, (what, is_refused, expected) in asked.items():
+        table = getattr(file.claims, str(key[-1])) if len(key) > 1 else file.symmetries
+        if table and is_refused:
             raise source.fault(
                 key,
                 f"there are {what} beside [constraints]",
                 found=key[-1],
-                expected="none, since the bracket of a constrained motion is almost-Poisson and "
-                "symmetries need not keep their momenta",
+                expected=expected,
                 hint="Declare momenta along the constraints in [momenta], and name what is "
                 "conserved in claims.conserved.",
             )

@@ -34,7 +34,7 @@ def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Defini
         LimitError: With the earlier definitions put in, an expression is too large.
     """
     for text in texts:
-        reading.declare(Naming(("definitions", text), _checked_name(reading.source, text)))
+        reading.declare(Naming(("definitions", text), _read_name(reading.source, text)))
     given: list[Declared] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
     shapes = shapes_of([*given, *filter(None, [TIME.of(reading)])])
     if find_definitions_with_reactions(reading.file):
@@ -42,7 +42,7 @@ def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Defini
     return define(reading.source, texts, shapes)
 
 
-def _checked_name(source: Source, text: str) -> str:
+def _read_name(source: Source, text: str) -> str:
     """The name in a key of [definitions]."""
     if not _KEY.fullmatch(text):
         key: KeyPath = ("definitions", text)

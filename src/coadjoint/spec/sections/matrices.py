@@ -25,7 +25,7 @@ from coadjoint.spec.core.source import Source
 
 
 @contextmanager
-def located(source: Source, key: KeyPath) -> Iterator[None]:
+def point_at_faults(source: Source, key: KeyPath) -> Iterator[None]:
     """Tell where in the file an error about an algebra comes from."""
     try:
         yield
@@ -177,7 +177,7 @@ def by_matrices(
 ) -> Representation:
     """A representation by matrices; those left out act as zero."""
     matrices, size = read_matrices(source, key, tables, algebra.basis, scalars)
-    with located(source, key):
+    with point_at_faults(source, key):
         acting = tuple(matrices.get(vector, {}) for vector in algebra.basis)
         return Representation(algebra, name, size, acting)
 
@@ -208,5 +208,5 @@ def representation_of(
         )
     if name in declared:
         return declared[name]
-    with located(source, key):
+    with point_at_faults(source, key):
         return representation_by_name(algebra, name, invariance)

@@ -113,18 +113,18 @@ class _Evaluation:
             case Index(name=name, indices=indices):
                 return self._known(node, self.scalars.value(name, indices))
             case Negate():
-                return _times(below[0], Fraction(-1))
+                return _multiply(below[0], Fraction(-1))
             case Power(exponent=exponent) if exponent > 0:
                 result = below[0]
                 for _ in range(exponent - 1):
-                    result = _times(result, below[0])
+                    result = _multiply(result, below[0])
                 return result
             case Binary(operator="*"):
-                return _times(below[0], below[1])
+                return _multiply(below[0], below[1])
             case Binary(operator="+" | "-" as operator):
-                return _added(below[0], below[1], 1 if operator == "+" else -1)
+                return _add(below[0], below[1], 1 if operator == "+" else -1)
             case Binary(operator="/") if isinstance(below[1], Fraction) and below[1]:
-                return _times(below[0], 1 / below[1])
+                return _multiply(below[0], 1 / below[1])
             case Call(function="transpose"):
                 return transpose(below[0])
             case Call(function="commutator"):
@@ -146,7 +146,7 @@ class _Evaluation:
         return value
 
 
-def _times(a: Any, b: Any) -> Any:
+def _multiply(a: Any, b: Any) -> Any:
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         return product(a, b)
     if isinstance(b, Mapping):
@@ -154,5 +154,5 @@ def _times(a: Any, b: Any) -> Any:
     return combination([(b, a)]) if isinstance(a, Mapping) else a * b
 
 
-def _added(a: Any, b: Any, sign: int) -> Any:
+def _add(a: Any, b: Any, sign: int) -> Any:
     return combination([(1, a), (sign, b)]) if isinstance(a, Mapping) else a + sign * b

@@ -23,7 +23,12 @@ from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import Block, Matrix
 from coadjoint.spec.sections.algebras import ALGEBRA, scalars_of
-from coadjoint.spec.sections.matrices import block_places, by_matrices, located, representation_of
+from coadjoint.spec.sections.matrices import (
+    block_places,
+    by_matrices,
+    point_at_faults,
+    representation_of,
+)
 
 
 class RepresentationPart(Part):
@@ -98,7 +103,7 @@ def _on_matrices(
         _own_matrices(source, (*key, side), algebra, block)
         for side, block in (("left", part.left), ("right", part.right))
     )
-    with located(source, key):
+    with point_at_faults(source, key):
         return two_sided(algebra, name, left, right)
 
 

@@ -1,0 +1,112 @@
+"""Integrals: what a spec claims to be conserved, and the balance of the energy.
+
+Comes in: a motion, constrained or free. Goes out: statements, and what must be zero. An integral
+that is claimed on a level set alone has to be kept there, and so has the set.
+Read next: `coadjoint.prove.candidates`, which looks for further ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.reconstruction import fixed_row
+from coadjoint.derive.records import Emitted, Kept
+from coadjoint.exact import Element
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.constrained import motion_of
+from coadjoint.prove.driven import while_constant
+from coadjoint.prove.energy import Balance, keeps_energy
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.motion import Motion
+from coadjoint.prove.zero import Decision, Examined, UndecidedError, claimed_by, decide_zero
+from coadjoint.spec.model import Integral
+from coadjoint.spec.spatial import SpatialMomentum
+
+
+def about_energy(motion: Motion) -> Iterator[Examined]:
+    """The balance of the energy."""
+    yield (
+        Balance(motion.equations).statement,
+        "conserved",
+        lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
+    )
+
+
+def about_integrals(motion: Motion) -> Iterator[Examined]:
+    """What the spec claims to be conserved; of an energy that is, the balance has said so."""
+    first, spec = motion.equations, motion.spec
+    said = "energy" if first.exact.energy is not None and keeps_energy(first) else None
+    for place, claim in enumerate(spec.conserved):
+        if claim.everywhere != said:
+            claimed = [(_statement(motion, claim), "conserved", partial(_integral, motion, claim))]
+            yield from claimed_by(spec, ("claims", "conserved", place), claimed, motion.field)
+
+
+def _statement(motion: Motion, claim: Integral) -> str:
+    """The claim, where it holds, and what inputs must do for it."""
+    where, setting, names = _vanishing(claim), motion.setting, motion.emitted
+    parts = (g for f in (claim.formula, *claim.where) for g in setting.components(f, names))
+    held = while_constant(motion.equations, parts)
+    return f"{claim.formula.in_one_line} is conserved" + (f" where {where}" if where else "") + held
+
+
+def _vanishing(claim: Integral) -> str:
+    """The level set of a claim: ``dot(Pi, Gamma) = 0``."""
+    return ", ".join(f"{formula.in_one_line} = 0" for formula in claim.where)
+
+
+def _integral(motion: Motion, claim: Integral) -> Decision:
+    """The rates of all components of a claimed integral: zero everywhere, or on its level set.
+
+    The motion must stay on the level set, too: there the functions that define it keep the value 0.
+    """
+    setting, names = motion.setting, motion.emitted
+    parts = setting.components(claim.formula, names)
+    level = [g for f in claim.where for g in setting.components(f, names)]
+    kept, rates = (list(map(motion.rate, functions)) for functions in (level, parts))
+    text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
+    where = motion.where.also(list(map(motion.in_state, level)), text)
+    return _conserved_on(where, kept, rates, list(map(motion.in_state, parts)))
+
+
+def _conserved_on(
+    where: Ideal, kept: Sequence[Element], rates: Sequence[Element], parts: Sequence[Element]
+) -> Decision:
+    """Whether rates vanish where relations hold, and so do those of the relations themselves."""
+    found = decide_zero([*kept, *rates], where.field, where, parts)
+    if kept and found.verdict is Verdict.REFUTED:
+        with suppress(UndecidedError):  # of a branch without points
+            left = decide_zero(kept, where.field, where, parts)
+            if left.verdict is Verdict.REFUTED:
+                return replace(left, leaves=True)
+    return found
+
+
+def is_conserved(equations: Equations, each: Emitted) -> bool:
+    """Whether the motion conserves what is emitted, by claims that are proved."""
+    if each.kept is Kept.AS_ENERGY:
+        return keeps_energy(equations)
+    if each.kept is Kept.UNLESS_WORKED_ON:
+        motion = motion_of(equations)
+        return all(motion.field.is_zero(motion.rate(value)) for value in each.values)
+    return each.kept is Kept.ALWAYS
+
+
+def about_spatial(motion: Motion) -> Iterator[Examined]:
+    """The momenta as seen from space."""
+    for seen in motion.spec.spatial:
+        if seen.conserved:
+            yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, motion, seen)
+
+
+def _seen_from_space(motion: Motion, seen: SpatialMomentum) -> Decision:
+    """The rates of a momentum as seen from space, at matrices of the group's form."""
+    emitted, fixed = dict(motion.equations.exact.observables), fixed_row(motion.setting)
+    text = ", ".join(relation.text for relation in fixed)
+    where = Ideal(motion.field, [relation.element for relation in fixed], text)
+    rates = [motion.rate(emitted[name]) for name in seen.components]
+    return decide_zero(rates, motion.field, where)

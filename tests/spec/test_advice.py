@@ -1,0 +1,637 @@
+"""Advice: what a message says to do is done, and the spec loads. No advice is left untried."""
+
+import ast
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import coadjoint.spec
+from coadjoint.cli import main
+from coadjoint.errors import CoadjointError, SpecError
+from tests.constrained import PARTICLE, SLEIGH
+from tests.derive.test_configuration import LAW
+from tests.rolling import BALL
+from tests.spec.test_consistency import KIRCHHOFF, MOMENTA_ONLY
+from tests.spec.test_poisson import CANONICAL, NAMBU
+from tests.spec.test_routes import OSCILLATOR
+from tests.spec.test_symmetries import TEXT as PARTICLES
+from tests.spec.texts import BY_BRACKETS, BY_MATRICES
+from tests.specs import RIGID_BODY, shipped, spec
+
+SPEC = Path(coadjoint.spec.__file__).parent
+END = "[claims]"
+BARE = """
+title = "A Lax pair alone"
+routes = ["lax"]
+[variables]
+x = { role = "coordinate", shape = [3] }
+[lax]
+L = "hat(x)"
+M = "hat(vector(x1, 2*x2, 3*x3))"
+"""
+ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
+BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
+ONE = 'routes = ["euler-poincare"]'
+FORCE = '[forces]\nOmega = "-Omega"\n[claims]'
+SHAKEN = "[inputs]\nu = { default = 0 }\n[claims]"
+TOP = RIGID_BODY.replace(
+    'Pi = { role = "momentum" }',
+    'Pi = { role = "momentum" }\nGamma = { role = "advected", representation = "vector" }',
+)
+ISERLES = shipped("bloch_iserles_2").path.read_text(encoding="utf-8")
+
+
+def write(old, new):
+    """A change."""
+    return [(old, new)]
+
+
+def before_claims(lines):
+    """Further tables."""
+    return write(END, f"{lines}\n{END}")
+
+
+#: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
+ADVICE = [
+    # -- routes
+    (
+        RIGID_BODY,
+        write('"lie-poisson"', '"clebsch"') + write(END, FORCE),
+        'Remove "clebsch", or remove [forces].',
+        write(', "clebsch"', ""),
+    ),
+    (
+        RIGID_BODY,
+        write(BOTH, 'routes = ["complexification"]'),
+        'Write "euler-poincare" in its place, or write [hamiltonian] and below it '
+        'h = "dot(Pi, Pi)/2".',
+        write('"complexification"', '"euler-poincare"'),
+    ),
+    (
+        RIGID_BODY,
+        write(ENERGY, ""),
+        'Write [lagrangian] and below it l = "dot(Omega, Omega)/2".',
+        before_claims('[lagrangian]\nl = "dot(Omega, Omega)/2"'),
+    ),
+    (
+        OSCILLATOR,
+        write('"canonical"', '"canonical", "euler-lagrange"'),
+        'Remove "euler-lagrange".',
+        write(', "euler-lagrange"', ""),
+    ),
+    (
+        OSCILLATOR,
+        write('[hamiltonian]\nh = "dot(p, p)/2 + dot(q, q)/2"', ""),
+        'Write [hamiltonian] and below it h = "dot(p, p)/2".',
+        write("[variables]", '[hamiltonian]\nh = "dot(p, p)/2"\n[variables]'),
+    ),
+    (
+        MOMENTA_ONLY,
+        write('"lie-poisson"', '"lie-poisson", "manakov"')
+        + write("[hamiltonian]", '[time]\nname = "t"\n[hamiltonian]')
+        + write("dot(Pi, Pi)/2", "dot(Pi, Pi)*t"),
+        'Remove "manakov".',
+        write(', "manakov"', ""),
+    ),
+    (
+        RIGID_BODY,
+        write('"euler-poincare"', '"clebsch"'),
+        'Put "euler-poincare" first.',
+        write('"clebsch"', '"euler-poincare", "clebsch"'),
+    ),
+    (
+        RIGID_BODY,
+        write(BOTH, ONE) + before_claims('[hamiltonian]\nh = "dot(Pi, Pi)"'),
+        'Add "lie-poisson" to routes, or remove [hamiltonian].',
+        write(ONE, BOTH),
+    ),
+    (
+        RIGID_BODY,
+        before_claims('[newton]\nq = { force = "1" }'),
+        "Remove [newton].",
+        write('[newton]\nq = { force = "1" }', ""),
+    ),
+    (
+        RIGID_BODY.replace("[algebra]", "").replace('name = "so(3)"', ""),
+        [],
+        'Write [algebra] and below it name = "so(3)".',
+        write("[variables]", '[algebra]\nname = "so(3)"\n[variables]'),
+    ),
+    (
+        RIGID_BODY,
+        before_claims('[poisson]\nnambu = ["1"]'),
+        "follows from it: remove [poisson].",
+        write('[poisson]\nnambu = ["1"]', ""),
+    ),
+    (
+        OSCILLATOR,
+        write("[hamiltonian]", '[representations.r]\nleft = "a"\n[hamiltonian]'),
+        "Remove [representations].",
+        write('[representations.r]\nleft = "a"\n', ""),
+    ),
+    (
+        BARE,
+        write("[lax]", 'v = { role = "velocity", of = "x" }\n[lax]'),
+        "Write M in variables of the state, or declare [hamiltonian].",
+        write('v = { role = "velocity", of = "x" }\n', ""),
+    ),
+    # -- what acts
+    (RIGID_BODY, write(END, SHAKEN), "remove it from [inputs].", write(SHAKEN, END)),
+    (
+        RIGID_BODY,
+        before_claims('[time]\nname = "t"'),
+        "Use it in the energy or a force, or remove [time].",
+        before_claims('[forces]\nOmega = "t*Omega"'),
+    ),
+    (
+        RIGID_BODY,
+        before_claims('[forces]\nOmgea = "-Omega"'),
+        "Did you mean 'Omega'?",
+        write("Omgea", "Omega"),
+    ),
+    (
+        RIGID_BODY,
+        before_claims('[forces]\nPi = "-Omega"'),
+        "Write Omega in its place.",
+        write('Pi = "-Omega"', 'Omega = "-Omega"'),
+    ),
+    (
+        RIGID_BODY,
+        before_claims('[forces]\nwind = "-Omega"'),
+        "Remove wind.",
+        write('wind = "-Omega"', ""),
+    ),
+    (
+        RIGID_BODY,
+        before_claims('[dissipation]\nR = "dot(Pi, Pi)"'),
+        "Name Omega in it, or remove [dissipation].",
+        write('R = "dot(Pi, Pi)"', 'R = "dot(Omega, Omega)"'),
+    ),
+    (
+        MOMENTA_ONLY,
+        write("[hamiltonian]", '[dissipation]\nR = "dot(Pi, Pi)"\n[hamiltonian]'),
+        "Write what acts along a momentum in [forces].",
+        write('[dissipation]\nR = "dot(Pi, Pi)"', '[forces]\nPi = "-Pi"'),
+    ),
+    (
+        MOMENTA_ONLY,
+        write(
+            "[hamiltonian]",
+            '[double_bracket]\nG = "1"\n[metriplectic]\nG = "1"\nS = "1"\n[hamiltonian]',
+        ),
+        "Remove [metriplectic] or [double_bracket].",
+        write('[metriplectic]\nG = "1"\nS = "1"\n', ""),
+    ),
+    (
+        RIGID_BODY,
+        write("= { shape = [3], positive", '= { rate = "v" }\nJ = { shape = [3], positive')
+        + write("[parameters]\nI = ", "[inputs]\nu = ")
+        + write("diag(I)*Omega", "u*Omega")
+        + write("\nJ =", "\n[parameters]\nJ ="),
+        "Declare it in [inputs].",
+        write('rate = "v" }', 'rate = "v", default = 0 }\nv = { default = 0 }'),
+    ),
+    # -- variables
+    (
+        KIRCHHOFF,
+        write('P = { role = "momentum", block = "translation" }\n', ""),
+        "Give both the same block.",
+        write(
+            'Pi = { role = "momentum", block = "rotation" }',
+            'Pi = { role = "momentum", block = "rotation" }\n'
+            'P = { role = "momentum", block = "translation" }',
+        ),
+    ),
+    (
+        OSCILLATOR,
+        write('p = { role = "momentum", of = "q" }', 'p = { role = "coordinate" }'),
+        'Write for instance p_q = { role = "momentum", of = "q" }.',
+        write('p = { role = "coordinate" }', 'p_q = { role = "momentum", of = "q" }')
+        + write("dot(p, p)/2 + ", ""),
+    ),
+    (
+        OSCILLATOR,
+        write("[hamiltonian]", 's = { role = "coordinate" }\n[hamiltonian]'),
+        'Write for instance p_s = { role = "momentum", of = "s" }.',
+        write("[hamiltonian]", 'p_s = { role = "momentum", of = "s" }\n[hamiltonian]'),
+    ),
+    (
+        RIGID_BODY,
+        write('Pi = { role = "momentum" }\n', "") + write('casimirs = ["dot(Pi, Pi)"]', ""),
+        'Write for instance Pi = { role = "momentum" }.',
+        write("[parameters]", 'Pi = { role = "momentum" }\n[parameters]'),
+    ),
+    (
+        MOMENTA_ONLY,
+        write('"momentum" }', '"momentum", block = ["J1", "J2"] }'),
+        'Write for instance Pi_thing = { role = "momentum", block = ["J3"] }.',
+        write("[hamiltonian]", 'Pi_thing = { role = "momentum", block = ["J3"] }\n[hamiltonian]'),
+    ),
+    (
+        OSCILLATOR,
+        write(', of = "q"', ""),
+        'Add for instance of = "q".',
+        write('"momentum" }', '"momentum", of = "q" }'),
+    ),
+    (
+        OSCILLATOR,
+        write('q = { role = "coordinate", shape = [2] }\n', "")
+        + write(', of = "q"', "")
+        + write(" + dot(q, q)/2", "")
+        + write("[variables]", '[poisson]\nnambu = ["1"]\n[variables]'),
+        'Write q = { role = "coordinate" }, and add of = "q".',
+        write('"momentum" }', '"momentum", of = "q" }\nq = { role = "coordinate" }')
+        + write('[poisson]\nnambu = ["1"]\n', "")
+        + write("dot(p, p)", "p^2"),
+    ),
+    (
+        RIGID_BODY,
+        write('Pi = { role = "momentum"', 'Pi = { role = "momentum", shape = [3]'),
+        "Remove shape.",
+        write(", shape = [3] }\n\n", " }\n\n"),
+    ),
+    (
+        TOP,
+        write(', representation = "vector"', ""),
+        'Write representation = "vector".',
+        write('"advected" }', '"advected", representation = "vector" }'),
+    ),
+    (
+        BY_BRACKETS,
+        write(', representation = "shift"', "") + write(" + c*a[1]", ""),
+        'Write representation = "coadjoint".',
+        write('"advected" }', '"advected", representation = "coadjoint" }'),
+    ),
+    (
+        TOP,
+        write('representation = "vector"', 'representation = "shear"'),
+        "Declare it under [representations.shear].",
+        write("[parameters]", '[representations.shear]\nleft = "rotation"\n[parameters]'),
+    ),
+    (
+        TOP,
+        write("[parameters]", "[representations.shear]\n[parameters]"),
+        'Write for instance right = "rotation".',
+        write("[representations.shear]\n", '[representations.shear]\nright = "rotation"\n'),
+    ),
+    (
+        RIGID_BODY,
+        write('Pi = { role = "momentum"', 'Pi = { role = "momentum", form = "matrix"')
+        + write('casimirs = ["dot(Pi, Pi)"]', ""),
+        "Remove form, or choose another block, representation or shape.",
+        write(', form = "matrix"', ""),
+    ),
+    (
+        RIGID_BODY,
+        write("shape = [3], positive", 'shape = [5], form = "symmetric", positive'),
+        "Remove form, or choose another shape.",
+        write("shape = [5]", "shape = [6]")
+        + write("default = [1, 2, 3]", "default = 1")
+        + write("diag(I)", "I"),
+    ),
+    (
+        RIGID_BODY,
+        write('Pi = { role = "momentum"', 'Pi = { role = "momentum", form = "antisymmetric"'),
+        "Leave form out, and write hat(...) where a matrix is meant.",
+        write(', form = "antisymmetric"', ""),
+    ),
+    (
+        PARTICLE,
+        write("[parameters]", 'p = { role = "momentum", of = "x" }\n[parameters]'),
+        "Remove it; the velocities that no constraint gives are the state.",
+        write('p = { role = "momentum", of = "x" }\n', ""),
+    ),
+    # -- algebras
+    (
+        BY_BRACKETS,
+        write('{ "[e1, e2]" = "e3" }', '{ "[e1, e2]" = "e3", "[e2, e1]" = "-e3" }'),
+        "Remove it.",
+        write(', "[e2, e1]" = "-e3"', ""),
+    ),
+    (
+        BY_MATRICES,
+        write(
+            "[algebra.matrices]", '[algebra]\nbasis = ["J1", "J2", "J3", "E"]\n[algebra.matrices]'
+        ),
+        "Write E = [[...], [...]] among the matrices.",
+        write("[variables]", "E = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n[variables]"),
+    ),
+    (
+        BY_BRACKETS,
+        write("[variables]", "[parameters]\ne1 = { default = 1 }\n[variables]")
+        + write('= "e3" }', '= "e3 + 0*e1" }'),
+        "Rename the parameter.",
+        write("e1 = { default", "k = { default"),
+    ),
+    (
+        ISERLES,
+        write("[parameters.N]", "[parameters.Y]") + write("X*N*Y - Y*N*X", "X*Y - Y*X"),
+        "Rename the parameter.",
+        write("[parameters.Y]", "[parameters.N]") + write("X*Y - Y*X", "X*N*Y - Y*N*X"),
+    ),
+    (
+        BY_BRACKETS,
+        write("[variables]", '[time]\nname = "t"\n[variables]') + write('= "e3" }', '= "t*e3" }'),
+        "Put a parameter in its place.",
+        write('[time]\nname = "t"\n', "[parameters]\nt_0 = { default = 1 }\n")
+        + write("t*e3", "t_0*e3"),
+    ),
+    (
+        RIGID_BODY,
+        write('name = "so(3)"', 'extension = { algebra = "so(3)", center = "J1", cocycle = {} }')
+        + write(BOTH, 'routes = ["lie-poisson"]')
+        + write(ENERGY, '[hamiltonian]\nh = "dot(Pi, Pi)"')
+        + write('Omega = { role = "velocity" }', ""),
+        "Choose another name here.",
+        write('center = "J1"', 'center = "Z"'),
+    ),
+    # -- names
+    (
+        RIGID_BODY,
+        write("I =", "lambda =") + write("diag(I)", "diag(lambda)"),
+        "Call it 'lam'.",
+        write("lambda", "lam"),
+    ),
+    (
+        RIGID_BODY,
+        write("[parameters]", "[parameters]\nPi1 = {}"),
+        "Rename one of them",
+        write("Pi1 = {}", "P = {}"),
+    ),
+    (
+        RIGID_BODY,
+        write("[parameters]", "[parameters]\ncasimir = { shape = [2] }"),
+        "Choose another name.",
+        write("casimir =", "K ="),
+    ),
+    # -- definitions and formulas
+    (
+        RIGID_BODY,
+        before_claims('[definitions]\n"f(I)" = "2*I"'),
+        "A variable or parameter need not be an argument.",
+        write('"f(I)"', "f"),
+    ),
+    (
+        RIGID_BODY,
+        write("dot(Omega, diag(I)*Omega)/2", "Omega"),
+        "Write dot(a, a) for the square of a vector.",
+        write('l = "Omega"', 'l = "dot(Omega, Omega)"'),
+    ),
+    (
+        SLEIGH,
+        write('"u == 0"', '"u = 0"'),
+        "Write for instance 'Y == cross(Omega, s)'.",
+        write('"u = 0"', '"u == 0"'),
+    ),
+    (
+        PARTICLE,
+        write("[constraints]", '[definitions]\npull = "blade_reaction"\n[constraints]')
+        + write('"w == y*u"', '"w == pull*u"'),
+        "Write pull without reactions, or use it in [forces] alone.",
+        write('pull = "blade_reaction"', 'pull = "y"'),
+    ),
+    # -- further tables
+    (
+        LAW,
+        write('y = { force = "k*(x - y)" }\n', ""),
+        'Write for instance y = { force = "-y" }.',
+        write("[newton]\n", '[newton]\ny = { force = "-y" }\n'),
+    ),
+    (
+        shipped("manakov_so4").path.read_text(encoding="utf-8"),
+        write('"M + lambda*diag(a)^2"', '"a"'),
+        "Write hat(a) for the matrix of a vector a, diag(a) for a diagonal one.",
+        write('"a"', '"diag(a)"'),
+    ),
+    (
+        CANONICAL,
+        write("[parameters]", 'k = { role = "coordinate" }\n[parameters]'),
+        "Declare a constant as a parameter, or let a force or [metriplectic] move it.",
+        write('k = { role = "coordinate" }\n[parameters]', "[parameters]\nk = {}"),
+    ),
+    (
+        PARTICLES,
+        write('"{L, q}"  ', '"{L, S}"  '),
+        "Take a row or a component of it, as A[1] or A[1, 2].",
+        write('"{L, S}"  ', '"{L, S[1, 2]}"  ') + write('"-hat(q)"', '"vector(0, 0, 0)"'),
+    ),
+    (
+        PARTICLES,
+        write('matrix     = "A"', 'matrix     = "A"\nform = "matrix"'),
+        "Remove form.",
+        write('\nform = "matrix"', ""),
+    ),
+    (
+        LAW,
+        write("[claims]", '[claims]\ncasimirs = ["x"]'),
+        "Remove casimirs, or declare [lagrangian] and a route that takes it.",
+        write('casimirs = ["x"]', ""),
+    ),
+    (
+        BALL,
+        write("[rolling]", '[reconstruction]\nq = { attitude = "quaternion" }\n[rolling]'),
+        "The attitude and the point of contact are followed without being declared: remove it.",
+        write('q = { attitude = "quaternion" }\n', ""),
+    ),
+    (
+        BALL,
+        write("[rolling]", '[observables]\ny = "Omega1"\n[rolling]'),
+        "Call it 'y_0'.",
+        write('y = "Omega1"', 'y_0 = "Omega1"'),
+    ),
+    (
+        SLEIGH,
+        write("[constraints]", '[reconstruction]\nq = { attitude = "quaternion" }\n[constraints]'),
+        'Without one, declare an angle: theta = "omega".',
+        write('q = { attitude = "quaternion" }', 'theta = "omega"'),
+    ),
+    # -- form of the file
+    (
+        RIGID_BODY,
+        write(f"{BOTH}\n", ""),
+        'Write routes = ["euler-poincare", "lie-poisson"] at the top.',
+        write('title = "Free rigid body"', f'title = "Free rigid body"\n{BOTH}'),
+    ),
+    (
+        OSCILLATOR,
+        write('routes = ["canonical"]\n', ""),
+        'Write routes = ["canonical"] at the top.',
+        write('title = "x"', 'title = "x"\nroutes = ["canonical"]'),
+    ),
+    (
+        NAMBU,
+        write('routes = ["nambu", "poisson"]\n', ""),
+        'Write routes = ["poisson"] at the top.',
+        write('title = "x"', 'title = "x"\nroutes = ["poisson"]'),
+    ),
+    (
+        RIGID_BODY,
+        write("[parameters]", "[parameter]"),
+        "Did you mean 'parameters'?",
+        write("[parameter]", "[parameters]"),
+    ),
+    (
+        RIGID_BODY,
+        write("positive =", "positve ="),
+        "Did you mean 'positive'?",
+        write("positve =", "positive ="),
+    ),
+    (
+        RIGID_BODY,
+        write('"so(3)"', "so(3)"),
+        "Text stands in quotes, a table in one line in { }.",
+        write("so(3)", '"so(3)"'),
+    ),
+]
+
+
+#: Of formulas: what is wrong, what the message says, and the formula that it leads to.
+FORMULAS = [
+    ("e = m*c", "Write only the right-hand side.", "m*c"),
+    ("transpose(A)'*a", "a transposed matrix is transpose(A).", "transpose(A)*a"),
+    ("|a|", "The length of a vector is norm(a).", "norm(a)"),
+    ("A@a", "Write * for products of matrices.", "A*a"),
+    ("{m + c}*m", "Group with round parentheses.", "(m + c)*m"),
+    ("m % c", "Write a fraction as a/b.", "m/c"),
+    ("c!", "Write products out.", "c*(c - 1)"),
+    ("a \u00d7 b", "The cross product is cross(a, b).", "cross(a, b)"),
+    ("a \u00b7 b", "The dot product is dot(a, b), a product *.", "dot(a, b)"),
+    ("m \u2212 c", "Write the minus sign of the keyboard, -.", "m - c"),
+    ("m^2^c", "Write (a^b)^c, or multiply the exponents out.", "(m^2)^2"),
+    ("m^c", "Roots and other powers are sqrt(x) and exp(y*log(x)).", "exp(c*log(m))"),
+    ("m c", "Write m*c.", "m*c"),
+    ("2(m + c)", "Write * for a product.", "2*(m + c)"),
+    ("(A*a)[1]", "Only names have subscripts.", "a[1]"),
+    ("m(c + 1)", "m*(...) for a product.", "m*(c + 1)"),
+    ("1e-3*m", "Write 0.001.", "0.001*m"),
+    ("\u03a9 + m", "Write Omega.", "Omega"),
+    ("m\u00b2", "Write ^2.", "m^2"),
+    ("a[0]", "Components are counted from 1.", "a[1]"),
+    ("a^2", "The square of a vector is dot(a, a).", "dot(a, a)"),
+    ("a/A", "Write inverse(A)*x.", "inverse(A)*a"),
+    ("a*b", "Write dot(a, b) for the scalar product", "dot(a, b)"),
+    ("a*A", "Write transpose(A)*a for a row vector times a matrix.", "transpose(A)*a"),
+    ("dot(A, A)", "The product of matrices is trace(transpose(A)*B).", "trace(transpose(A)*A)"),
+]
+SYMBOLS = (
+    "[parameters]",
+    "[parameters]\nm = { positive = true }\nc = {}\na = { shape = [3] }\nb = { shape = [3] }\n"
+    "A = { shape = [3, 3] }",
+)
+
+
+@pytest.mark.parametrize(("text", "wrong", "said", "done"), ADVICE)
+def test_advice_that_is_followed_leads_to_a_spec(text, wrong, said, done):
+    """The message says it, and after it is done the spec loads."""
+    for old, new in wrong:
+        assert old in text, old
+        text = text.replace(old, new)
+    with pytest.raises(CoadjointError) as caught:
+        spec(text)
+    assert said in str(caught.value)
+    assert spec(text, *done)
+
+
+@pytest.mark.parametrize(("formula", "said", "better"), FORMULAS)
+def test_advice_about_a_formula_leads_to_one(formula, said, better):
+    """What is written in its place is read."""
+    observed = (END, f'[observables]\nfound = "{formula}"\n[claims]')
+    with pytest.raises(SpecError) as caught:
+        spec(RIGID_BODY, SYMBOLS, observed)
+    assert said in str(caught.value)
+    assert spec(RIGID_BODY, SYMBOLS, (END, f'[observables]\nfound = "{better}"\n[claims]'))
+
+
+#: Advice that is followed in other tests, or that large specs alone are given.
+ELSEWHERE = {
+    "Rename the file to ": "test_names.py",
+    "Give the file that it points to: ": "test_reader.py",
+    "Put numbers for some of the parameters.": "more than PARAMETRIC_TERMS terms",
+    "Declare the algebra by its brackets.": "more than MATRIX_ENTRIES numbers",
+    "Larger systems are solved inside the kernels": "a route that solves for velocities",
+    "Leave form out, or declare the algebra by these matrices.": "needs 6 dimensions",
+    "Remove form, or declare the algebra by such matrices.": "test_lax.py",
+    "Declare momenta along the constraints in [momenta]": "test_constraints.py reads momenta",
+    "Declare it in a spec of the whole system.": "another spec",
+    "Write diag(m) for a mass of each row.": "test_newton.py",
+    "Remove the momentum ": "below",
+    "The first is in line ": "names the place",
+    "Blocks of ": "names what there is",
+    "is not part of the language": "a problem and no advice",
+    "there is no such ": "a problem and no advice",
+    " do not fit": "a problem and no advice",
+}
+
+
+def find_advice(folder):
+    """The constant pieces of every hint in a folder of modules, by place."""
+    found = {}
+    for path in sorted(folder.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [
+                getattr(n, "id", "") for t in getattr(node, "targets", []) for n in ast.walk(t)
+            ]
+            is_hint = getattr(node, "arg", "") == "hint" and isinstance(node, ast.keyword)
+            value = node.value if is_hint or "hint" in names else None
+            if getattr(getattr(node, "func", None), "attr", "") == "at_key" and node.args[4:]:
+                value = node.args[4]
+            if value is not None:
+                found[f"{path.name}:{value.lineno}"] = [
+                    piece.value
+                    for piece in ast.walk(value)
+                    if isinstance(piece, ast.Constant)
+                    and isinstance(piece.value, str)
+                    and len(piece.value.split()) > 1
+                ]
+    return found
+
+
+def test_no_advice_is_left_untried():
+    """Every hint of the package is among those that are followed, here or elsewhere."""
+    said = [entry[2] for entry in ADVICE] + [entry[1] for entry in FORMULAS] + list(ELSEWHERE)
+    pieces = find_advice(SPEC)
+    assert len(pieces) > 50
+    untried = {
+        place: texts
+        for place, texts in pieces.items()
+        if texts and not any(a in b or b in a for a in texts for b in said)
+    }
+    assert untried == {}
+
+
+def test_a_new_hint_would_be_seen(tmp_path):
+    """The check above can fail."""
+    (tmp_path / "module.py").write_text('fault(hint="Turn it off and on again.")')
+    assert find_advice(tmp_path) == {"module.py:1": ["Turn it off and on again."]}
+
+
+#: Bad input of what drives and damps: refused when the spec is read, with place and fix.
+BAD = [
+    ("[inputs]\nu = { default = 0 }", "inputs.u", "u", "remove it from [inputs]"),
+    ('[forces]\nwind = "Omega"', "forces.wind", "wind", "one of Omega"),
+    ('[forces]\nOmega = "Omega1"', "forces.Omega", "a scalar", "a 3-vector, as 'Omega' is"),
+    ('[double_bracket]\nG = "Pi"', "double_bracket.G", "a 3-vector", "a 3 x 3 matrix"),
+    ('[friction]\nR = "1"', "friction", "friction", "dissipation, double_bracket"),
+    ('[dissipation]\nr = "1"', "dissipation.r", "r", "one of R. Did you mean 'R'?"),
+]
+
+
+@pytest.mark.parametrize(("lines", "key", "found", "said"), BAD)
+def test_bad_input_is_refused_when_it_is_read(lines, key, found, said):
+    """Where, what was found, and what is expected; the exit status is 2."""
+    with pytest.raises(SpecError) as caught:
+        spec(RIGID_BODY, (END, f"{lines}\n{END}"))
+    assert (caught.value.key, caught.value.found) == (key, found)
+    assert caught.value.exit_status == 2
+    assert said in str(caught.value)
+
+
+def test_bad_input_ends_the_command_before_work_starts(tmp_path):
+    """The message is on standard error, and nothing is derived."""
+    path = tmp_path / "sample.toml"
+    path.write_text(RIGID_BODY.replace(END, f"{BAD[0][0]}\n{END}"))
+    result = CliRunner().invoke(main, ["prove", str(path)])
+    assert result.exit_code == 2
+    assert "inputs.u" in result.stderr
+    assert result.stdout == ""
