@@ -5,7 +5,7 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.derive.records import Kept
 from coadjoint.prove.declaration import kernel_context
-from coadjoint.prove.energy import is_conserved
+from coadjoint.prove.integrals import is_conserved
 from tests.derive.test_observables import SHAPED
 from tests.specs import shipped, spec
 
