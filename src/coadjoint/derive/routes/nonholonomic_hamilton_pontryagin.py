@@ -58,13 +58,13 @@ def derive(setting: Setting) -> Equations:
     forces, moved = _varied(setting)
     momentum = _momentum_equations(found, forces, moved)
     constraint = [_rate(found, each.residual, moved) for each in found.equations]
-    motion, field = ConstrainedMotion(found), setting.field
-    pressed = _pressed(motion)
-    given, left = _eliminated(found, momentum, constraint, pressed)
+    given, left = _eliminated(found, momentum, constraint)
+    field = setting.field
     names = [rate_name(name) for name in found.independent]
     mass = tuple(field.gradient(line, names) for line in left)
     rest = dict.fromkeys([*names, *map(multiplier_name, range(len(found.kept)))], field.zero)
     known = [-field.substitute(line, rest) for line in left]
+    motion = ConstrainedMotion(found)
     exact = emission(motion, motion.kinematics, mass, known, list(given.items()))
     steps = _steps(found, forces, momentum, constraint, given)
     return Equations(setting, ROUTE, exact, steps, distribution=found)
@@ -98,9 +98,14 @@ def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) 
 def _momentum_equations(
     found: Distribution, forces: Row, moved: Mapping[str, Element]
 ) -> dict[str, Element]:
-    """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers."""
+    """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers.
+
+    Multipliers of constraints that are kept have names of their own, with the other sign: so they
+    are told from the reactions that forces name.
+    """
     setting, field, names = found.setting, found.setting.field, found.frame.velocities
-    multipliers = setting.elements([each.reaction for each in found.equations])
+    kept = _kept(found)
+    multipliers = [kept.get(e.reaction, field[e.reaction]) for e in found.equations]
     lines = {}
     for name, momentum, force, outer, column in zip(
         names,
@@ -115,40 +120,28 @@ def _momentum_equations(
     return lines
 
 
-def _pressed(motion: ConstrainedMotion) -> dict[str, Element]:
-    """The part of the force along each velocity that is a multiple of reactions, as friction is."""
-    names = motion.frame.velocities
-    acting = zip(names, external_forces(motion.frame.setting, names), strict=True)
-    return {name: force - motion.without_reactions(force) for name, force in acting}
-
-
 def _eliminated(
-    found: Distribution,
-    momentum: Mapping[str, Element],
-    constraint: Sequence[Element],
-    pressed: Mapping[str, Element],
+    found: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
 ) -> tuple[dict[str, Element], list[Element]]:
     """Rates and multipliers that follow, and the momentum equations that are left.
 
     The velocity that a constraint gives has its rate from that constraint, and the constraint its
-    multiplier from the momentum equation along that velocity. Of the constraints that are kept
-    minus the multiplier has a name of its own; forces that are multiples of it keep its name.
+    multiplier from the momentum equation along that velocity.
     """
     field = found.setting.field
     giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
     lines = {rate_name(equation.solves): line for equation, line in giving}
     rates = _solved(found, lines)
-    kept = {
-        equation.reaction: -field[multiplier_name(n)] for n, (equation, _) in enumerate(found.kept)
-    }
-    put = {**rates, **kept}
-    left = {
-        name: field.substitute(line + pressed[name], put) - pressed[name]
-        for name, line in momentum.items()
-    }
+    left = {name: field.substitute(line, rates) for name, line in momentum.items()}
     multipliers = _solved(found, {each.reaction: left[each.solves] for each, _ in giving})
     rows = [field.substitute(left[name], multipliers) for name in found.independent]
-    return {**rates, **kept, **multipliers}, rows
+    return {**rates, **_kept(found), **multipliers}, rows
+
+
+def _kept(found: Distribution) -> dict[str, Element]:
+    """The reactions of the constraints that are kept, by the names that the kernel solves for."""
+    field = found.setting.field
+    return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(found.kept)}
 
 
 def _solved(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
