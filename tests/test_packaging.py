@@ -12,7 +12,16 @@ import pytest
 
 from tests.trees_of_files import ROOT
 
-PARTS = ("src", "templates", "derivations", "generated", "pyproject.toml", "README.md", "LICENSE")
+PARTS = (
+    "src",
+    "templates",
+    "derivations",
+    "generated",
+    "setup.py",
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+)
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,13 @@ import pytest
 
 from coadjoint.exact.linear import PRIME
 from coadjoint.prove import Verdict, counts, prove
-from coadjoint.prove.candidates import CandidateSearch, Known
-from coadjoint.prove.counts import about_candidates, default_numbers, known_integrals
+from coadjoint.prove.candidates import (
+    CandidateSearch,
+    Known,
+    about_candidates,
+    default_numbers,
+    known_integrals,
+)
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Discovery, decide_zero
 from tests.prove.rolling import motion

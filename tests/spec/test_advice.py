@@ -12,6 +12,7 @@ from coadjoint.errors import CoadjointError, SpecError
 from tests.constrained import PARTICLE, SLEIGH
 from tests.derive.test_configuration import LAW
 from tests.rolling import BALL
+from tests.spec.test_charts import CHART, RATES
 from tests.spec.test_consistency import KIRCHHOFF, MOMENTA_ONLY
 from tests.spec.test_poisson import CANONICAL, NAMBU
 from tests.spec.test_routes import OSCILLATOR
@@ -21,6 +22,7 @@ from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
 END = "[claims]"
+MAPPED = '[charts.c]\nvariables = { A = [] }\nmap = { v = "A" }\nrates = { A = "A" }\n'
 BARE = """
 title = "A Lax pair alone"
 routes = ["lax"]
@@ -191,6 +193,32 @@ ADVICE = [
         + write("\nJ =", "\n[parameters]\nJ ="),
         "Declare it in [inputs].",
         write('rate = "v" }', 'rate = "v", default = 0 }\nv = { default = 0 }'),
+    ),
+    (
+        MOMENTA_ONLY,
+        write("[hamiltonian]", '[momenta.J]\nsection = { Omega = "Pi" }\n[hamiltonian]'),
+        "Name the momentum in [observables], and claim it in claims.conserved.",
+        write('[momenta.J]\nsection = { Omega = "Pi" }', '[observables]\nJ = "Pi1"')
+        + write('h = "dot(Pi, Pi)/2"', 'h = "dot(Pi, Pi)/2"\n[claims]\nconserved = ["J"]'),
+    ),
+    # -- charts
+    (
+        CHART,
+        write(RATES, ""),
+        "Write rates = { r = ... } for every variable.",
+        write('p = "B" }', f'p = "B" }}\n{RATES}'),
+    ),
+    (
+        CHART,
+        write(RATES, f'{RATES}\npairs = [["A", "B"]]'),
+        "Remove pairs.",
+        write('pairs = [["A", "B"]]', ""),
+    ),
+    (
+        SLEIGH,
+        write("[constraints]", f"{MAPPED}[constraints]"),
+        "Remove [charts], or [constraints].",
+        write(MAPPED, ""),
     ),
     # -- variables
     (

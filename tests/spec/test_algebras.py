@@ -42,10 +42,10 @@ def test_declared_matrices_give_the_algebra_of_the_catalogue():
     [
         (('"[e1, e2]"', '"[e1, e4]"'), "algebra.brackets.[e1, e4]", "e4", "[e1, e2]"),
         (('"[e1, e2]"', '"e1 e2"'), "algebra.brackets.e1 e2", "e1 e2", "[e1, e2]"),
-        (('"e3" }', '"e1*e2" }'), "algebra.brackets.[e1, e2]", "", "no linear combination"),
-        (('"e3" }', '"e3 + 1" }'), "algebra.brackets.[e1, e2]", "", "no linear combination"),
-        (('"e3" }', '"e3^2" }'), "algebra.brackets.[e1, e2]", "", "no linear combination"),
-        (('"e3" }', '"2/e3" }'), "algebra.brackets.[e1, e2]", "", "no linear combination"),
+        (('"e3" }', '"e1*e2" }'), "algebra.brackets.[e1, e2]", "", "not a linear combination"),
+        (('"e3" }', '"e3 + 1" }'), "algebra.brackets.[e1, e2]", "", "not a linear combination"),
+        (('"e3" }', '"e3^2" }'), "algebra.brackets.[e1, e2]", "", "not a linear combination"),
+        (('"e3" }', '"2/e3" }'), "algebra.brackets.[e1, e2]", "", "not a linear combination"),
         (('"e3" }', '"e5" }'), "algebra.brackets.[e1, e2]", "e5", "'e5' is not declared"),
         (('["e1", "e2"]', '["e1", "e5"]'), "algebra.blocks.plane[2]", "e5", "e1, e2, e3"),
         (('"e1", "e2", "e3"', '"e1", "_e2", "e3"'), "algebra.basis[2]", "_e2", "not a name"),
@@ -299,7 +299,7 @@ def test_cocycles_and_matrices_may_hold_parameters():
             'extension = { algebra = "h(1)", cocycle = { "[A1, D]" = 1 } }',
             "algebra.extension.cocycle.[A1, D]",
             "D",
-            "no bracket of the basis",
+            "not a bracket of the basis",
         ),
         (
             'extension = { algebra = "h(1)", cocycle = { "[A1, C]" = "m" } }',
@@ -410,7 +410,7 @@ def test_explosion_is_refused_before_it_is_built(algebra, found):
     ("algebra", "key", "said"),
     [
         ('name = "so(3)"\ncomplexification = "so(3)"', "algebra", "exactly one of name"),
-        ('basis = ["a"]\ncomplexification = "R^1"', "algebra", "no basis beside complexification"),
+        ('basis = ["a"]\ncomplexification = "R^1"', "algebra", "no basis with complexification"),
         ('direct_sum = ["so(3)"]', "algebra.direct_sum", "at least 2"),
         ('semidirect = { algebra = "so(3)" }', "algebra.semidirect", "either representations or"),
         (

@@ -94,12 +94,12 @@ def test_reserved_or_doubled_name_is_refused(change, found, said):
         (
             ('P = { role = "momentum", block = "translation" }\n', ""),
             "v",
-            "the velocity 'v' has no momentum beside it",
+            "the velocity 'v' has no momentum of the same block",
         ),
         (
             ('v = { role = "velocity", block = "translation" }\n', ""),
             "P",
-            "the momentum 'P' has no velocity beside it",
+            "the momentum 'P' has no velocity of the same block",
         ),
         (
             (

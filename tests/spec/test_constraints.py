@@ -209,9 +209,9 @@ KEPT = ('"w == y*u"', '"2*w == y*u"')
 )
 def test_what_rests_on_a_bracket_is_refused(text, changes, table, found):
     """Casimirs and brackets where constraints give no velocity, symmetries; [momenta] is named."""
-    with pytest.raises(SpecError, match="beside \\[constraints\\]") as caught:
+    with pytest.raises(SpecError, match="with \\[constraints\\]") as caught:
         spec(text + table, *changes)
-    assert f"there are {found} beside [constraints]" in str(caught.value)
+    assert f"there are {found} with [constraints]" in str(caught.value)
     assert "Declare momenta along the constraints in [momenta]" in str(caught.value)
 
 

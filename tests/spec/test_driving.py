@@ -33,11 +33,23 @@ REFUSED = [
 
 
 REFUSED += [
-    (BELT, ('rate = "db"', 'rate = "dc"'), "'dc' is no other input .* expected one of f, db"),
-    (BELT, ('rate = "db"', 'rate = "b"'), "'b' is no other input of the shape of 'b'"),
-    (BELT, ("db = { default = 0 }", "db = { shape = [2], default = 0 }"), "'db' is no other input"),
-    (BELT, ("db = { default = 0 }", 'db = { default = 0, rate = "b" }'), "b -> db -> b go round"),
-    (BELT, ("db = { default = 0 }", 'db = { default = 0, rate = "zz" }'), "'zz' is no other input"),
+    (BELT, ('rate = "db"', 'rate = "dc"'), "'dc' is not another input .* expected one of f, db"),
+    (BELT, ('rate = "db"', 'rate = "b"'), "'b' is not another input with the shape of 'b'"),
+    (
+        BELT,
+        ("db = { default = 0 }", "db = { shape = [2], default = 0 }"),
+        "'db' is not another input",
+    ),
+    (
+        BELT,
+        ("db = { default = 0 }", 'db = { default = 0, rate = "b" }'),
+        "b -> db -> b form a circle",
+    ),
+    (
+        BELT,
+        ("db = { default = 0 }", 'db = { default = 0, rate = "zz" }'),
+        "'zz' is not another input",
+    ),
 ]
 
 

@@ -112,7 +112,7 @@ def test_a_fault_of_a_bracket_is_shown(bracket, kind, said):
 
 def test_a_bracket_stands_beside_matrices_alone():
     """so(3) by name has its bracket already."""
-    with pytest.raises(SpecError, match="a bracket of X and Y beside matrices alone"):
+    with pytest.raises(SpecError, match="a bracket of X and Y only with matrices"):
         spec(text_of("manakov_so4"), ('name       = "so(4)"', 'name = "so(4)"\nbracket = "X*Y"'))
 
 

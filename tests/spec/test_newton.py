@@ -77,8 +77,8 @@ def test_velocities_that_follow_from_momenta_have_no_newton_law():
     ],
 )
 def test_only_particles_in_space_have_galilean_laws(changes, found):
-    """A coordinate in the plane is no particle in space."""
-    with pytest.raises(SpecError, match="no particle in space") as caught:
+    """A coordinate in the plane is not a particle in space."""
+    with pytest.raises(SpecError, match="not a particle in space") as caught:
         spec(LAW, *changes)
     assert caught.value.parts["found"] == found
 

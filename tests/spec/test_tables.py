@@ -1,6 +1,7 @@
 """Tables: one list that every walker reads, and no imports that turn back."""
 
 import ast
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ import pytest
 from pydantic import Field
 
 import coadjoint.spec
+from coadjoint.cli.new import STARTER
 from coadjoint.errors import SpecError
 from coadjoint.spec import consistency, reader, schema, validate
 from coadjoint.spec.core.components import Components
@@ -130,6 +132,13 @@ def test_every_table_is_in_the_schema_and_in_the_docs():
     assert len(BY_KEY) == len(TABLES)
     text = DOCS.read_text(encoding="utf-8")
     assert [key for key in BY_KEY if f"[{key}]" not in text and f"[{key}." not in text] == []
+
+
+def test_the_starter_shows_tables_of_the_list():
+    """What `coadjoint new` writes, also in comments, is read by some table."""
+    shown = re.findall(r"^#? ?\[(\w+)\]", STARTER, re.MULTILINE)
+    assert len(shown) > 5
+    assert set(shown) <= set(BY_KEY)
 
 
 def test_routes_name_tables_of_the_list():

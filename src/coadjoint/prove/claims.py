@@ -25,10 +25,10 @@ from coadjoint.prove.brackets import (
     about_casimirs,
     about_hamiltonian,
 )
+from coadjoint.prove.candidates import about_candidates
 from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
 from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
-from coadjoint.prove.counts import about_candidates
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.integrability import about_integrability

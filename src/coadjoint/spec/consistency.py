@@ -63,7 +63,7 @@ def check_tables(source: Source, file: Any) -> None:
             ("representations",),
             "there is a table [representations] without [algebra]",
             found="representations",
-            expected="[representations] beside [algebra] alone",
+            expected="[representations] only with [algebra]",
             hint="Remove [representations].",
         )
 
@@ -146,7 +146,7 @@ def _check_bare(reading: Reading) -> None:
             ("variables", velocities[0]),
             f"the velocity {velocities[0]!r} has no energy to follow from",
             velocities[0],
-            "a Lax pair of the state alone, or a table [hamiltonian] beside it",
+            "a Lax pair of the state alone, or a table [hamiltonian] with it",
             "Write M in variables of the state, or declare [hamiltonian].",
         )
 
@@ -231,7 +231,7 @@ def _check_use(source: Source, file: Any) -> None:
                 (key,),
                 f"no route uses the {key.title() if key in _ENERGIES else f'table [{key}]'}",
                 found=key,
-                expected=f"one of the routes {listed(readers)} beside it"
+                expected=f"one of the routes {listed(readers)}"
                 if readers
                 else f"no table [{key}] here",
                 hint=f"{add} [{key}].",
@@ -285,7 +285,7 @@ def check_blocks(reading: Reading) -> None:
                 span = listed(algebra.basis[place] for place in variable.block)
                 raise reading.at_key(
                     ("variables", variable.name),
-                    f"the {role} {variable.name!r} has no {partner} beside it",
+                    f"the {role} {variable.name!r} has no {partner} of the same block",
                     variable.name,
                     f"a {partner} of the same block ({span})",
                     "Give both the same block.",

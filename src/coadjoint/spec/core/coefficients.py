@@ -253,9 +253,7 @@ class _Reading:
 
     def _refusal(self, node: Node) -> ExpressionError:
         what, expected = self.wanted
-        return ExpressionError(
-            f"this is no {what.removeprefix('a ')}", node.start, node.end, expected=expected
-        )
+        return ExpressionError(f"this is not {what}", node.start, node.end, expected=expected)
 
 
 def _multiply(a: _Linear, factor: Coefficient) -> _Linear:

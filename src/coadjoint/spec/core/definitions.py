@@ -1,8 +1,8 @@
-"""Definitions: short names for expressions, put in as trees wherever they occur.
+"""Definitions: short names for expressions, expanded as trees wherever they occur.
 
-Comes in: a tree, and the definitions that it may name. Goes out: the tree with all of them put in.
-What is put in takes the place of the call, so that later faults point there, and remembers which
-definition it is from. Read next: `coadjoint.spec.core.formulas`.
+Comes in: a tree, and the definitions that it may name. Goes out: the tree with all of them
+expanded. An expanded definition takes the place of the call, so that later faults point there, and
+remembers which definition it is from. Read next: `coadjoint.spec.core.formulas`.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from coadjoint.spec.core.tree import (
 
 @dataclass(frozen=True)
 class Definition:
-    """A short name for an expression, put in as a tree wherever it occurs.
+    """A short name for an expression, expanded as a tree wherever it occurs.
 
     Attributes:
         name: As declared, ``V`` of ``V(s, d)``.
         arguments: Names of its arguments; empty if it takes none.
         text: The expression as typed.
-        tree: The parsed expression, with earlier definitions put in.
+        tree: The parsed expression, with earlier definitions expanded.
         shape: Shape of its value; None with arguments, whose shapes only a call has.
     """
 
@@ -71,12 +71,12 @@ def functions(definitions: Mapping[str, Definition]) -> list[str]:
 def expand(
     tree: Node, definitions: Mapping[str, Definition], spent: Counter[str] | None = None
 ) -> Node:
-    """A tree with its definitions put in.
+    """A tree with its definitions expanded.
 
     Args:
         tree: What was read.
-        definitions: What may be put in, by name.
-        spent: Parts that were put into other trees of the spec; those of this one are added.
+        definitions: What may be expanded, by name.
+        spent: Parts that expansion added to other trees of the spec; those of this one are added.
 
     Raises:
         ExpressionError: One is given another number of arguments, or a tree grows beyond the
@@ -111,7 +111,7 @@ def expand(
 
 def _too_large(node: Node, definition: Definition, limit: str, what: str) -> ExpressionError:
     return ExpressionError(
-        f"with {definition.name} put in, {what} too many parts",
+        f"with {definition.name} expanded, {what} too many parts",
         node.start,
         node.end,
         found=definition.name,
@@ -197,7 +197,7 @@ def define(
 
     Raises:
         SpecError: An expression is none, or a name in it is unknown.
-        LimitError: With the earlier definitions put in, an expression is too large.
+        LimitError: With the earlier definitions expanded, an expression is too large.
     """
     known: dict[str, Definition] = {}
     for text, expression in texts.items():

@@ -42,7 +42,7 @@ class ExpressionError(Exception):
 
 
 def fault_at(node: Node, problem: str, **parts: str) -> ExpressionError:
-    """A fault at a node; where a definition was put in, it is the definition that has it."""
+    """A fault at a node; where a definition was expanded, it is the definition that has it."""
     where = f"in the definition of {node.within}: " if node.within else ""
     return ExpressionError(where + problem, node.start, node.end, **parts)
 

@@ -100,7 +100,7 @@ class Scope:
         takes: What it is a function of, in words.
         shapes: Shape of each name in scope, whole quantities and components.
         outside: Names that the spec declares and this kind of formula may not use, with their role.
-        definitions: What may be put in, by name.
+        definitions: What may be expanded, by name.
     """
 
     kind: str
@@ -152,7 +152,7 @@ def make_scope(
 def read_formula(
     source: Source, key: KeyPath, text: str, scope: Scope, *, any_shape: bool = False
 ) -> Formula:
-    """The formula at a key, with its definitions put in.
+    """The formula at a key, with its definitions expanded.
 
     Args:
         source: The text of the spec.

@@ -183,10 +183,10 @@ def _function(node: Node, function: str, argument: Size) -> Size:
         value = argument.constant
         if value is None or abs(value) > limits.FUNCTION_ARGUMENT:
             raise _refusal(
-                node, "FUNCTION_ARGUMENT", f"{function} of a constant that is no small rational"
+                node, "FUNCTION_ARGUMENT", f"{function} of a constant that is not a small rational"
             )
         if (value < 0 and function == "sqrt") or (value <= 0 and function == "log"):
-            problem = f"{function} of {value} is no real number"
+            problem = f"{function} of {value} is not a real number"
             raise _no_value(node, problem, "a positive argument")
         return Size(fixed=True)
     return Size(degree=1)

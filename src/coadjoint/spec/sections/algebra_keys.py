@@ -77,13 +77,13 @@ class _Algebra(Part):
         if len(ways) != 1:
             raise ValueError(f"exactly one of {', '.join(WAYS)}")
         if self.brackets is not None and self.basis is None:
-            raise ValueError("a basis beside the brackets, as basis = ['e1', 'e2', 'e3']")
+            raise ValueError("a basis with the brackets, as basis = ['e1', 'e2', 'e3']")
         if self.bracket is not None and self.matrices is None:
-            raise ValueError("a bracket of X and Y beside matrices alone")
+            raise ValueError("a bracket of X and Y only with matrices")
         if self.name is not None and (self.basis is not None or self.blocks is not None):
-            raise ValueError("no basis and no blocks beside a name, which has its own")
+            raise ValueError("no basis and no blocks with a name, which has its own")
         if self.basis is not None and ways[0] not in ("brackets", "matrices"):
-            raise ValueError(f"no basis beside {ways[0]}, which makes its own")
+            raise ValueError(f"no basis with {ways[0]}, which makes its own")
         return self
 
 

@@ -199,7 +199,7 @@ class _Algebras:
         if found is None or unknown:
             raise self.source.fault(
                 key,
-                f"{text!a} is no bracket of the basis",
+                f"{text!a} is not a bracket of the basis",
                 found=unknown[0],
                 expected="a key such as '[e1, e2]' with names of the basis",
                 hint=did_you_mean(unknown[0], basis),

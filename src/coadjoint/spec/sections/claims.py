@@ -198,7 +198,7 @@ def _split_sides(reading: Reading, key: KeyPath, text: str) -> tuple[str, str]:
                 return inner[:place].strip(), inner[place + 1 :].strip()
     raise reading.source.fault(
         key,
-        f"{text!a} is no bracket",
+        f"{text!a} is not a bracket",
         found=text,
         expected="a key such as '{L, A}'",
         at=reading.source.positions.key(key),
@@ -248,7 +248,9 @@ def _check_claims(reading: Reading) -> None:
         found = flat[0].name if flat else "newton"
         raise source.fault(
             ("claims", "galilean"),
-            f"the coordinate {found!r} is no particle in space" if flat else "there is no [newton]",
+            f"the coordinate {found!r} is not a particle in space"
+            if flat
+            else "there is no [newton]",
             found=found,
             expected="laws in [newton] of coordinates with shape = [3], one for each particle, or "
             'of one with shape = [9] and form = "matrix", a row for each particle',

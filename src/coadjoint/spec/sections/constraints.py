@@ -154,7 +154,7 @@ def _check_unasked(source: Source, file: Any) -> None:
         if table and is_refused:
             raise source.fault(
                 key,
-                f"there are {what} beside [constraints]",
+                f"there are {what} with [constraints]",
                 found=key[-1],
                 expected=expected,
                 hint="Declare momenta along the constraints in [momenta], and name what is "

@@ -31,7 +31,7 @@ def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Defini
 
     Raises:
         SpecError: A key or an expression is none, or a name in it is unknown.
-        LimitError: With the earlier definitions put in, an expression is too large.
+        LimitError: With the earlier definitions expanded, an expression is too large.
     """
     for text in texts:
         reading.declare(Naming(("definitions", text), _read_name(reading.source, text)))

@@ -86,7 +86,7 @@ def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> No
     if rate is not None and rate not in alike:
         raise source.fault(
             ("inputs", name, "rate"),
-            f"{rate!a} is no other input of the shape of {name!r}",
+            f"{rate!a} is not another input with the shape of {name!r}",
             found=rate,
             expected=f"one of {listed(alike)}" if alike else "another input of its shape",
             hint=did_you_mean(rate, alike) or "Declare it in [inputs].",
@@ -96,7 +96,7 @@ def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> No
         if following in chain:
             raise source.fault(
                 ("inputs", name, "rate"),
-                f"the rates {' -> '.join([*chain, following])} go round in a circle",
+                f"the rates {' -> '.join([*chain, following])} form a circle",
                 found=rate,
                 expected="an input whose rates end at one without",
             )

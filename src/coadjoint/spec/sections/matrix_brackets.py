@@ -142,7 +142,7 @@ class _Evaluation:
 
     def _known(self, node: Node, value: Any) -> Any:
         if value is None:
-            raise fault_at(node, "this is no scalar and no matrix", expected=_EXPECTED)
+            raise fault_at(node, "this is neither a scalar nor a matrix", expected=_EXPECTED)
         return value
 
 

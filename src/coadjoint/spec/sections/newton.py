@@ -76,7 +76,7 @@ def _check_law(reading: Reading, name: str, given: bool, moving: bool) -> None:
             ("newton", name),
             f"no velocity of {name!r} is part of the state",
             found=name,
-            expected="a velocity of every coordinate, and no momenta beside them",
+            expected="a velocity of every coordinate, and no momenta",
             hint=_advise_velocity(reading, name),
             at=reading.source.positions.key(("newton", name)),
         )

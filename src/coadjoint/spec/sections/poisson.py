@@ -52,7 +52,7 @@ class PoissonPart(Part):
         if sum(way is not None for way in ways) != 1:
             raise ValueError("exactly one of nambu, brackets and canonical")
         if self.magnetic is not None and self.canonical is None:
-            raise ValueError("magnetic terms beside canonical alone")
+            raise ValueError("magnetic terms only with canonical")
         return self
 
 
@@ -169,7 +169,7 @@ class _Bracket:
             example = listed(names[:2]) if len(names) > 1 else "X1, X2"
             raise self.source.fault(
                 key,
-                f"{text!a} is no bracket of these components",
+                f"{text!a} is not a bracket of these components",
                 found=unknown[0],
                 expected=f"a key such as '{{{example}}}' with components among {listed(names)}",
                 hint=did_you_mean(unknown[0], names),

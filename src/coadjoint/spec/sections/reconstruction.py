@@ -133,7 +133,7 @@ def _read_one(reading: Reading, name: str, part: ReconstructedPart, scope: Scope
     if part.attitude is not None and default is not None and not any(default):
         raise reading.source.fault(
             (*key, "default"),
-            "the quaternion 0 is no attitude",
+            "the quaternion 0 is not an attitude",
             found=[0] * len(default),
             expected="a quaternion of length 1, such as [1, 0, 0, 0]",
         )

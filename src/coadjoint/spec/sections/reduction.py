@@ -111,7 +111,7 @@ def _check_alone(reading: Reading, variables: Sequence[Variable]) -> None:
             ("reduction",),
             "there is no Hamiltonian",
             found="hamiltonian",
-            expected="a table [hamiltonian] beside [reduction]",
+            expected="a table [hamiltonian] with [reduction]",
         )
 
 

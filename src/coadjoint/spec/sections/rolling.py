@@ -65,7 +65,7 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
             key,
             "there are no constraints",
             found="constraints",
-            expected='[constraints] beside [rolling], as rolling = "Y == cross(Omega, s)"',
+            expected='[constraints] with [rolling], as rolling = "Y == cross(Omega, s)"',
         )
     turning, velocity = _find_body(reading, key)
     scope = reading.scope("an arm", position_roles(reading), driven=())
@@ -112,7 +112,7 @@ def _find_body(reading: Reading, key: KeyPath) -> tuple[str, str]:
             ("algebra", "invariance"),
             "velocities are seen from space, and [rolling] sees them from the body",
             found=invariance,
-            expected='invariance = "left" beside [rolling]',
+            expected='invariance = "left" with [rolling]',
         )
     return names[0], names[1]
 

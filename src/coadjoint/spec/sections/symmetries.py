@@ -147,7 +147,7 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     if name not in state:
         raise reading.source.fault(
             key,
-            f"{name!a} is no variable of the state",
+            f"{name!a} is not a variable of the state",
             found=name,
             expected=f"one of {listed(state)}",
             hint=did_you_mean(name, state),

@@ -88,7 +88,7 @@ def _read_exchange(reading: Reading, name: str, observable: str, text: str) -> F
     if observable not in named:
         raise reading.at_key(
             key,
-            f"{observable!a} is no observable and no momentum map",
+            f"{observable!a} is neither an observable nor a momentum map",
             observable,
             f"one of {listed(named)}",
             did_you_mean(observable, named),

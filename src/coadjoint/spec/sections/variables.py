@@ -304,7 +304,7 @@ def _check_role(
 ) -> None:
     """Coordinates do without an algebra, advected quantities do not."""
     if part.role == "coordinate" and algebra is not None:
-        place, roles = "beside [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
+        place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
     elif part.role == "advected" and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
