@@ -310,7 +310,7 @@ def solve(matrix, right):
     return found
 
 
-def transposed(a):
+def transpose(a):
     """Rows as columns."""
     return [list(row) for row in zip(*a, strict=True)]
 
@@ -327,7 +327,7 @@ FUNCTIONS = {
     "norm": lambda a: square_root(dot(a, a)),
     "hat": lambda a: [[mpf(0), -a[2], a[1]], [a[2], mpf(0), -a[0]], [-a[1], a[0], mpf(0)]],
     "trace": lambda a: sum(diagonal(a), mpf(0)),
-    "transpose": transposed,
+    "transpose": transpose,
     "det": determinant,
     "inverse": inverse,
     "diag": diagonal,

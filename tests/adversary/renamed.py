@@ -14,7 +14,7 @@ _FUNCTIONS = {"sin", "cos", "tan", "exp", "log", "sqrt", "dot", "vector", "diag"
 _KEYS = re.compile(r'((?:role|representation) = "\w+"|block = (?:"\w+"|\[[^]]*\]))')
 
 
-def renamed(text):
+def rename_variables(text):
     """The text with every name of a variable or parameter replaced."""
     table = tomllib.loads(text)
     names = sorted({*table["variables"], *table.get("parameters", {})}, reverse=True)
@@ -42,7 +42,7 @@ def _kept(line, change):
     return "".join(word if n % 2 else change(word) for n, word in enumerate(words))
 
 
-def permuted(text):
+def permute_variables(text):
     """The text with parameters, variables and claims in reverse order.
 
     Formulas and names stay, so that every statement does. Variables keep their order where it

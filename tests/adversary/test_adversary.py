@@ -9,7 +9,7 @@ import pytest
 from coadjoint.prove.zero import UndecidedError
 from tests.adversary.judge import statements
 from tests.adversary.motion import motion_of
-from tests.adversary.renamed import permuted, renamed
+from tests.adversary.renamed import permute_variables, rename_variables
 from tests.adversary.run import campaign, faults_of, record_of, shorten, without
 from tests.adversary.specs import FAMILIES, generate
 
@@ -29,7 +29,7 @@ KINDS, RARE = ("proved", "refuted", "count"), ("numerically supported", "integra
     ],
 )
 def test_no_certificate_is_refuted(part, record_property):
-    """What is proved holds at every point, what is refuted fails at its point, counts are ranks."""
+    """Proved claims hold at random points, refuted ones fail at theirs; counts match ranks."""
     counts, found = campaign(range(part * SPECS, (part + 1) * SPECS), CASES)
     record_property("adversary", dict(counts))
     print(f"part {part}: {dict(counts)}")
@@ -40,8 +40,8 @@ def test_no_certificate_is_refuted(part, record_property):
     assert counts["unjudged"] <= CASES // 10, f"too many were not judged: {counts}"
 
 
-def test_the_specs_are_the_same_in_every_run_and_of_every_kind():
-    """A seed gives one text; the seeds of a run differ, and every family is among them."""
+def test_specs_are_reproducible_and_of_every_kind():
+    """A seed always gives the same text; different seeds differ, and every family occurs."""
     texts = [generate(seed) for seed in range(REGULAR * SPECS)]
     assert texts == [generate(seed) for seed in range(REGULAR * SPECS)]
     assert len(set(texts)) == len(texts)
@@ -49,8 +49,8 @@ def test_the_specs_are_the_same_in_every_run_and_of_every_kind():
     assert len(titles) >= len(FAMILIES), titles
 
 
-def test_a_failing_spec_is_shortened_to_its_guilty_claim():
-    """Claims that a fault does not need are left out; the guilty one stays."""
+def test_a_failing_spec_is_reduced_to_the_failing_claim():
+    """Claims that the fault does not depend on are removed; the failing claim remains."""
     text = generate(0)
     guilty = next(line for line in text.splitlines() if line.startswith("  "))
     short = shorten(text, lambda shorter: guilty in shorter)
@@ -58,8 +58,8 @@ def test_a_failing_spec_is_shortened_to_its_guilty_claim():
     assert short.startswith(text.partition("[claims]")[0])
 
 
-def test_a_spec_that_is_refused_is_a_fault():
-    """A generator that writes what cannot be read would try nothing."""
+def test_a_refused_spec_is_a_fault():
+    """Specs that cannot be read would test nothing."""
     faults, counts = faults_of(generate(0).replace("[variables]", "[variable]"))
     assert "the spec is refused" in faults[0]
     assert not counts
@@ -83,15 +83,15 @@ conserved = [
 """
 
 
-def test_a_claim_without_points_is_rightly_undecided():
-    """Where p^2 + 1 = 0, and in sqrt(-p^2 - 1), there is nothing real; p is judged all the same."""
+def test_a_claim_without_real_points_may_be_undecided():
+    """p^2 + 1 = 0 and sqrt(-p^2 - 1) have no real points; the claim about p is still checked."""
     faults, counts = faults_of(PARTICLE)
     assert faults == []
     assert counts == {"undecided": 2, "proved": 1, "count": 1}
 
 
-def test_a_claim_with_points_is_wrongly_undecided(monkeypatch):
-    """A prover that finds no point where there are some is told so; and so is one that invents."""
+def test_a_claim_with_real_points_must_be_decided(monkeypatch):
+    """A prover that misses existing points is reported, and so is one that invents points."""
     for found, words in (("p is conserved", "there are points"), ("h is it", "no line claims")):
 
         def give_up(text, found=found):
@@ -114,8 +114,8 @@ def test_no_verdict_depends_on_names_or_on_order(seed):
     """Names from the other end of the alphabet, in reverse order: all verdicts are the same."""
     for n in range(seed * 4, seed * 4 + 4):
         text = generate(n)
-        turned = permuted(text)
-        other = renamed(turned)
+        turned = permute_variables(text)
+        other = rename_variables(turned)
         before, after = spec_verdicts(text), spec_verdicts(other)
         order = list(statements(motion_of(turned)))
         assert len(before) > 2

@@ -22,8 +22,8 @@ def verdicts(record, kind):
 
 
 @pytest.mark.parametrize(("family", "kind", "seed"), CASES)
-def test_what_is_declared_and_true_is_proved(family, kind, seed):
-    """Every claim is proved, the judge agrees, and objects where one is called false."""
+def test_true_declarations_are_proved(family, kind, seed):
+    """Every claim is proved and the judge agrees; it objects when one is reported as refuted."""
     text = family(seed, True)
     record = record_of(text)
     assert set(verdicts(record, kind)) == {"proved"}
@@ -37,8 +37,8 @@ def test_what_is_declared_and_true_is_proved(family, kind, seed):
 
 
 @pytest.mark.parametrize(("family", "kind", "seed"), CASES)
-def test_what_is_declared_and_false_is_refuted(family, kind, seed):
-    """Some claim is refuted, the judge agrees, and objects where it is called proved."""
+def test_false_declarations_are_refuted(family, kind, seed):
+    """Some claim is refuted and the judge agrees; it objects when it is reported as proved."""
     text = family(seed, False)
     record = record_of(text)
     assert "refuted" in verdicts(record, kind)
@@ -51,7 +51,7 @@ def test_what_is_declared_and_false_is_refuted(family, kind, seed):
     assert any("proved, but false" in each for each in judge(text, spoiled).faults)
 
 
-def test_a_symmetry_that_is_there_is_not_refuted():
+def test_a_true_symmetry_is_not_refuted():
     """Claims about a declared symmetry may be refuted where the motion has none, and only there."""
     symmetric = next(family for family in DECLARED if family.__name__ == "symmetric")
     for truth in (True, False):

@@ -28,7 +28,7 @@ from tests.adversary.run import record_of
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_fixed_case_has_the_verdict_that_is_true(case):
-    """Verdicts known by hand, and no sentence that the judge refutes."""
+    """The verdict is the one known by hand, and the judge accepts every statement."""
     record = record_of(case.text)
     found = {claim["statement"]: claim for claim in record["claims"]}
     for statement, verdict in case.verdicts.items():
@@ -43,8 +43,8 @@ def test_a_fixed_case_has_the_verdict_that_is_true(case):
     assert not report.unjudged, report.unjudged
 
 
-def test_both_verdicts_are_among_the_fixed_cases():
-    """Cases that are true and cases that are false: neither a yes nor a no passes them all."""
+def test_fixed_cases_contain_true_and_false_claims():
+    """A prover that always answers yes, or always no, fails some case."""
     verdicts = [verdict for case in CASES for verdict in case.verdicts.values()]
     assert verdicts.count("proved") >= 20
     assert verdicts.count("refuted") >= 20
@@ -121,8 +121,8 @@ def test_an_examined_algebra_has_the_rank_of_its_matrices(name):
     assert found.casimirs.expected == len(names) - found.rank
 
 
-def test_support_without_acceptance_does_not_hold():
-    """A claim that is only supported holds where the spec accepts that, and nowhere else."""
+def test_supported_claims_hold_only_where_accepted():
+    """A claim with the verdict supported counts as holding only if the spec accepts it."""
     claim = "(log(6) - log(2) - log(3))*q1"
     text = canonical(FREE, conserved(claim))
     certificate = prove(read_spec_text(text, Path("sample.toml")))

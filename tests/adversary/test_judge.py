@@ -106,7 +106,7 @@ def spoiled(which, **changes):
 
 # flip: (-mu) moves with quadratic rates that are even, so -rate = -(rate): the map reverses time.
 def test_a_true_certificate_passes():
-    """The hand-written certificate is right: nothing is found, and every claim is counted."""
+    """The judge finds no fault in a correct hand-written certificate and counts every claim."""
     report = judge(BODY, GOOD)
     assert report.faults == []
     assert report.unjudged == []
@@ -201,20 +201,20 @@ FALSE = {"mu2": "1/3", "mu3": "3", "a": "2"}
         ),
     ],
 )
-def test_a_spoiled_certificate_is_caught(statement, changes, words):
-    """One wrong verdict, point, difference or count, and the judge says what is wrong."""
+def test_a_wrong_certificate_is_detected(statement, changes, words):
+    """The judge names one wrong verdict, point, difference or count."""
     faults = judge(BODY, spoiled(statement, **changes)).faults
     assert any(words in fault for fault in faults), faults
 
 
-def test_a_missing_claim_is_caught():
-    """A claim that was dropped is as good as one that was never tried."""
+def test_a_missing_claim_is_detected():
+    """A claim that the certificate leaves out is a fault."""
     record = copy.deepcopy(GOOD)
     del record["claims"][place("mu3 is conserved")]
     assert any("missing: mu3" in fault for fault in judge(BODY, record).faults)
 
 
-def test_a_refutation_by_rounding_is_caught():
+def test_a_refutation_by_rounding_error_is_detected():
     """A difference of the size of rounding, at a point where it could have come from rounding."""
     record = spoiled(
         "mu3 is conserved",
@@ -329,8 +329,8 @@ def test_the_dimension_of_a_space_of_integrals_is_counted(text, caught):
         ("all Casimirs are known", "casimir", True),
     ],
 )
-def test_no_count_passes_unread(statement, kind, caught):
-    """What no pattern knows fails, but for what says that nothing was counted."""
+def test_every_count_is_checked(statement, kind, caught):
+    """A statement of unknown form fails, unless it says that nothing was counted."""
     report = counted(statement, kind)
     assert bool(report.faults) is caught, report.faults
 
@@ -343,8 +343,8 @@ def test_no_count_passes_unread(statement, kind, caught):
         ({"method": ""}, "no method"),
     ],
 )
-def test_a_claim_that_is_proved_rests_on_no_luck(changes, words):
-    """A probability belongs to findings."""
+def test_a_proved_claim_has_no_error_probability(changes, words):
+    """Only findings may have an error probability."""
     faults = judge(BODY, spoiled("mu3 is conserved", **changes)).faults
     assert any(words in fault for fault in faults), faults
 
@@ -361,14 +361,14 @@ def test_a_claim_that_is_proved_rests_on_no_luck(changes, words):
     ],
 )
 def test_a_finding_has_a_scope_or_an_error(statement, changes, caught):
-    """What was found says where it holds or how it may be wrong."""
+    """A finding states its scope or its error probability."""
     entry = {"statement": statement, "kind": "x", "method": "ranks", "scope": "", "error": ""}
     record = copy.deepcopy(GOOD) | {"findings": [entry | changes]}
     assert bool(judge(BODY, record).faults) is caught
 
 
 @pytest.mark.parametrize(("density", "caught"), [("|omega|^(-1)", False), ("|omega|", True)])
-def test_an_invariant_measure_is_tried(density, caught):
+def test_invariant_measures_are_checked(density, caught):
     """The sleigh keeps dv domega/|omega|: div X = -k v, and d ln omega/dt = -k v as well."""
     text = SLEIGH + '[claims]\nconserved = ["energy"]\n'
     statement = f"an invariant measure, where its density is finite: {density} dv domega"
@@ -379,7 +379,7 @@ def test_an_invariant_measure_is_tried(density, caught):
 
 
 @pytest.mark.parametrize(("energy", "caught"), [("m*a*omega*u", False), ("0*m*a*omega*u", True)])
-def test_that_no_density_of_the_positions_is_invariant_is_tried(energy, caught):
+def test_absence_of_an_invariant_measure_is_checked(energy, caught):
     """The sleigh has the divergence -k v; without its arm there is none, and 1 is a density."""
     text = SLEIGH.replace("m*(v^2 + (u + a*omega)^2)/2", f"m*(v^2 + u^2)/2 + {energy}")
     statement = "no measure rho dv domega with a constant rho is invariant on any open set: so"
@@ -461,8 +461,8 @@ def test_points_of_a_product_lie_on_every_branch():
     }
 
 
-def test_ranks_need_a_gap():
-    """A rank is told where singular values leave no doubt."""
+def test_ranks_need_a_gap_in_the_singular_values():
+    """A rank is given only where the singular values have a clear gap."""
     assert rank_of([[1, 2], [2, 4]]) == 1
     assert rank_of([[1, 2], [2, 5]]) == 2
     with pytest.raises(NoGapError):
@@ -470,7 +470,7 @@ def test_ranks_need_a_gap():
 
 
 @pytest.mark.parametrize(("more", "caught"), [("", False), (" + q/1000", True)])
-def test_lost_digits_are_no_difference(more, caught):
+def test_lost_digits_are_not_a_counterexample(more, caught):
     """``sqrt(exp(2x) + 1 + 2 exp(x)) = exp(x) + 1``, and at x = 200 p no 50 digits show it."""
     hidden = "sqrt(exp(400*p) + 1 + 2*exp(200*p)) - exp(200*p) - 1"
     text = f"""title = "Particle"

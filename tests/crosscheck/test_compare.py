@@ -20,7 +20,7 @@ def test_levels_are_counted(value, levels):
     assert depth(program("f", "x y", "", "", value, ())) == levels
 
 
-def test_a_constant_that_is_no_double_is_a_rounding():
+def test_a_constant_that_is_not_a_double_counts_as_a_rounding():
     """A tenth is rounded when it is printed, a half is not."""
     assert depth(program("f", "x", "", "", "0.1", ())) == 1
     assert depth(program("f", "x", "", "", "0.5", ())) == 0
@@ -32,15 +32,15 @@ def threshold(*programs):
     return Subject(by_name, ProgramReference(programs), None, ("numpy",)).threshold
 
 
-def test_short_formulas_are_held_to_4():
+def test_short_formulas_have_the_threshold_4():
     """A cross product is short; the heavy top, typed from the book, is longer."""
     assert threshold(program("f", "x y", "", "", "x*y - y*x", ())) == 4
     assert threshold(TOP_RHS) == depth(TOP_RHS) == 5
     assert threshold(TOP_ENERGY) == depth(TOP_ENERGY) == 6
 
 
-def test_a_long_formula_may_have_a_k_of_its_levels():
-    """A right formula of 20 factors is not called wrong for the rounding of 19 products."""
+def test_a_long_formula_has_a_threshold_by_its_depth():
+    """A correct product of 20 factors passes in spite of 19 roundings."""
     long = program("f", "x y", "", "", "*".join(["x"] * 20), ())
     assert threshold(long, replace(TOP_RHS, name="g")) == 19
     assert threshold(*PENDULUM.programs) == 16

@@ -11,7 +11,7 @@ from tests.driven_specs import PENDULUM, ROD, SUSLOV, TOP, VELOCITIES, rendered
 
 @pytest.mark.parametrize("text", [PENDULUM, ROD, SUSLOV, TOP, VELOCITIES])
 def test_driven_systems_pass(text):
-    """All rungs, with inputs and time drawn as the state is."""
+    """All rungs pass, with inputs and time sampled like the state."""
     assert verify(rendered(text)).passed
 
 
@@ -40,7 +40,7 @@ def pendulum():
 
 @pytest.mark.parametrize(("file", "right", "wrong"), SPOILED, ids=range(len(SPOILED)))
 def test_texts_that_lose_inputs_are_caught(pendulum, file, right, wrong):
-    """By reading back, by 50 digits or by bits."""
+    """Reading back, 50 digits or the bits detect each."""
     assert right in pendulum.texts[file], right
     spoiled = pendulum.texts | {file: pendulum.texts[file].replace(right, wrong)}
     with pytest.raises(CoadjointError, match=r"rung|wrong kernel|cannot be"):

@@ -130,7 +130,7 @@ def vortices(tmp_path_factory):
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_the_textbook_passes_and_is_the_same_jacobian(vortices, size):
+def test_the_textbook_jacobian_agrees(vortices, size):
     """The quotient rule, typed by hand, has a k below 2 at every distance from the pole."""
     state, radii = near_the_pole(size)
     assert largest_k(vortices, "jacobian", textbook(state, radii), state, radii) < 2

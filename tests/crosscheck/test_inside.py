@@ -32,7 +32,7 @@ INSIDE = '[domain]\ninside = "{}"\n'
         ("sqrt((x - 777)*(778 - x))", ""),
     ],
 )
-def test_a_system_is_loaded_whose_domain_lies_elsewhere(slope, domain, tmp_path):
+def test_systems_with_a_distant_domain_are_checked(slope, domain, tmp_path):
     """The rate of z is {z, y}, minus the slope; few or none of the ordinary points have values."""
     path = tmp_path / "far.toml"
     path.write_text(FAR.replace("SLOPE", slope) + domain)

@@ -134,7 +134,7 @@ def test_functions_beyond_sqrt_have_a_wider_threshold(tmp_path):
         assert min(report.together[function].values()) >= 90
 
 
-def test_functions_without_sin_are_compared_bit_by_bit_beside_others(tmp_path):
+def test_functions_without_sin_stay_bitwise_when_others_call_it(tmp_path):
     """One observable with a sine takes the promise from itself, and from no other function."""
     plain = program("rhs", "q p", "k", "", "p; -k*q", (2,))
     wavy = program("observables", "q p", "k", "", "sin(q)", (1,))
@@ -162,7 +162,7 @@ SPOILED = [
     [("kernel.py", "numpy"), ("kernel.c", "c"), ("kernel_python.py", "python")],
 )
 @pytest.mark.parametrize(("bad", "fault"), SPOILED, ids=[fault for _, fault in SPOILED])
-def test_rung_4_catches_wrong_formulas(file, target, bad, fault, tmp_path):
+def test_rung_4_detects_wrong_formulas(file, target, bad, fault, tmp_path):
     """A wrong sign, index or constant in one language alone is far above any threshold."""
     spoiled = subject(tmp_path, spoil=replaced(file, GOOD, bad))
     with pytest.raises(CrossCheckError) as caught:
@@ -177,7 +177,7 @@ def test_rung_4_catches_wrong_formulas(file, target, bad, fault, tmp_path):
         assert str(part) in str(error)
 
 
-def test_rung_4_catches_single_precision(tmp_path):
+def test_rung_4_detects_single_precision(tmp_path):
     """One float inside a C kernel is caught."""
     bad = "const float Omega1 = (float)(Pi1 / I1)"
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", "const double Omega1 = Pi1 / I1", bad))
@@ -186,7 +186,7 @@ def test_rung_4_catches_single_precision(tmp_path):
     assert caught.value.k > 1e6
 
 
-def test_rung_4_catches_exchanged_rows(tmp_path):
+def test_rung_4_detects_exchanged_rows(tmp_path):
     """Two rows exchanged in all languages, so that these agree, are caught."""
     rows = ("Omega1 * Gamma3 - Omega3 * Gamma1", "Omega2 * Gamma1 - Omega1 * Gamma2")
 
@@ -204,7 +204,7 @@ def test_rung_4_catches_exchanged_rows(tmp_path):
         compared(spoiled, "rhs", 100)
 
 
-def test_rung_4_catches_wrong_equations(tmp_path):
+def test_rung_4_detects_wrong_equations(tmp_path):
     """Programs, texts and kernels that agree with each other, but not with the book, are caught."""
 
     class Other(TopReference):
@@ -227,7 +227,7 @@ def test_rung_4_catches_wrong_equations(tmp_path):
     ],
     ids=["order of a sum", "reciprocal", "sign of a zero", "last bit of a constant"],
 )
-def test_rung_5_holds_plain_python_to_each_bit(good, bad, tmp_path):
+def test_rung_5_compares_plain_python_bit_by_bit(good, bad, tmp_path):
     """What passes rung 4 in Python alone is seen beside NumPy, at fewer points than C has."""
     spoiled = subject(tmp_path, spoil=replaced("kernel_python.py", good, bad))
     for function in spoiled.programs:
@@ -241,7 +241,7 @@ def test_rung_5_holds_plain_python_to_each_bit(good, bad, tmp_path):
     ("value", "expected"),
     [("q/p", False), ("1/(1/p)", False), ("sqrt(q)", False), ("q*p", True), ("sqrt(q*q)", True)],
 )
-def test_python_is_nan_exactly_where_it_has_no_number(value, expected, tmp_path):
+def test_python_is_nan_exactly_where_it_has_no_value(value, expected, tmp_path):
     """A quotient by zero and the root of a negative number stop it; NaN elsewhere is a fault.
 
     NumPy gives 0 for 1/(1/0), which Python cannot pass through.
@@ -271,7 +271,7 @@ def test_python_is_nan_exactly_where_it_has_no_number(value, expected, tmp_path)
     ],
     ids=["order of a sum", "reciprocal", "sign of a zero"],
 )
-def test_rung_5_catches_what_rounds_otherwise(good, bad, tmp_path):
+def test_rung_5_detects_different_rounding(good, bad, tmp_path):
     """Other orders, reciprocals and the sign of a zero pass rung 4, but not rung 5."""
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", good, bad))
     for function in spoiled.programs:
@@ -284,14 +284,14 @@ def test_rung_5_catches_what_rounds_otherwise(good, bad, tmp_path):
     assert error.output in str(error)
 
 
-def test_rung_5_catches_the_last_bit_of_a_constant(tmp_path):
+def test_rung_5_detects_the_last_bit_of_a_constant(tmp_path):
     """The double next to 2 in place of 2 is caught by the bits."""
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", " / 2.0", " / 2.0000000000000004"))
     with pytest.raises(CrossCheckError, match="rung 5"):
         equal_bits(spoiled, 1000)
 
 
-def test_rung_5_catches_a_fused_build_in_the_exact_slot(tmp_path):
+def test_rung_5_detects_fused_multiply_add(tmp_path):
     """Fused multiply-add keeps k, so that only the bits tell."""
     spoiled = subject(tmp_path, c_flags=FUSED)
     compared(spoiled, "rhs", 50)
@@ -309,7 +309,7 @@ def _processor_features():
         return set()
 
 
-def test_rung_5_sees_fast_math(tmp_path):
+def test_rung_5_detects_fast_math(tmp_path):
     """A kernel that loses NaN or subnormals is caught, though no ordinary point shows it."""
     bad = "_p1 = m * g * (m * g == m * g)"
     spoiled = subject(tmp_path, spoil=replaced("kernel.c", "_p1 = m * g", bad))
@@ -322,7 +322,7 @@ def test_rung_5_sees_fast_math(tmp_path):
         equal_bits(spoiled, 1000)
 
 
-def test_rung_5_sees_the_last_member_of_an_odd_batch(tmp_path):
+def test_rung_5_checks_the_last_member_of_an_odd_batch(tmp_path):
     """A loop that stops one short of an odd count is caught."""
     spoiled = subject(
         tmp_path, spoil=replaced("kernel.c", "_n < count;", "_n < (count & ~(size_t)1);")
@@ -331,7 +331,7 @@ def test_rung_5_sees_the_last_member_of_an_odd_batch(tmp_path):
         equal_bits(spoiled, 1000)
 
 
-def test_rung_5_sees_parameters_of_the_wrong_member(tmp_path):
+def test_rung_5_detects_parameters_of_the_wrong_member(tmp_path):
     """Shared parameters taken for all, where each member has its own, are caught."""
     spoil = replaced(
         "kernel.c", "parameters[3 * parameters_stride + _n]", "parameters[3 * parameters_stride]"
@@ -341,9 +341,7 @@ def test_rung_5_sees_parameters_of_the_wrong_member(tmp_path):
 
 
 @pytest.mark.parametrize(("apart", "passes"), [(15, True), (17, False)])
-def test_rung_5_holds_numpy_and_c_to_each_other_where_bits_are_not_promised(
-    apart, passes, tmp_path, monkeypatch
-):
+def test_rung_5_compares_numpy_and_c_where_bits_may_differ(apart, passes, tmp_path, monkeypatch):
     """Either within 9 units of the exact value, on its two sides, but 17 from each other."""
     reference = ProgramReference(PENDULUM.programs)
     good = subject(tmp_path, PENDULUM, reference=reference)
@@ -370,7 +368,7 @@ def test_rung_5_holds_numpy_and_c_to_each_other_where_bits_are_not_promised(
                 against_oracle(good, one)
 
 
-def test_nan_and_zero_are_compared_as_they_should():
+def test_nan_and_signed_zero_are_compared_correctly():
     """NaN equals NaN whatever its sign, 0 is not -0, and nothing else is forgiven."""
     one = np.array([np.nan, 0.0, 1.0, np.inf, 1.0])
     other = np.array([-np.nan, -0.0, 1.0, np.inf, np.nextafter(1.0, 2.0)])
@@ -378,14 +376,14 @@ def test_nan_and_zero_are_compared_as_they_should():
 
 
 def test_a_system_without_values_is_an_error(tmp_path):
-    """If the equations have hardly a value anywhere, the rung does not pass on nothing."""
+    """A rung fails if the equations have values at almost no point."""
     nothing = [program("rhs", "q p", "k", "", "sqrt(-1 - q*q); p", (2,))]
     empty = subject(tmp_path, PENDULUM, reference=ProgramReference(nothing))
     with pytest.raises(CrossCheckError, match="0 of 54"):
         compared(empty, "rhs", 50)
 
 
-def test_without_a_compiler_the_c_rungs_are_not_called_passed(tmp_path, monkeypatch):
+def test_without_a_compiler_the_c_rungs_are_reported_as_not_run(tmp_path, monkeypatch):
     """Only the Python kernels are checked, and the report says what was not run."""
     monkeypatch.setattr(ladder, "compiler_version", lambda: "none")
     texts = render_system(HEAVY_TOP)
@@ -398,8 +396,8 @@ def test_without_a_compiler_the_c_rungs_are_not_called_passed(tmp_path, monkeypa
     assert report.rungs[5] == report.rungs[4]
 
 
-def test_a_compiler_that_does_not_work_is_not_passed_over(monkeypatch):
-    """If one was asked for by name, its absence is an error and not a missing compiler."""
+def test_a_broken_compiler_is_an_error(monkeypatch):
+    """A compiler that was requested by name must exist."""
     monkeypatch.setenv("CC", "no-such-cc")
     with pytest.raises(CompilerError, match="no-such-cc"):
         ladder.available_targets()

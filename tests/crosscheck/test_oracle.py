@@ -30,7 +30,7 @@ def one_output(text, inputs, **values):
     return oracle(reference, "rhs", values)[0]
 
 
-def test_nothing_is_lost_to_cancellation():
+def test_cancellation_loses_no_digits():
     """(1 + u) - 1 with u = 2^-80 has all its digits, where doubles have none."""
     bounded = one_output("(x*x + y) - x*x", "xy", x=1.0, y=2.0**-80)
     assert abs(bounded.value - decimal.Decimal(2.0**-80)) < decimal.Decimal("1e-50")
@@ -92,18 +92,18 @@ def test_relative_errors_of_factors_add():
         ("log(x)", -1.0),
     ],
 )
-def test_points_without_a_value_are_outside(text, x):
-    """A divisor or argument that may be nothing but rounding error says nothing."""
+def test_points_without_a_value_are_rejected(text, x):
+    """A point is rejected where a divisor or argument may be pure rounding error."""
     with pytest.raises(OutsideDomain):
         one_output(text, "x", x=x)
 
 
 def test_the_square_root_of_an_exact_zero_is_zero():
-    """Zero by itself, not by cancellation, has a root."""
+    """An exact zero has a root; a zero by cancellation is rejected."""
     assert one_output("sqrt(x)", "x", x=0.0).value == 0
 
 
-def test_a_sign_error_is_unmistakable():
+def test_sign_errors_exceed_every_threshold():
     """The k of a wrong sign is about 1e16, of float32 inside about 1e8; of a rounding at most 1."""
     bounded = one_output("x*y", "xy", x=1.1, y=1.3)
     assert error_in_envelopes(1.1 * 1.3, bounded) <= 1
@@ -117,13 +117,13 @@ def test_the_floor_is_one_subnormal():
     assert error_in_envelopes(0.0, one_output("x*x", "x", x=2.0**-600)) <= 1
 
 
-def test_ulp_are_counted_where_nothing_cancels():
+def test_ulp_are_counted_only_without_cancellation():
     """Units of the last place are given for a product and not for a difference that cancels."""
     assert error_in_ulp(1.0 + 2.0**-51, exact(1.0)) == 2.0
     assert error_in_ulp(5.0, one_output("x - y", "xy", x=1.0, y=1.0 - 2.0**-30)) == 0.0
 
 
-def test_the_precision_of_others_is_left_alone():
+def test_global_precision_is_unchanged():
     """Neither mpmath's nor decimal's global precision is changed by an evaluation."""
     before = (mpmath.mp.dps, decimal.getcontext().prec)
     one_output("sin(x)", "x", x=1.0)

@@ -29,8 +29,8 @@ def test_positive_parameters_are_positive(batch):
     assert (batch.parameters[4:] < 0).any()
 
 
-def test_families_are_what_they_are_called():
-    """Integers are integers, nearly equal is nearly equal, huge is huge and tiny tiny."""
+def test_point_families_match_their_names():
+    """Each family has the property of its name: integers, nearly equal, huge, tiny."""
     integers = FAMILIES["integers"].state
     assert (integers == np.round(integers)).all()
     assert np.signbit(integers[integers == 0]).any()
@@ -46,7 +46,7 @@ def test_families_are_what_they_are_called():
     assert len(np.unique(random.state)) == random.state.size
 
 
-def test_special_points_hold_everything_special():
+def test_special_points_contain_every_special_value():
     """Infinities, NaN, subnormals and both zeros occur."""
     values = POINTS.special(0, 2000).state
     assert np.isnan(values).any()

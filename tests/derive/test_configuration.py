@@ -99,6 +99,16 @@ def test_entries_beside_the_diagonal_of_symmetric_matrices_are_paired_twice():
     assert certificate.holds, str(certificate)
 
 
+def test_symmetric_momenta_are_paired_twice_by_a_declared_bracket():
+    """The route poisson with named velocities moves as the other two."""
+    bracket = (
+        '[poisson]\ncanonical = [["S", "P"]]\n[hamiltonian]\nh = "trace(P*P)/2 + trace(A*S)"\n'
+    )
+    certificate = prove(spec(SYMMETRIC + bracket, ('"canonical"]', '"canonical", "poisson"]')))
+    assert certificate.holds, str(certificate)
+    assert any("poisson" in claim.statement for claim in certificate.claims)
+
+
 def test_a_wrong_weight_of_symmetric_matrices_is_refuted():
     """{S12, P12} = 1 is not the bracket of tr(P dS/dt)."""
     certificate = prove(spec(SYMMETRIC, ('"1/2"', '"1"')))

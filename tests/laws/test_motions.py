@@ -33,7 +33,7 @@ ALMOST = sorted(set(textbook.TENSORS) & set(textbook.CONSTRAINED))
 WITHOUT_SO8 = [name for name in WITH_BRACKET if name != "so8_body"]
 
 
-def bracketed(name):
+def equations_with_bracket(name):
     """The equations by every route that moves the declared state, which has a bracket."""
     found = [equations for equations in derived(name).values() if equations.chart is None]
     assert found
@@ -49,7 +49,7 @@ def point_of(equations):
     return solved(equations, classical.allowed(equations.spec.name, point))
 
 
-def at_a_point(equations, expressions):
+def evaluate_at_point(equations, expressions):
     """Values of expressions at that point."""
     return values(expressions, point_of(equations))
 
@@ -57,7 +57,7 @@ def at_a_point(equations, expressions):
 def matrix_of(equations, expressions):
     """Values as rows of as many entries as the state has."""
     n = len(equations.state)
-    flat = at_a_point(equations, expressions)
+    flat = evaluate_at_point(equations, expressions)
     return [flat[start : start + n] for start in range(0, len(flat), n)]
 
 
@@ -124,14 +124,14 @@ def check_commutes(tensor, gradient):
     assert not any(dot(row, gradient) for row in tensor)
 
 
-def check_moves(tensor, gradient, rates):
+def check_hamiltonian(tensor, gradient, rates):
     """``dx/dt = J grad h``, which is not rest, and ``dh/dt = 0``."""
     assert any(rates)
     assert same([dot(row, gradient) for row in tensor], map(digits, rates))
-    check_stays(gradient, rates)
+    check_conserved(gradient, rates)
 
 
-def check_stays(gradient, rates):
+def check_conserved(gradient, rates):
     """``df/dt = grad f . dx/dt = 0`` for a function that is not constant, where there is motion."""
     assert any(gradient)
     assert any(rates)
@@ -154,8 +154,8 @@ def image_of(equations, name):
 
 
 @pytest.mark.parametrize(("name", "route"), BY_ROUTE)
-def test_motions_keep_energy_and_casimirs(name, route):
-    """Those of the emitted route stay along every route, for a chart at an image of its points."""
+def test_energy_and_casimirs_are_conserved(name, route):
+    """Conserved quantities of the emitted route are constant along every route, also in charts."""
     first = emitted(name)
     point, rates = image_of(derived(name)[route], name)
     if first.spec.is_driven:  # what survives is a claim; a double bracket keeps all Casimirs
@@ -165,20 +165,20 @@ def test_motions_keep_energy_and_casimirs(name, route):
         kept = [*([] if first.setting.time else [first.energy]), *casimirs_of(first)]
     assert None not in kept
     for function in kept:
-        check_stays(gradient_of(first, function, solved(first, point)), rates)
+        check_conserved(gradient_of(first, function, solved(first, point)), rates)
 
 
 @pytest.mark.parametrize("name", [n for n in WITH_BRACKET if not shipped(n).is_driven])
 def test_motions_are_hamiltonian(name):
-    """The tensor is antisymmetric, the rates are its product with grad h, and h stays."""
-    for equations in bracketed(name):
+    """The tensor is antisymmetric, the rates are tensor times grad h, and h is constant."""
+    for equations in equations_with_bracket(name):
         tensor = tensor_of(equations)
         check_antisymmetric(tensor)
-        rates = at_a_point(equations, equations.rates)
-        check_moves(tensor, gradient_of(equations, equations.energy), rates)
+        rates = evaluate_at_point(equations, equations.rates)
+        check_hamiltonian(tensor, gradient_of(equations, equations.energy), rates)
 
 
-def equal(a, b):
+def are_equal(a, b):
     """Exactly for rational numbers; to 40 digits where there are roots."""
     if a.is_Rational and b.is_Rational:
         return a == b
@@ -200,15 +200,15 @@ def check_almost_hamiltonian(equations, tensor):
     phi = [equations.observables.get(name, sympy.Symbol(name)) for name in moved]
     *slopes, energy = map(sympy.Matrix, gradients_of(equations, [*phi, equations.energy]))
     slopes = sympy.Matrix.hstack(*slopes).T
-    rates = sympy.Matrix(at_a_point(equations, equations.rates))
+    rates = sympy.Matrix(evaluate_at_point(equations, equations.rates))
     assert any(rates)
-    assert all(map(equal, slopes * rates, sympy.Matrix(tensor) * slopes.T.solve(energy)))
+    assert all(map(are_equal, slopes * rates, sympy.Matrix(tensor) * slopes.T.solve(energy)))
 
 
 @pytest.mark.parametrize("name", ALMOST)
 def test_constrained_motions_are_almost_hamiltonian(name):
-    """The tensor is antisymmetric and gives the rates of momenta and positions; spoiled, not."""
-    for equations in bracketed(name):
+    """The tensor is antisymmetric and gives the rates; a tensor with one wrong sign does not."""
+    for equations in equations_with_bracket(name):
         tensor = tensor_of(equations)
         check_antisymmetric(tensor)
         check_almost_hamiltonian(equations, tensor)
@@ -219,7 +219,7 @@ def test_constrained_motions_are_almost_hamiltonian(name):
 @pytest.mark.parametrize("name", WITHOUT_SO8)
 def test_brackets_satisfy_jacobi(name):
     """Every triple of coordinates, at a point; two coordinates have no triple."""
-    different = {equations.poisson_tensor: equations for equations in bracketed(name)}
+    different = {equations.poisson_tensor: equations for equations in equations_with_bracket(name)}
     for tensor, equations in different.items():
         if tensor.free_symbols.isdisjoint(equations.state):
             # canonical: nothing to differentiate, and no Casimir
@@ -240,7 +240,7 @@ def test_casimirs_commute(name):
 
 
 def test_routes_without_a_bracket_are_few():
-    """Those of charts and restricted motions alone, and there are some of each to be tried."""
+    """Only routes in charts and restricted motions have no bracket."""
     without = {
         (name, route)
         for name, route in BY_ROUTE
@@ -283,7 +283,7 @@ def test_a_flipped_pair_violates_jacobi(top):
         check_jacobi(tensor, slopes)
 
 
-def test_a_function_that_moves_is_no_casimir(top):
+def test_a_function_that_changes_is_not_a_casimir(top):
     """The energy."""
     equations, tensor, _ = top
     with pytest.raises(AssertionError):
@@ -292,28 +292,28 @@ def test_a_function_that_moves_is_no_casimir(top):
         check_commutes(tensor, [Fraction(0)] * 6)
 
 
-def test_reversed_motion_is_not_that_of_the_tensor(top):
-    """The energy stays, the rates differ."""
+def test_reversed_rates_are_rejected(top):
+    """The energy is constant, but the rates differ."""
     equations, tensor, _ = top
     gradient = gradient_of(equations, equations.energy)
-    backwards = [-rate for rate in at_a_point(equations, equations.rates)]
+    backwards = [-rate for rate in evaluate_at_point(equations, equations.rates)]
     assert dot(gradient, backwards) == 0
     with pytest.raises(AssertionError):
-        check_moves(tensor, gradient, backwards)
+        check_hamiltonian(tensor, gradient, backwards)
 
 
-def test_a_spoiled_motion_in_a_chart_is_seen():
-    """With one rate of the other sign neither the energy nor the last Casimir stays."""
+def test_wrong_rates_in_a_chart_are_detected():
+    """With one rate of the opposite sign, neither the energy nor the last Casimir is constant."""
     first, other = emitted("heavy_top"), derived("heavy_top")["kaluza-klein"]
     point, rates = image_of(other, "heavy_top")
     for function in (first.energy, casimirs_of(first)[-1]):
         gradient = gradient_of(first, function, point)
-        check_stays(gradient, rates)
+        check_conserved(gradient, rates)
         with pytest.raises(AssertionError):
-            check_stays(gradient, [-rates[0], *rates[1:]])
+            check_conserved(gradient, [-rates[0], *rates[1:]])
 
 
-def test_gradients_go_through_what_the_kernel_solves_for():
+def test_gradients_include_the_solved_velocities():
     """At the velocities that it solves for, dl/dxi is mu itself, whose gradient has one entry."""
     equations = emitted("coupled_bodies")
     setting, field = equations.setting, equations.setting.field

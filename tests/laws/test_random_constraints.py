@@ -124,8 +124,8 @@ c2 = "v5 == a*sin(q3)*v2 + cos(q4)*v4"
 """
 
 
-def test_no_motion_is_looked_at_where_the_constraints_lose_their_rank():
-    """The energy is conserved wherever there is a motion; what is not zero there is refuted."""
+def test_points_where_constraints_lose_rank_are_excluded():
+    """The energy is conserved wherever the motion exists; a function nonzero there is refuted."""
     assert check(SINGULAR)
     motion = ConstrainedRates(derive(spec(SINGULAR), "nonholonomic"))
     spoiled = motion.energy_balance() + motion.field["v1"]
@@ -141,6 +141,6 @@ def seeds():
 
 @pytest.mark.parametrize("part", seeds())
 def test_random_constraints_are_derived_proved_and_lowered(part):
-    """No crash, no refusal of what is true, and most of them are motions."""
+    """No crash and no refusal of a true claim; most random specs have a motion."""
     counts = Counter(check(generate(seed)) for seed in range(12 * part, 12 * part + 12))
     assert counts[True] >= 8, counts

@@ -6,12 +6,12 @@ Read next: `tests.mutation.changed_specs`.
 
 from __future__ import annotations
 
-from tests.mutation.route_mutants import of
+from tests.mutation.mutant import of
 
 SETTING = "tests/derive/test_setting.py"
-SOLVER = ("tests/derive/test_solver.py", "-k", "definitions_solve")
-TIME = ("tests/sources/test_momentum_maps.py", "-k", "2_3_1")
-PT = ("tests/sources/test_complex.py", "-k", "pt_symmetric")
+SOLVER = ("tests/derive/test_solver.py -k definitions_solve",)
+TIME = ("tests/sources/test_momentum_maps.py -k 2_3_1",)
+PT = ("tests/sources/test_complex.py -k pt_symmetric",)
 TOP = ("heavy_top_goryachev_chaplygin",)
 
 SHARED = (
@@ -19,103 +19,95 @@ SHARED = (
         "setting",
         "setting",
         TOP,
-        (
-            'return 1 if self.spec.invariance == "left" else -1',
-            'return -1 if self.spec.invariance == "left" else 1',
-        ),
-        ("{place: self.taken(value) for", "{place: -self.taken(value) for"),
+        "sign: rewrite 1 if _1 else -1 -> -1 if _1 else 1",
+        "_action: negate taken value",
     ),
     *of(
         "setting",
         "setting",
         (),
-        ('return 1 if self.spec.invariance == "left" else -1', "return 1"),
-        tests=(SETTING, "-k", "sign_is_that"),
+        "sign: then invariance",
+        tests=(f"{SETTING} -k sign_is_that",),
     ),
     *of(
         "legendre",
         "legendre",
         TOP,
-        ("for mu, xi, w in pairs), -of.lagrangian)", "for mu, xi, w in pairs), of.lagrangian)"),
-        ("for row in inverse(matrix))", "for row in matrix)"),
+        "legendre_transform: flip lagrangian",
+        "_written_out: unwrap inverse",
     ),
     *of(
         "legendre",
         "legendre",
         (),
-        ("(1 / w) - field.substitute(slope", "(1 / w) + field.substitute(slope"),
+        "known_side: flip substitute",
         tests=("tests/derive/test_routes.py",),
     ),
     *of(
         "forces",
         "external",
         ("heavy_top_damped",),
-        ("found[name] - s for name", "found[name] + s for name", "a friction that drives"),
-        ("x + f for x, f in zip(free", "x - f for x, f in zip(free"),
+        ("external_forces: flip s", "a friction that drives"),
+        "forced: flip f in rates",
     ),
     *of(
         "forces",
         "external",
         (),
-        (".inverse_mass, along)", ".mass, along)"),
-        ("+ force * weight", "+ force", "a symmetric matrix that is pulled twice"),
-        tests=("tests/derive/test_external.py", "-k", "mass_matrix or symmetric"),
+        "added_rates: use mass for inverse_mass",
+        ("added_rates: omit weight", "a symmetric matrix that is pulled twice"),
+        tests=("tests/derive/test_external.py -k 'mass_matrix or symmetric'",),
     ),
     *of(
         "formulas",
         "interpret",
         TOP,
-        ('    "-": subtract,\n', '    "-": add,\n'),
-        ("scale(1 / below[1], below[0])", "scale(below[1], below[0])"),
+        "module: use add for subtract in _BINARY",
+        "_value: invert below",
     ),
     *of(
         "formulas",
         "interpret",
         ("kepler",),
-        ("scale(-field.one,", "scale(field.one,"),
+        "_value: flip field",
     ),
     *of(
         "solver",
         "solver",
         (),
-        ("self.solve.known[j] - taken", "self.solve.known[j] + taken"),
-        ("[i][j] - self.field.sum(shared)", "[i][j] + self.field.sum(shared)"),
-        ("self._z.get(i, self.field.zero) - after", "self._z.get(i, self.field.zero) + after"),
-        ("self._w[i, k] * self._l[j, k] for", "self._l[i, k] * self._l[j, k] for"),
-        ("self._w[i, j] * share", "self._w[i, j]"),
-        ("share = 1 / pivot", "share = pivot"),
+        "_eliminate: flip taken",
+        "_rest: rewrite self._w[i, k] * _1 -> self._l[i, k] * _1",
+        "_eliminate: omit share in _entry",
+        "_eliminate: invert pivot",
         tests=SOLVER,
     ),
     *of(
         "momentum-maps",
         "symmetries",
         ("spd_motion",),
-        ("covector[q] * moved for", "-covector[q] * moved for"),
-        ("{q: field[p] / weight for", "{q: field[p] for"),
-        (
-            'sign = 1 if symmetry.side == "left" else -1',
-            'sign = -1 if symmetry.side == "left" else 1',
-        ),
+        "_value: flip covector",
+        "_covector: omit weight",
+        "momentum_map: rewrite 1 if _1 else -1 -> -1 if _1 else 1",
     ),
     *of(
         "momentum-maps",
         "symmetries",
         ("c3_oscillators",),
-        ("a * x for a, x in zip(row", "-a * x for a, x in zip(row"),
+        "_moves: flip a",
     ),
     *of(
         "momentum-maps",
         "symmetries",
         (),
-        ("value = value - energy *", "value = value + energy *"),
-        ("X = X - motion.like(scale(tau", "X = X + motion.like(scale(tau"),
+        "_values: flip symmetry",
+        "momentum_map: flip components",
         tests=TIME,
     ),
     *of(
         "reductions",
         "reductions",
         (),
-        ("kept = tuple(rates[name] for", "kept = tuple(-rates[name] for"),
+        "restricted: negate rates name",
         tests=PT,
     ),
 )

@@ -83,7 +83,7 @@ def with_constants(name, constants):
     return replace(declared, algebra=replace(declared.algebra, constants=constants))
 
 
-def attempted(changed, route, setting):
+def try_route(changed, route, setting):
     """The equations by a route of a changed spec, or the words with which it is refused."""
     try:
         return derive(changed, route, setting=setting)
@@ -91,19 +91,19 @@ def attempted(changed, route, setting):
         return str(error)
 
 
-def followed(changed):
+def derive_routes(changed):
     """The equations by each route of a changed spec that does not refuse the algebra."""
     setting = make_setting(changed)
-    found = [attempted(changed, route, setting) for route in changed.routes]
+    found = [try_route(changed, route, setting) for route in changed.routes]
     assert all(changed.algebra.name in each for each in found if isinstance(each, str)), found
     return [each for each in found if not isinstance(each, str)]
 
 
 @pytest.mark.parametrize("name", ON_ALGEBRAS)
-def test_the_algebra_as_it_is_agrees(name):
-    """What the tests below see is the flip, not the way it is made."""
+def test_the_unchanged_algebra_agrees_with_the_book(name):
+    """Rebuilding the algebra without a flip changes nothing."""
     same_again = with_constants(name, shipped(name).algebra.constants)
-    found = followed(same_again)
+    found = derive_routes(same_again)
     assert [equations.route for equations in found] == list(same_again.routes)
     for equations in found:
         assert agrees(equations, name), equations.route
@@ -111,7 +111,7 @@ def test_the_algebra_as_it_is_agrees(name):
 
 @pytest.mark.parametrize("name", ON_ALGEBRAS)
 def test_every_sign_of_every_structure_constant(name):
-    """Jacobi fails, or the action no longer fits, or each route refuses or leaves the book.
+    """Each flip violates Jacobi or the action, or every route refuses it or contradicts the book.
 
     A route by a Lax pair that it finds among matrices needs no constants: the others leave it.
     """
@@ -123,7 +123,7 @@ def test_every_sign_of_every_structure_constant(name):
             changed = with_constants(name, spoiled_constants(algebra, *flip))
         except AlgebraError:
             continue
-        routes = followed(changed)
+        routes = derive_routes(changed)
         for equations in routes:
             if equations.route == "hamel":  # it knows no reactions, which may be all that is made
                 continue
@@ -132,7 +132,7 @@ def test_every_sign_of_every_structure_constant(name):
         assert not routes or not all(equations.pair for equations in routes), flip
 
 
-def flipped(operation, term):
+def flip_term(operation, term):
     """ad* or the bracket, with one of the terms ``c_ij^k x_i y_k`` or ``c_ij^k x_i y_j`` turned."""
     right = getattr(LieAlgebra, operation)
 
@@ -147,7 +147,7 @@ def flipped(operation, term):
     return wrong
 
 
-def terms_met(operation, met):
+def record_terms(operation, met):
     """ad* or the bracket, noting its terms."""
     right = getattr(LieAlgebra, operation)
 
@@ -160,22 +160,22 @@ def terms_met(operation, met):
 
 @pytest.mark.parametrize(("name", "route"), BY_OPERATION)
 def test_every_sign_of_every_term_of_an_operation(name, route, monkeypatch):
-    """The equations leave the book, whichever term of ad* or of the bracket is flipped."""
+    """The equations contradict the book for each flipped term of ad* or of the bracket."""
     declared, operation = bare(shipped(name), (route,)), OPERATIONS[route]
     setting, met = make_setting(declared), set()
-    monkeypatch.setattr(LieAlgebra, operation, terms_met(operation, met))
+    monkeypatch.setattr(LieAlgebra, operation, record_terms(operation, met))
     assert agrees(derive(declared, route, setting=setting), name)
     monkeypatch.undo()
     assert met
     for term in sorted(met):
-        monkeypatch.setattr(LieAlgebra, operation, flipped(operation, term))
+        monkeypatch.setattr(LieAlgebra, operation, flip_term(operation, term))
         assert not agrees(derive(declared, route, setting=setting), name), term
         monkeypatch.undo()
 
 
 @pytest.mark.parametrize("name", SMALL)
 def test_every_sign_of_every_entry_of_the_bracket(name, monkeypatch):
-    """The Lie-Poisson equations leave the book, whichever {x_i, x_j} is flipped."""
+    """The Lie-Poisson equations contradict the book for each flipped {x_i, x_j}."""
     right, declared = structure.lie_poisson, bare(shipped(name), ("lie-poisson",))
     setting = make_setting(declared)
     entire = structure.poisson_structure(setting)
@@ -197,7 +197,7 @@ def test_every_sign_of_every_entry_of_the_bracket(name, monkeypatch):
 
 @pytest.mark.parametrize(("name", "route"), BY_SIDE)
 def test_minus_and_plus(name, route, monkeypatch):
-    """Left taken for right: nothing but the sign of time changes, and the book's rates see it.
+    """Taking left for right only reverses time; the rates of the book detect it.
 
     Newton's law of mass points that are fixed in a body needs no sign: there the proof that routes
     are equal sees it.
@@ -214,13 +214,13 @@ def test_minus_and_plus(name, route, monkeypatch):
 
 @pytest.mark.parametrize(("name", "route"), BY_SIDE)
 def test_minus_and_plus_in_a_spec(name, route):
-    """A spec that says right where the book says left is seen, too, or refused for that."""
+    """A spec with right instead of left contradicts the book or is refused."""
     text, count = re.subn(r'(invariance +=) "left"', r'\1 "right"', shipped(name).path.read_text())
     assert count == 1
     # what rolls is refused as right invariant when it is read; the route shall see it by itself
     text = re.sub(r"\[rolling\]\n(.+\n)+", "", text)
     wrong = bare(spec(text), (route,))
-    found = attempted(wrong, route, make_setting(wrong))
+    found = try_route(wrong, route, make_setting(wrong))
     if isinstance(found, str):
         assert "the system is right-invariant; expected a left-invariant one" in found
     else:
@@ -229,7 +229,7 @@ def test_minus_and_plus_in_a_spec(name, route):
 
 @pytest.mark.parametrize("name", BY_LIE_POISSON)
 def test_minus_and_plus_of_the_bracket(name, monkeypatch):
-    """The plus bracket with everything else as it is: no system passes."""
+    """With the plus bracket alone no system agrees with the book."""
     right = structure.lie_poisson
     monkeypatch.setattr(
         structure, "lie_poisson", lambda a, field, names, sign: right(a, field, names, -sign)
@@ -238,7 +238,7 @@ def test_minus_and_plus_of_the_bracket(name, monkeypatch):
 
 
 def test_every_system_and_kind_of_route_is_tried():
-    """No list above is empty, or shorter than the shipped systems make it."""
+    """The lists above contain all shipped systems that they should."""
     algebraic = {name for name in SYSTEMS if "[algebra]" in shipped(name).path.read_text()}
     assert {name for name, _ in BY_SIDE} == algebraic > set(ON_ALGEBRAS) >= set(BY_LIE_POISSON)
     assert {route for _, route in BY_OPERATION} == set(OPERATIONS)

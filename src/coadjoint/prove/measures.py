@@ -14,9 +14,7 @@ Comes in: a motion. Goes out: a claim. Read next: `coadjoint.prove.densities`.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
 from itertools import islice
 
 from coadjoint.exact import Element, element_text
@@ -30,13 +28,11 @@ from coadjoint.prove.findings import shown
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.samples import Point, Samples, leading
+from coadjoint.prove.samples import Point, Samples, leading, random_numbers
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 #: Unknowns of one solve; the determinants of larger ones take too long, and no measure is claimed.
 SIZE = 6
-#: Choices of numbers for the parameters, until all square roots of such exist.
-SEEDS = 20
 
 #: Characters of a factor with velocities that a statement shows; a longer one is described.
 LONGEST = 240
@@ -50,15 +46,17 @@ SEARCHED = (
 
 def about_measure(motion: Motion) -> Iterator[Examined]:
     """Whether a measure is invariant: first with a density of the positions alone."""
-    if not motion.matrices and motion.divergence == 0:  # also of many unknowns
+    by_numbers = bool(motion.matrices)  # which is much shorter where accelerations are solved for
+    divergence = None if by_numbers else motion.divergence
+    if divergence is not None and divergence == 0:
         statement = f"an invariant measure: {_form(motion)}{motion.at_all_times}"
-        yield statement, "measure", lambda: [Measure(motion).divergence]
+        yield statement, "measure", lambda: [divergence]
         return
-    numbers = _numbers(motion)
+    numbers = random_numbers(motion)
     measure, samples = Measure(motion.at(numbers)), Samples(motion, numbers)
     coupled = max(map(len, motion.matrices), default=0)
     obstacle = samples.obstacle
-    if motion.divergence is None:
+    if divergence is None and not by_numbers:
         obstacle = "the rates rest on velocities that the kernel solves for"
     elif coupled > SIZE:
         obstacle = f"{coupled} unknowns are solved for together, more than {SIZE}"
@@ -198,17 +196,6 @@ def _where(samples: Samples) -> str:
     """The lengths of vectors at which conditions are examined."""
     lengths = [f"dot({each.name}, {each.name}) = 1" for each in samples.unit]
     return f" where {', '.join(lengths)}" if lengths else ""
-
-
-def _numbers(motion: Motion) -> dict[str, Fraction]:
-    """Numbers for the parameters, without relations among them; the square roots exist."""
-    for seed in range(SEEDS):
-        source = random.Random(seed)  # noqa: S311 (not for secrets)
-        names = motion.equations.setting.parameters
-        numbers = {name: Fraction(source.randint(2, 999), 7) for name in names}
-        if not Samples(motion, numbers).obstacle:
-            break
-    return numbers
 
 
 def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:

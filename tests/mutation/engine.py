@@ -1,0 +1,373 @@
+"""Single changes of the engine beside derivations that must not survive: a sign, an index, a check.
+
+Derivations have lists of their own: `tests.mutation.routes`. The tests that judge a module stand in
+`tests.mutation.test_mutants`, unless a line names its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tests.mutation.mutant import Mutant, module
+
+
+def of(name: str, *lines: str, tests: tuple[str, ...] = ()) -> tuple[Mutant, ...]:
+    """Changes of one module below ``src/coadjoint``, or of one template."""
+    file = f"templates/{name}" if name.endswith(".j2") else module(name)
+    return tuple(Mutant(file, line, tests=tests) for line in lines)
+
+
+#: Structure constants, ad* and the choice of minus or plus: tried in every run.
+SIGNS = (
+    *of(
+        "families",
+        "hat: rewrite {_1: 1, _2: -1} -> {_1: -1, _2: 1}",
+        "_rotations: rewrite {_1: 1, _2: -1} -> {_1: -1, _2: 1}",
+        "se: rewrite {_1: -1, _2: 1} -> {_1: 1, _2: -1}",
+        "galilei: rewrite unit(3, 4) -> unit(3, 4, -1)",
+    ),
+    *of("algebra/matrices", "commutator: turn a b"),
+    *of("lie_algebra", "from_brackets: flip 1", "ad_star: flip multiply_constant"),
+    *of("algebra/invariants", "structure: flip c"),
+    *of(
+        "poisson/brackets",
+        "_from_constants: rewrite mu[k] if _1 else opposite[k] if _2 else _3"
+        " -> opposite[k] if _1 else mu[k] if _2 else _3",
+    ),
+)
+#: Checks that compare less than they say, or nothing, and lowering that multiplies everything
+#: out: tried in every run, by the few tests that see them.
+CHECKS = (
+    *of(
+        "equivalence",
+        "rate_defects: rewrite zip(_1.rates, _2.rates, strict=True) -> zip(_1.rates[:1], _2.rates)",
+        tests=("tests/prove/test_equivalence.py -k velocities",),
+    ),
+    *of(
+        "prove/constrained",
+        "same_solves: skip rate_name",
+        tests=("tests/prove/test_equivalence.py -k solves",),
+    ),
+    *of(
+        "check",
+        "_differing_elements: never is_zero",
+        "_differing_elements: rewrite enumerate(_1) -> list(enumerate(_1))[:1]",
+        tests=("tests/lower/test_lowering.py -k one_changed_node",),
+    ),
+    *of(
+        "check",
+        "_differing_residues: never a",
+        tests=("tests/derive/test_projection.py -k undone",),
+    ),
+    *of(
+        "lowering",
+        "_shorter: then element",
+        tests=("tests/lower/test_lowering.py -k 'careful_hand and kirchhoff'",),
+    ),
+    *of(
+        "measures",
+        "_refusal: rewrite _is_certain(_1, _2, _3, found, _4) -> found",
+        tests=("tests/prove/test_measures.py -k larger_rank",),
+    ),
+    *of(
+        "regenerate",
+        "check: never differences",
+        tests=("tests/test_regenerate.py -k check_says_what_to_do",),
+    ),
+)
+MUTANTS = (
+    *(replace(mutant, always=True) for mutant in (*CHECKS, *SIGNS)),
+    *of("identities", "drift: flip equations", tests=("tests/prove/test_driven.py",)),
+    *of("prove/constrained", "_carried: drop own", tests=("tests/prove/test_driven.py",)),
+    *of(
+        "driven",
+        "own_change: flip lagrangian",
+        "while_constant: deny needed",
+        tests=("tests/prove/test_driven.py",),
+    ),
+    *of(
+        "prove/symmetries",
+        "_commutators: flip explicit",
+        "_moved: flip name",
+        tests=("tests/prove/test_driven.py",),
+    ),
+    *of(
+        "prove/almost_poisson",
+        "motion_defects: flip explicit",
+        tests=("tests/prove/test_driven.py",),
+    ),
+    *of(
+        "numpy/kernel.py.j2",
+        "driving: use :1 for chunk in array chunk ndim",
+        tests=("tests/crosscheck/test_driven.py",),
+    ),
+    *of(
+        "c/kernel.c.j2",
+        "state_inputs: use 0 for _n in _row _member",
+        "driving: use < for != in _member _stride",
+        tests=("tests/crosscheck/test_driven.py",),
+    ),
+    *of(
+        "families",
+        "hat: flip 1 in return",
+        "_columns: rewrite unit(i, column) -> unit(i, column, -1)",
+        "hat: reverse axis",
+        "so_indefinite: flip 1",
+        "bargmann: rewrite {_1: 1, _2: 1} -> {_1: 1, _2: -1}",
+        "sp.generators: flip 1",
+        "su: rewrite {(0, 1): -half, (1, 0): half} -> {(0, 1): half, (1, 0): -half}",
+        "coquaternions: rewrite {(0, 1): -1, (1, 0): 1} -> {(0, 1): 1, (1, 0): -1}",
+    ),
+    *of("algebra/matrices", "commutator: flip 1"),
+    *of(
+        "lie_algebra",
+        "jacobi_violation: rewrite -inner * outer -> inner * outer",
+        "ad_star: rewrite xi[i] * mu[k] -> xi[j] * mu[k]",
+        "bracket: flip multiply_constant",
+        "lie_poisson_tensor: flip sign",
+        "lie_poisson_tensor: flip 1",
+        "ad: flip multiply_constant",
+    ),
+    *of(
+        "representation",
+        "act: flip multiply_constant",
+        "diamond: flip multiply_constant",
+        "dual: flip v",
+        "dual: rewrite {(c, r): -v for _1, v in _2} -> {(r, c): -v for _1, v in _2}",
+    ),
+    *of(
+        "algebra/products",
+        "semidirect_product: negate value in setdefault",
+        "semidirect_sum: negate value in setdefault",
+    ),
+    *of(
+        "extensions",
+        "complexification: flip c",
+        "_form: then value",
+        "leibniz_extension: negate c in row",
+    ),
+    *of("element", "diff: flip exponent in append", "__neg__: flip numer"),
+    *of(
+        "field",
+        "_derivative_of: rewrite -inner * _1 -> inner * _1",
+        "_square_of: flip partner",
+    ),
+    *of(
+        "dense",
+        "determinant: omit 1 j",
+        "inverse: omit 1 i j",
+        "subtract: use add for sub",
+        "hat: flip a3",
+        "cross: rewrite a3 * b1 - a1 * b3 -> a1 * b3 - a3 * b1",
+    ),
+    *of(
+        "group",
+        "Ad: mirror inverse",
+        "Ad_star: unwrap transpose",
+        "ad_star: exchange ad_star",
+    ),
+    *of(
+        "actions",
+        "coadjoint_motion_defect: unwrap inverse in inverse",
+        "right_invariant_field: use right_translation for left_translation",
+    ),
+    *of(
+        "maps",
+        "pairing_su2: flip HALF",
+        "breve: rewrite mu[k][j] - mu[j][k] -> mu[j][k] - mu[k][j]",
+    ),
+    *of(
+        "quaternions",
+        "__mul__: rewrite _1 - s * (c * z - d * y) -> _1 + s * (c * z - d * y)",
+        "norm: flip planes",
+    ),
+    *of("rotations", "ad_star: rewrite mu * xi - xi * mu -> xi * mu - mu * xi"),
+    *of("hopf", "reduced_motion: flip 4"),
+    *of("theory/charts", "north_point: rewrite zeta.norm - 1 -> 1 - zeta.norm"),
+    *of(
+        "theory/vector_fields",
+        "vorticity_rate: flip lie_derivative",
+        "hamiltonian_vector_field: rewrite scale(-1, _1) -> _1",
+    ),
+    *of("central_forces", "monopole_force: flip lam in magnetic"),
+    *of("complex_numbers", "realify: flip im in tuple"),
+    *of(
+        "poisson/brackets",
+        "nambu_tensor: rewrite (-1) ** (i + j) -> (-1) ** (i + j + 1)",
+        "magnetic: negate scale a",
+        "magnetic: negate value in entries",
+    ),
+    *of("poisson/structure", "antisymmetric: reverse opposite", "_affine: flip field"),
+    *of("jacobi", "schouten_bracket: else middle"),
+    *of("polynomial_bracket", "is_casimir: omit factor", "along: omit power"),
+    Mutant(
+        "src/coadjoint/poisson/polynomial_bracket.py",
+        "is_casimir: rewrite _1 + factor * value -> _1 - 2 * factor * value",
+        equivalent="the sum is only compared with zero, and every term of it has the same factor",
+    ),
+    *of("theory/nambu", "rigid_body_pendulum: flip i3 in cylinder"),
+    *of(
+        "identities",
+        "antisymmetry_defects: rewrite _1 + tensor[j][i] -> _1 - tensor[j][i]",
+        "hamiltonian_defects: flip in_velocities",
+    ),
+    *of("agreement", "_same_rates: flip other"),
+    *of(
+        "prove/brackets",
+        "about_casimirs: rewrite decide().verdict is Verdict.PROVED -> decide()",
+    ),
+    *of(
+        "equivalence",
+        "rate_defects: flip second",
+        "velocity_defects: flip field",
+        "energy_defects: rewrite _1 - energy -> _1 + energy",
+    ),
+    *of(
+        "casimirs",
+        "independent: rewrite independent_rows(_1, slopes) -> range(len(slopes))",
+        "search_summands: rewrite len(given) >= expected -> given",
+    ),
+    *of("summands", "summands: leave reached", "restrict_algebra: then a"),
+    *of(
+        "measures",
+        "_is_certain: rewrite rank == len(_1) - _2 -> rank == len(_1) - _2 or found",
+        "powers_along: flip divergence",
+    ),
+    *of("invariant_factors", "is_invariant: rewrite rate != 0 and _1 -> rate == 0 or _1"),
+    *of("reversibility", "about_reversal: rewrite name and _1 -> not name"),
+    *of("prove/almost_poisson", "_defects_at: always plain in found"),
+    *of(
+        "completeness",
+        "completeness: rewrite structure.dimension - _1 -> structure.dimension + 0 * _1",
+    ),
+    *of(
+        "prove/charts",
+        "_closed_defects: rewrite own - _1 -> own - own",
+        "_definition_defects: rewrite whole - _1 -> whole - whole",
+        "kept: rewrite self.other.closed(self.carried(relation.element)) -> self.field.zero",
+        "rank: drop 0",
+        "image_relations: compare-GtE _rank_on_domain",
+        "reach: rewrite len(relations) == missing and _1 -> bool(relations) and _1",
+    ),
+    *of(
+        "ranks",
+        "largest_pivot: always sign",
+        "_sample: rewrite islice(primes(), TRIES) -> [2**61 - 1] * TRIES",
+    ),
+    *of(
+        "prove/functions",
+        "Experiment.__init__: then _turn",
+        "_turned: then _inverse",
+        "_root: skip _functions",
+    ),
+    *of("samples", "obstacle: always proper"),
+    *of(
+        "candidates",
+        "polynomials: rewrite not unproved -> True",
+        "_counted: rewrite bounded and _1 -> _1",
+        "_related: rewrite moved.keys() <= place.keys() -> moved.keys() & place.keys()",
+    ),
+    *of(
+        "ideals",
+        "remainder: bare _basis",
+        "_solve: flip slope",
+        "_groebner_basis: use 3 for 2",
+        "_split: rewrite self.field.normal(self._on(branch, each)) -> self.field.normal(each)",
+    ),
+    *of("prove/points", "_step: flip by", tests=("tests/prove/test_points.py",)),
+    *of(
+        "zero",
+        "_decide_on_branches: rewrite not rest.contains(value) -> rest.contains(value)",
+        "_decide_on_branches: rewrite [_1(each, branch.solved) for each in _2] -> [*_2]",
+        "_near_value: compare-GtE ON_BRANCH",
+        "_look: rewrite not min(counts) -> min(counts)",
+    ),
+    *of(
+        "prove/symmetries",
+        "_noether: compare-NotEq rate",
+        "_commutators: use X for motion in X",
+        "_claimed_bracket: swap structure",
+        "_motion_defects: flip 1",
+    ),
+    *of(
+        "prove/lax",
+        "lax_decision: rewrite settled(left - _1) -> settled(left - left)",
+        "_complete: rewrite own == together == _1 -> own == _1",
+        "_conserved: rewrite same.value - value -> value - value",
+        "_bracket: rewrite x * tensor[i][j] * y -> x * tensor[i][i] * y",
+    ),
+    *of(
+        "momentum_maps",
+        "action_defects: flip moved",
+        "bracket_defects: rewrite _1 - moved[a][b] -> _1 + moved[a][b]",
+        "field_defects: flip b",
+        "cocycle: flip _along",
+        "_in_algebra: then self",
+        "sigma: then value",
+        "lift: flip weight in components",
+        "generating_function: drop _degree",
+    ),
+    *of(
+        "spec/core/definitions",
+        "_put_in: rewrite argument[1] + isinstance(part, Index) -> 1",
+        "_component: rewrite replace(_1, name=_2) -> whole",
+        "_put_in: rewrite len(given) != len(definition.arguments) -> not given",
+        "_check_arguments: rewrite arguments[:place] -> []",
+        "define: rewrite expand(_1, known, _2) -> expand(_1, {}, _2)",
+    ),
+    *of(
+        "derive/symmetries",
+        "momentum_map: let resting = values[len(generators)]",
+        tests=("tests/prove/test_symmetries.py -k moving_time",),
+    ),
+    *of(
+        "derive/symmetries",
+        "momentum_map: flip equations",
+        tests=("tests/prove/test_symmetries.py -k by_the_place",),
+    ),
+    *of(
+        "decided",
+        "value: let closed = self.field.zero",
+        tests=("tests/derive/test_decided.py",),
+    ),
+    *of("lowering", "_signed_coefficient: flip 1", "_signed: compare-Lt sign"),
+    *of(
+        "graph",
+        "multiply: rewrite self.negate(self.multiply(a, _1)) -> self.multiply(a, _1)",
+        "_slope: rewrite _1(_2, self.multiply(a, db)) -> _1(_2, self.negate(self.multiply(a, db)))",
+        "_slope: unwrap negate in divide",
+        "_call_slope: unwrap negate",
+    ),
+    *of("lower/program", "evaluate: flip evaluate"),
+    *of(
+        "printers",
+        "_link: rewrite ('-', operand) -> ('+', operand)",
+        "text: drop -",
+        "_link: rewrite ('/', node.right) -> ('*', node.right)",
+    ),
+    *of(
+        "c/kernel.c.j2",
+        "state_inputs: flip _n in state_stride",
+        "member_statements: use function.outputs[-loop.index][0] for row in c_assignment row",
+        "functions: flip _n in parameter_inputs parameters_stride",
+        'of_member: use name ~ " = -" for name in c_assignment',
+    ),
+    *of(
+        "numpy/kernel.py.j2",
+        "outputs: use function.outputs[-loop.index][0] for row in numpy_assignment",
+        "of_member: use name ~ ' = -' for name in numpy_assignment",
+    ),
+    *of(
+        "prove/reductions",
+        "_kept: rewrite decide_zero(drifts, _1, _2) -> decide_zero([], _1, _2)",
+        "_section_defects: flip name",
+        "on_section: let return = restriction.setting.field.zero",
+    ),
+    *of("linear", "nullspace_modulo: use equations[1:] for equations in SpanModulo"),
+    *of("ansatz", "solve_with_right_side: deny last"),
+    *of(
+        "python/kernel_python.py.j2",
+        "outputs: use function.outputs[-loop.index][0] for row in plain_assignment row",
+        "functions: use 1 for 0 in range",
+    ),
+)
