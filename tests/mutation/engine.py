@@ -267,7 +267,7 @@ MUTANTS = (
         "_counted: rewrite bounded and _1 -> _1",
     ),
     *of(
-        "prove/monomials",
+        "polynomial_families",
         "count_relations: rewrite moved.keys() <= place.keys() -> moved.keys() & place.keys()",
     ),
     *of(

@@ -53,7 +53,7 @@ JUDGES = {
     "src/coadjoint/prove/functions": ("tests/prove/test_samples.py",),
     "src/coadjoint/prove/samples": ("tests/prove/test_samples.py",),
     "src/coadjoint/prove/candidates": ("tests/prove/test_candidates.py",),
-    "src/coadjoint/prove/monomials": ("tests/prove/test_candidates.py",),
+    "src/coadjoint/prove/polynomial_families": ("tests/prove/test_candidates.py",),
     "src/coadjoint/prove/densities": ("tests/prove/test_measures.py",),
     "src/coadjoint/prove/ideals": WHERE,
     "src/coadjoint/prove/zero": WHERE,

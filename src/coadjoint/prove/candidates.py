@@ -22,7 +22,8 @@ What is not made of known integrals is written out with the numbers that the par
 default, lowest degrees first, and kept if it is proved by its rate there. So Jellett's and Routh's
 integrals of a ball of revolution are found (Routh 1884; Holm 2011, section 12.2.1).
 Comes in: a motion. Goes out: what is known and found, as claims and findings.
-Read next: `coadjoint.prove.monomials`; `coadjoint.prove.measures`, which asks for a volume instead.
+Read next: `coadjoint.prove.polynomial_families`; `coadjoint.prove.measures`, which asks for a
+volume instead.
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ from coadjoint.exact.ansatz import Exponents, Solution, solve
 from coadjoint.exact.linear import SpanModulo
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
-from coadjoint.prove.monomials import SPARE, Degrees, PolynomialFamily
 from coadjoint.prove.motion import Motion, vector_names
+from coadjoint.prove.polynomial_families import SPARE, Degrees, PolynomialFamily
 from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
