@@ -200,7 +200,7 @@ thread = "vz == b*vphi"
 #: Painleve's (1895): a rod slides with one end on a rough floor, its slip speed regularised by eps.
 ROD = """
 title = "A rod on a rough floor"
-routes = ["nonholonomic", "hamel"]
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
 [variables]
 x = { role = "coordinate" }
 y = { role = "coordinate" }

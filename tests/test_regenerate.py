@@ -127,7 +127,7 @@ def test_the_command_for_a_false_claim_exits_with_one(checkout):
         "generated/rigid_body/certificate.json",
         "generated/manifest.json",
         "generated/__init__.py",
-        "src/coadjoint/render/targets/c/kernel.c.j2",
+        "templates/c/kernel.c.j2",
         "templates/package/__init__.py.j2",
         "derivations/rigid_body.toml",
     ],

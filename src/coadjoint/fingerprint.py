@@ -14,7 +14,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from coadjoint.resources import targets_folder, templates_folder
+from coadjoint.resources import templates_folder
 
 #: Packages whose version may move the output or its verification.
 WATCHED = ("jinja2", "mpmath", "numpy", "sympy")
@@ -37,10 +37,10 @@ def engine_fingerprint() -> str:
 
 
 def template_hashes() -> dict[str, str]:
-    """SHA-256 of each template by its path, below the folder of templates or that of targets."""
+    """SHA-256 of each template by its path below the templates folder."""
+    folder = templates_folder()
     return {
-        f"{name}/{path.relative_to(folder).as_posix()}": _sha256(path)
-        for name, folder in (("targets", targets_folder()), ("templates", templates_folder()))
+        f"templates/{path.relative_to(folder).as_posix()}": _sha256(path)
         for path in sorted(folder.glob("*/*.j2"))
     }
 

@@ -13,18 +13,18 @@ from pathlib import Path
 
 
 def templates_folder() -> Path:
-    """The folder of Jinja2 templates of documents and of the package of a system.
+    """The folder of Jinja2 templates: one folder for each target, the package and documents.
 
-    >>> (templates_folder() / "package" / "__init__.py.j2").is_file()
+    >>> (templates_folder() / "c" / "kernel.c.j2").is_file()
     True
     """
     return _folder(installed="templates", checkout="templates")
 
 
 def targets_folder() -> Path:
-    """The folder of targets, each with its templates and reserved words in a folder of its own.
+    """The folder of targets, each with its reserved words in a folder of its own.
 
-    >>> (targets_folder() / "numpy" / "kernel.py.j2").is_file()
+    >>> (targets_folder() / "c" / "reserved.txt").is_file()
     True
     """
     return Path(__file__).resolve().parent / "render" / "targets"

@@ -13,6 +13,7 @@ from coadjoint.lower.lowering import lower
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.energy import Balance
+from coadjoint.prove.measures import Measure
 from tests.constrained import BALL, PENDULUM, ROD, derived
 from tests.specs import spec
 
@@ -55,7 +56,7 @@ def computed(equations, point):
     return known
 
 
-@pytest.mark.parametrize("route", ["nonholonomic", "hamel"])
+@pytest.mark.parametrize("route", ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"])
 @pytest.mark.parametrize("mu", [AT["mu"], Fraction(-2, 3)])
 def test_the_rod_of_painleve_moves_by_newtons_law(route, mu):
     """N, the accelerations and the pivot are those typed by hand; not those of friction -mu."""
@@ -96,13 +97,46 @@ def test_a_wrong_power_is_seen(monkeypatch):
         assert not motion.where.contains(motion.energy_balance())
 
 
-def test_lowering_friction_is_undone_exactly():
-    """Every Program gives back what it came from, the Jacobians among them."""
-    equations = derived(ROD)["nonholonomic"]
+@pytest.mark.parametrize("driven", [False, True])
+def test_lowering_friction_is_undone_exactly(driven):
+    """Every Program gives back what it came from, the Jacobians among them, by inputs too."""
+    change = ("mu = { positive = true, default = 3 }", "[inputs]\nmu = { default = 3 }")
+    move = ("eps = { positive = true, default = 1 }\n", "")
+    changes = [move, (change[0], move[0] + change[1])] if driven else []
+    equations = derive(spec(ROD, *changes))
     programs = lower(equations)
     assert {"jacobian", "parameter_jacobian", "domain", "projection"} <= set(programs)
+    assert ("input_jacobian" in programs) == driven
     for program in programs.values():
         check_inverse(equations, program)
+
+
+#: A particle on a wedge of slope a, its friction linear in the velocity u; no functions occur.
+WEDGE = (
+    ROD.replace(ROD[ROD.index("[definitions]") :], "")
+    + """
+[lagrangian]
+l = "m*(u^2 + w^2)/2 + I*om^2/2 - m*g*y"
+[constraints]
+wedge = "w - l*y*u == 0"
+[forces]
+u = "-mu*u*wedge_reaction"
+"""
+)
+
+
+def test_the_divergence_of_a_motion_with_friction(monkeypatch):
+    """It is the sum of the slopes of the rates; not if the matrix did not depend on velocities."""
+    motion = ConstrainedRates(derive(spec(WEDGE)))
+    field, names = motion.field, motion.equations.setting.state
+    slopes = [field.derivative(motion.rate(field[name]), name) for name in names]
+    assert field.is_zero(Measure(motion).divergence - field.sum(slopes))
+
+    def of_side(self, solve, row, velocity):
+        return field.derivative(motion.closed(solve.known[row]), velocity)
+
+    monkeypatch.setattr(Measure, "_slope", of_side)
+    assert not field.is_zero(Measure(motion).divergence - field.sum(slopes))
 
 
 def test_rayleighs_function_may_name_reactions():

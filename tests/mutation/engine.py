@@ -13,7 +13,7 @@ from tests.mutation.mutant import Mutant, module
 
 def of(name: str, *lines: str, tests: tuple[str, ...] = ()) -> tuple[Mutant, ...]:
     """Changes of one module below ``src/coadjoint``, or of one template."""
-    file = f"src/coadjoint/render/targets/{name}" if name.endswith(".j2") else module(name)
+    file = f"templates/{name}" if name.endswith(".j2") else module(name)
     return tuple(Mutant(file, line, tests=tests) for line in lines)
 
 
@@ -231,8 +231,8 @@ MUTANTS = (
     *of(
         "measures",
         "_is_certain: rewrite rank == len(_1) - _2 -> rank == len(_1) - _2 or found",
-        "powers_along: flip divergence",
     ),
+    *of("densities", "powers_along: flip divergence"),
     *of("invariant_factors", "is_invariant: rewrite rate != 0 and _1 -> rate == 0 or _1"),
     *of("reversibility", "about_reversal: rewrite name and _1 -> not name"),
     *of("prove/almost_poisson", "_defects_at: always plain in found"),
@@ -265,7 +265,10 @@ MUTANTS = (
         "candidates",
         "polynomials: rewrite not unproved -> True",
         "_counted: rewrite bounded and _1 -> _1",
-        "_related: rewrite moved.keys() <= place.keys() -> moved.keys() & place.keys()",
+    ),
+    *of(
+        "polynomial_families",
+        "count_relations: rewrite moved.keys() <= place.keys() -> moved.keys() & place.keys()",
     ),
     *of(
         "ideals",

@@ -59,7 +59,7 @@ VARIED = (
         PRINCIPLE,
         "nonholonomic_hamilton_pontryagin",
         ("suslov",),
-        "_eliminated: flip multiplier_name",
+        "_kept: flip multiplier_name",
     ),
     *of(
         PRINCIPLE,

@@ -53,6 +53,8 @@ JUDGES = {
     "src/coadjoint/prove/functions": ("tests/prove/test_samples.py",),
     "src/coadjoint/prove/samples": ("tests/prove/test_samples.py",),
     "src/coadjoint/prove/candidates": ("tests/prove/test_candidates.py",),
+    "src/coadjoint/prove/polynomial_families": ("tests/prove/test_candidates.py",),
+    "src/coadjoint/prove/densities": ("tests/prove/test_measures.py",),
     "src/coadjoint/prove/ideals": WHERE,
     "src/coadjoint/prove/zero": WHERE,
     "src/coadjoint/prove/symmetries": (

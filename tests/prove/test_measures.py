@@ -7,8 +7,9 @@ import pytest
 
 from coadjoint.exact import element_text
 from coadjoint.prove import Verdict
+from coadjoint.prove.densities import Measure
 from coadjoint.prove.invariant_factors import InvariantFactors
-from coadjoint.prove.measures import Measure, about_measure
+from coadjoint.prove.measures import about_measure
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Discovery, decide_zero
 from coadjoint.systems import chaplygin_ball

@@ -117,7 +117,7 @@ def test_a_double_bracket_acts_on_the_whole():
     found = verdicts(IN_STEP, *change, ("[reduction]", along))
     assert set(found.values()) == {Verdict.PROVED}
     assert "G is positive semidefinite (of the whole system)" in found
-    assert "the energy changes by -<P dh, G P dh>" in found
+    assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
     single = '[double_bracket]\nG = "u^2*diag(vector(c, c, 0, 0))"\n[reduction]'
     found = verdicts(IN_STEP, *change, ("[reduction]", single))
     assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.REFUTED

@@ -176,7 +176,7 @@ def test_a_route_that_knows_no_bracket_is_refused():
     table = ("[claims]", '[double_bracket]\nG = "1"\n[claims]')
     with pytest.raises(SpecError, match="the route clebsch knows no double_bracket") as caught:
         spec(RIGID_BODY, table, ('"lie-poisson"]', '"clebsch"]'))
-    assert 'Write "euler-poincare"' in str(caught.value)
+    assert 'Remove "clebsch"' in str(caught.value)
 
 
 def test_a_spin_falls_into_the_field_as_landau_and_lifshitz_have_it():

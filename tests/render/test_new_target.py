@@ -1,4 +1,4 @@
-"""Another target is one folder and one line: a copy of the source tree gets one, and is asked."""
+"""Another target: a folder of code, one of templates and a line, in a copy of the source tree."""
 
 import re
 import shutil
@@ -43,20 +43,21 @@ print(refusal("mirrored")[0])
 
 
 @pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
-def test_a_folder_and_a_line_make_a_target(tmp_path):
+def test_two_folders_and_a_line_make_a_target(tmp_path):
     """It is rendered, read back, loaded, cross-checked and called, and its words are reserved."""
     source = tmp_path / "src"
     ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
     shutil.copytree(ROOT / "src", source, ignore=ignored)
     shutil.copytree(ROOT / "templates", tmp_path / "templates")
     targets = source / "coadjoint" / "render" / "targets"
-    shutil.copytree(targets / "python", targets / "mirror")
-    for path in (targets / "mirror").iterdir():
-        text = path.read_text()
-        for old, new in RENAMED:
-            text = re.sub(old, new, text)
-        path.unlink()
-        (path.parent / path.name.replace("python", "mirror")).write_text(text)
+    for folder in (targets, tmp_path / "templates"):
+        shutil.copytree(folder / "python", folder / "mirror")
+        for path in (folder / "mirror").iterdir():
+            text = path.read_text()
+            for old, new in RENAMED:
+                text = re.sub(old, new, text)
+            path.unlink()
+            (path.parent / path.name.replace("python", "mirror")).write_text(text)
     (targets / "mirror" / "reserved.txt").write_text("# a word of mirrors\nmirrored\n")
     registry = targets / "__init__.py"
     line = 'FOLDERS: Final = ("numpy", "c", "python")'

@@ -28,7 +28,7 @@ class LinearEquations:
 
     Attributes:
         unknowns: Velocities; or accelerations, and minus the multipliers of constraints.
-        matrix: Symmetric, in state, parameters, inputs and time.
+        matrix: In state, parameters, inputs and time; symmetric where no force names a reaction.
         right: A column of the same.
     """
 

@@ -21,33 +21,30 @@ values, with numbers for these numbers.
 What is not made of known integrals is written out with the numbers that the parameters have by
 default, lowest degrees first, and kept if it is proved by its rate there. So Jellett's and Routh's
 integrals of a ball of revolution are found (Routh 1884; Holm 2011, section 12.2.1).
-Comes in: a motion. Goes out: what is known and found, as claims and
-findings. Read next: `coadjoint.prove.measures`, which asks for a volume instead.
+Comes in: a motion. Goes out: what is known and found, as claims and findings.
+Read next: `coadjoint.prove.polynomial_families`; `coadjoint.prove.measures`, which asks for a
+volume instead.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import islice, product
+from itertools import islice
 from math import prod
-from operator import add, mul
 
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.exact import Element, element_text
-from coadjoint.exact.ansatz import Exponents, Solution, monomials, solve
-from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
-from coadjoint.exact.residues import residue
-from coadjoint.exact.written import Written
+from coadjoint.exact.ansatz import Exponents, Solution, solve
+from coadjoint.exact.linear import SpanModulo
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import described
-from coadjoint.prove.measures import Measure
 from coadjoint.prove.motion import Motion, vector_names
+from coadjoint.prove.polynomial_families import SPARE, Degrees, PolynomialFamily
 from coadjoint.prove.reversibility import reversal_defects
-from coadjoint.prove.samples import Point, Samples, Slopes, leading
+from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
 
@@ -56,23 +53,14 @@ from coadjoint.spec import Spec
 DEGREES = (2, 2)
 #: Monomials among which integrals are looked for; 200 take about a second.
 MONOMIALS = 200
-#: Points beyond as many as there are unknowns.
-SPARE = 5
 #: Products of known integrals that are tried.
 PRODUCTS = 1000
-#: Terms of a known integral, and quotients in it, beyond which no common denominator is made.
-LONG, QUOTIENTS = 500, 6
 #: How a function that a search has found is called.
 FOUND = "those found"
 #: How likely it is that more is wrong than what is certain.
 LUCK = "an error has a chance below 1e-9"
 #: Degrees in the order in which new integrals are looked for, so that generators come first.
 STEPS = ((1, 0), (1, 1), (2, 1), (2, 2))
-
-#: A polynomial in the generators modulo the prime.
-Terms = dict[Exponents, int]
-#: The largest sums of exponents of velocities and of positions in a term.
-Degrees = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -88,16 +76,13 @@ class Known:
     parts: tuple[Element, ...]
 
 
-class CandidateSearch:
+class CandidateSearch(PolynomialFamily):
     """The search for integrals of one motion.
 
     Args:
         motion: The motion.
         known: Integrals that are known.
         parameters: Numbers for the parameters; by default they are random.
-
-    Attributes:
-        values_at: Values of the generators, and their rates, by point.
     """
 
     def __init__(
@@ -106,50 +91,10 @@ class CandidateSearch:
         known: Sequence[Known] = (),
         parameters: Mapping[str, Fraction] | None = None,
     ) -> None:
-        self.motion, self.field, self.known = motion, motion.field, tuple(known)
-        self.samples = Samples(motion, parameters, [part for each in known for part in each.parts])
-        self._source = self.samples.points()
-        self._points: list[Point] = []
-        self.values_at: list[tuple[list[int], list[int]]] = []
+        super().__init__(motion, [part for each in known for part in each.parts], parameters)
+        self.known = tuple(known)
         self._rates = motion if parameters is None else motion.at(parameters)
         self._decided: dict[Element, Decision] = {}
-
-    # -- the ansatz -----------------------------------------------------------------------
-
-    @cached_property
-    def velocities(self) -> tuple[str, ...]:
-        """The velocities or momenta of the state."""
-        return self.motion.fibre
-
-    @cached_property
-    def positions(self) -> tuple[str, ...]:
-        """Positions, and functions of such in their place."""
-        functions = [
-            known
-            for known in self.samples.functions.known
-            if known.function != "sqrt"
-            and self.field.reach(known.argument) & set(self.motion.positions)
-        ]
-        inside = {name for known in functions for name in self.field.reach(known.argument)}
-        moved = set(self.samples.state) - inside - set(self.velocities)
-        plain = [name for name in self.motion.positions if name in moved]
-        return (*plain, *(known.generator for known in functions))
-
-    def monomials(self, degrees: Degrees) -> list[Exponents]:
-        """Those up to two degrees, the low ones first."""
-        names = self.velocities, self.positions
-        parts = (monomials(len(each), degree) for each, degree in zip(names, degrees, strict=True))
-        return sorted((a + b for a, b in product(*parts)), key=lambda e: (sum(e), e))
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """The generators, of which monomials are products."""
-        return (*self.velocities, *self.positions)
-
-    @cached_property
-    def generators(self) -> tuple[Element, ...]:
-        """What monomials are products of."""
-        return tuple(map(self.field.__getitem__, self.names))
 
     @cached_property
     def reversible(self) -> bool:
@@ -164,129 +109,23 @@ class CandidateSearch:
             return [whole]
         return [[e for e in whole if sum(e[:count]) % 2 == parity] for parity in (0, 1)]
 
-    # -- values ---------------------------------------------------------------------------
-
-    def points(self, count: int) -> list[Point]:
-        """The first points, more as they are asked for."""
-        for point in islice(self._source, max(count - len(self._points), 0)):
-            self._points.append(point)
-            x = [point.value(generator) for generator in self.generators]
-            self.values_at.append((x, [point.moved(slopes) for slopes in self._slopes]))
-        return self._points[:count]
-
-    @cached_property
-    def _slopes(self) -> list[Slopes]:
-        return [self.samples.slopes(generator) for generator in self.generators]
-
     def integrals(self, members: Sequence[Exponents]) -> list[Solution[Exponents]]:
         """A basis of the integrals among combinations of monomials."""
-        basis, tables = self._basis(members), self._tables(members)
+        basis, tables = self.independent_places(members), self.tables(members)
         conditions = (dict(enumerate(rates[n] for n in basis)) for _, rates in tables)
         return solve([members[n] for n in basis], conditions, self.samples.prime)
-
-    def _tables(self, members: Sequence[Exponents]) -> list[tuple[list[int], list[int]]]:
-        """Values of monomials, and their rates, at more points than there are monomials."""
-        count, prime = len(self.points(len(members) + SPARE)), self.samples.prime
-        return [_table(*values, members, prime) for values in self.values_at[:count]]
-
-    def _basis(self, members: Sequence[Exponents]) -> list[int]:
-        """Places of monomials that are independent as functions; of all others, points say no."""
-        rows = (dict(enumerate(values)) for values, _ in self._tables(members))
-        return sorted(SpanModulo(self.samples.prime, rows).pivots)
 
     def found(self, degrees: Degrees) -> list[Solution[Exponents]]:
         """A basis of the integrals up to some degrees."""
         return [each for members in self.sectors(degrees) for each in self.integrals(members)]
 
-    # -- what is certain ------------------------------------------------------------------
-
     def bounded(self, degrees: Degrees) -> bool:
         """Whether there are certainly no more integrals than `found`: all relations are known."""
+        sectors = ((e, len(self.independent_places(e))) for e in self.sectors(degrees))
         return all(
-            len(self._basis(members)) + self._related(members, degrees) == len(members)
-            for members in self.sectors(degrees)
+            count + self.count_relations(members, degrees) == len(members)
+            for members, count in sectors
         )
-
-    def _related(self, members: Sequence[Exponents], degrees: Degrees) -> int:
-        """How many independent relations between monomials are multiples of known ones."""
-        place = {exponents: n for n, exponents in enumerate(members)}
-        rows = list[Row]()
-        for terms in self._relations:
-            for shift in self.monomials(degrees):
-                moved = {tuple(map(add, e, shift)): x for e, x in terms.items()}
-                if moved.keys() <= place.keys():
-                    rows.append({place[e]: x for e, x in moved.items()})
-        return SpanModulo(self.samples.prime, rows).rank
-
-    @cached_property
-    def _relations(self) -> list[Terms]:
-        """What is zero at all points: constraints, lengths, and sines and cosines on a circle."""
-        circles = [
-            self.field[known.generator] ** 2 + self.field[known.partner] ** 2 - 1
-            for known in self.samples.functions.known
-            if known.function == "sin" and known.generator in self.positions
-        ]
-        zero = [*self.samples.where.relations, *self._solved, *circles]
-        return [terms for terms in map(self._terms, filter(self._holds, zero)) if terms]
-
-    @property
-    def _solved(self) -> list[Element]:
-        """The kept constraints solved for velocities: what is a common factor of them is gone."""
-        allowed = Measure(self.motion).allowed.items()
-        return [self.field.normal(self.field[name] - root) for name, root in allowed]
-
-    def _holds(self, relation: Element) -> bool:
-        """Whether a relation holds at points; what does not, or has a pole, is certainly none."""
-        with suppress(ZeroDivisionError):
-            return not any(point.value(relation) for point in self.points(SPARE))
-        return False
-
-    def _terms(self, element: Element) -> Terms | None:
-        """The numerator as a polynomial in the generators; None where it is none."""
-        names, state = self.names, set(self.samples.state)
-        (point,), prime = self.points(1), self.samples.prime
-        terms = Terms()
-        for quotient in self.field.quotients(element.combined()):
-            for monomial in quotient.monomials:
-                powers, value = dict(monomial.powers), residue(monomial.number, prime).value
-                exponents = tuple(powers.pop(name, 0) for name in names)
-                for name, exponent in powers.items():
-                    if self.field.reach(self.field[name]) & state:
-                        return None
-                    value = value * pow(point.value(self.field[name]), exponent, prime) % prime
-                terms[exponents] = (terms.get(exponents, 0) + value) % prime
-        return {exponents: value for exponents, value in terms.items() if value}
-
-    def _degrees(self, function: Element) -> Degrees | None:
-        """The degrees of a polynomial, reduced by the relations; None for other functions.
-
-        Of a long one the largest degree of an addend, which is enough: too high a degree leaves
-        products out.
-        """
-        state = set(self.samples.state)
-        written = self.field.quotients(function)
-        is_long = len(written) > QUOTIENTS or sum(len(q.monomials) for q in written) > LONG
-        whole = function if is_long else self.field.normal(function).combined()
-        quotients = self.field.quotients(whole)
-        if any(self.field.reach(d) & state for q in quotients for d, _ in q.divisors):
-            return None
-        if is_long:
-            return self._largest(quotients)
-        forms = [self._terms(whole), self._terms(self.samples.where.remainder(whole))]
-        return min(
-            (_sums(terms, len(self.velocities)) for terms in forms if terms is not None),
-            default=None,
-        )
-
-    def _largest(self, quotients: Sequence[Written]) -> Degrees | None:
-        """The largest degrees of the addends of a function without functions of the state."""
-        names, found = (*self.velocities, *self.positions), list[Exponents]()
-        state = set(self.samples.state)
-        for powers in (dict(m.powers) for q in quotients for m in q.monomials):
-            found.append(tuple(powers.pop(name, 0) for name in names))
-            if any(self.field.reach(self.field[name]) & state for name in powers):
-                return None
-        return _sums(found, len(self.velocities))
 
     def polynomials(self, degrees: Degrees) -> tuple[int, list[str]]:
         """How many polynomials in known integrals are independent, and in which of these.
@@ -294,7 +133,7 @@ class CandidateSearch:
         Only proved integrals count. The degrees of a product are the sums of those of its factors.
         """
         parts = [(each, part) for each in self.known for part in each.parts]
-        degrees_of = [self._degrees(part) for _, part in parts]
+        degrees_of = [self.degrees_of(part) for _, part in parts]
         known = [(e, p, d) for (e, p), d in zip(parts, degrees_of, strict=True) if d and any(d)]
         while True:
             count, used = self._products(degrees, known)
@@ -325,8 +164,6 @@ class CandidateSearch:
     def _is_proved(self, part: Element) -> bool:
         return self.drift(part).verdict is Verdict.PROVED
 
-    # -- what is new ----------------------------------------------------------------------
-
     def independent(self, found: Sequence[Solution[Exponents]]) -> list[int]:
         """Places of the integrals that are no functions of those before them and of known ones.
 
@@ -336,18 +173,7 @@ class CandidateSearch:
         parts = (*self.samples.where.relations, *(p for known in self.known for p in known.parts))
         slopes = (map(point.value, self.field.gradient(part, state)) for part in parts)
         span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
-        return span.independent(self._gradient(point, each) for each in found)
-
-    def _gradient(self, point: Point, function: Solution[Exponents]) -> Row:
-        """Slopes by the state of a combination of monomials."""
-        x, used, numbers = self.values_at[0][0], [*function.numbers], function.numbers.values()
-        slopes = dict.fromkeys(self.samples.state, 0)
-        for place, outer in enumerate(self._slopes):
-            along = [int(n == place) for n in range(len(x))]
-            rate = sum(map(mul, numbers, _table(x, along, used, self.samples.prime)[1]))
-            for name, inner in outer:
-                slopes[name] += rate * point.value(inner)
-        return dict(enumerate(slopes.values()))
+        return span.independent(self.gradient(point, each) for each in found)
 
     def new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
@@ -361,21 +187,10 @@ class CandidateSearch:
                 numbers = found[place].lift()
                 if numbers is None:
                     continue
-                element = self._function(numbers)
+                element = self.write(numbers)
                 if self._is_proved(element):
                     self.known = (*self.known, Known(FOUND, (element,)))
                     yield element
-
-    def _function(self, numbers: Mapping[Exponents, Fraction]) -> Element:
-        """A combination of monomials, scaled to whole coefficients without common factor."""
-        whole = self.field.polynomial(self.names, whole_numbers(numbers))
-        return -whole if leading(whole) < 0 else whole
-
-
-def _sums(terms: Iterable[Exponents], count: int) -> Degrees:
-    """The largest degrees in the first generators and in the others."""
-    sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
-    return max(a for a, _ in sums), max(b for _, b in sums)
 
 
 def about_candidates(motion: Motion) -> Iterator[Examined]:
@@ -529,19 +344,3 @@ def _factors(known: Sequence[Degrees], degrees: Degrees) -> Iterator[tuple[int, 
             for factors in longer
             if all(sum(known[n][k] for n in factors) <= degrees[k] for k in (0, 1))
         ]
-
-
-def _table(
-    x: Sequence[int], rates: Sequence[int], monomials: Sequence[Exponents], prime: int
-) -> tuple[list[int], list[int]]:
-    """Values of monomials at a point, and their rates."""
-    values, moved = [], []
-    for exponents in monomials:
-        factors = [i for i, e in enumerate(exponents) for _ in range(e)]
-        values.append(prod(x[i] for i in factors) % prime)
-        parts = (
-            rates[i] * prod(x[j] for m, j in enumerate(factors) if m != n)
-            for n, i in enumerate(factors)
-        )
-        moved.append(sum(parts) % prime)
-    return values, moved

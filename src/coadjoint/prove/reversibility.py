@@ -163,8 +163,8 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
             continue
         (written,) = field.quotients(field.normal(rate).combined())
         inside = [d for d, _ in written.divisors if field.reach(d) & (state | time)]
-        called = field.functions_in(rate)
-        inside += [a for g in called if field.reach(a := field.adjoined[g].argument) & state]
+        called = [field.adjoined[g].argument for g in field.functions_in(rate)]
+        inside += [argument for argument in called if field.reach(argument) & (state | time)]
         is_complete &= not inside
         for powers in (dict(each.powers) for each in written.monomials):
             odd = frozenset(n for n, e in powers.items() if e % 2)

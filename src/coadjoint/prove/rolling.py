@@ -38,8 +38,8 @@ def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
         "rolling",
         lambda: decide_zero([first.closed(x) for x in slip], motion.field, motion.where),
     )
-    text = " and ".join(filter(None, [f"|{Gamma}| = 1", motion.where.text]))
-    unit = motion.where.also([dot(normal, normal) - 1], text)
+    relations = " and ".join(filter(None, [f"|{Gamma}| = 1", motion.where.text]))
+    unit = motion.where.also([dot(normal, normal) - 1], relations)
     yield (
         f"the body stays on the plane: dot({Gamma}, d({text})/dt) = 0 where |{Gamma}| = 1",
         "rolling",

@@ -41,6 +41,8 @@ Values = dict[str, Residue]
 PRIMES, MOST = 40, 4000
 #: Numbers below which none of the primes divides any.
 SMALL = 10**12
+#: Choices of numbers for the parameters, until all square roots of such exist.
+SEEDS = 20
 #: How often a next point is tried.
 TRIES = 2000
 #: The derivatives of a function that are not zero, by the names of the state.
@@ -294,3 +296,14 @@ class Samples:
 def leading(element: Element) -> Fraction:
     """The leading coefficient of the numerator, by whose sign functions are written down."""
     return Fraction(str(element.combined().parts[0].numer.LC))
+
+
+def random_numbers(motion: Motion) -> dict[str, Fraction]:
+    """Numbers for the parameters, without relations among them; the square roots exist."""
+    for seed in range(SEEDS):
+        source = random.Random(seed)  # noqa: S311 (not for secrets)
+        names = motion.equations.setting.parameters
+        numbers = {name: Fraction(source.randint(2, 999), 7) for name in names}
+        if not Samples(motion, numbers).obstacle:
+            break
+    return numbers

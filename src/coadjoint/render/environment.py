@@ -20,7 +20,7 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 from coadjoint.errors import SpecError
 from coadjoint.render.printers import python_call
 from coadjoint.render.targets import TARGETS
-from coadjoint.resources import targets_folder, templates_folder
+from coadjoint.resources import templates_folder
 
 #: What would begin or end a comment or a string, or glue two lines together, in C or in Python.
 UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
@@ -30,7 +30,7 @@ UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
 def environment() -> ImmutableSandboxedEnvironment:
     """The environment; the sandbox is a second wall, the first is that specs are not templates."""
     made = ImmutableSandboxedEnvironment(
-        loader=FileSystemLoader([targets_folder(), templates_folder()]),
+        loader=FileSystemLoader(templates_folder()),
         undefined=StrictUndefined,
         autoescape=False,  # code, not HTML; `refuse_unsafe` guards each value
         trim_blocks=True,
@@ -39,7 +39,7 @@ def environment() -> ImmutableSandboxedEnvironment:
     )
     made.filters["python_call"] = python_call
     for target in TARGETS.values():
-        made.filters |= target.filters()
+        made.filters |= target.filters
     return made
 
 
@@ -79,7 +79,7 @@ def render_templates(names: tuple[str, ...], values: Mapping[str, Any]) -> dict[
     """The text of each template, given the same values.
 
     Args:
-        names: Paths below the folder of targets or of templates, e.g. ``numpy/kernel.py.j2``.
+        names: Paths below the templates folder, e.g. ``numpy/kernel.py.j2``.
         values: What templates may print; each must be read by one template at least.
 
     Returns:

@@ -98,9 +98,14 @@ def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) 
 def _momentum_equations(
     found: Distribution, forces: Row, moved: Mapping[str, Element]
 ) -> dict[str, Element]:
-    """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers."""
+    """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers.
+
+    Multipliers of constraints that are kept have names of their own, with the other sign: so they
+    are told from the reactions that forces name.
+    """
     setting, field, names = found.setting, found.setting.field, found.frame.velocities
-    multipliers = setting.elements([each.reaction for each in found.equations])
+    kept = _kept(found)
+    multipliers = [kept.get(e.reaction, field[e.reaction]) for e in found.equations]
     lines = {}
     for name, momentum, force, outer, column in zip(
         names,
@@ -121,21 +126,22 @@ def _eliminated(
     """Rates and multipliers that follow, and the momentum equations that are left.
 
     The velocity that a constraint gives has its rate from that constraint, and the constraint its
-    multiplier from the momentum equation along that velocity. Of the constraints that are kept
-    minus the multiplier has a name of its own.
+    multiplier from the momentum equation along that velocity.
     """
     field = found.setting.field
     giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
     lines = {rate_name(equation.solves): line for equation, line in giving}
     rates = _solved(found, lines)
-    kept = {
-        equation.reaction: -field[multiplier_name(n)] for n, (equation, _) in enumerate(found.kept)
-    }
-    put = {**rates, **kept}
-    left = {name: field.substitute(line, put) for name, line in momentum.items()}
+    left = {name: field.substitute(line, rates) for name, line in momentum.items()}
     multipliers = _solved(found, {each.reaction: left[each.solves] for each, _ in giving})
     rows = [field.substitute(left[name], multipliers) for name in found.independent]
-    return {**rates, **kept, **multipliers}, rows
+    return {**rates, **_kept(found), **multipliers}, rows
+
+
+def _kept(found: Distribution) -> dict[str, Element]:
+    """The reactions of the constraints that are kept, by the names that the kernel solves for."""
+    field = found.setting.field
+    return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(found.kept)}
 
 
 def _solved(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:

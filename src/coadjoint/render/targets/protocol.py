@@ -1,12 +1,15 @@
 """Targets, the protocol: what every language that kernels are written in can do.
 
-Comes in: nothing. Goes out: the two protocols that rendering, cross-checks and Systems speak to.
-Read next: `coadjoint.render.targets.c`, the target with the most to say.
+Comes in: the name of a target's package. Goes out: a `Target`, which renders, reads back and loads
+by the modules ``printer``, ``reader`` and ``loader`` of that package. These load on first use.
+Read next: `coadjoint.render.targets.c`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
@@ -30,10 +33,12 @@ class Kernel(Protocol):
         ...
 
 
-class Target(Protocol):
-    """A language; its folder holds templates, printer, reader, loader and reserved words.
+@dataclass(frozen=True)
+class Target:
+    """A language; its package holds templates, printer, reader, loader and reserved words.
 
     Attributes:
+        package: The package, ``__name__`` of its ``__init__.py``.
         builds: What a person may give as ``target=``, with what is to be known of it, or "".
         exact: The builds that have the same bits as those of other targets, as long as nothing
             beyond sqrt is called.
@@ -45,28 +50,37 @@ class Target(Protocol):
             number; a System has NaN in every row of such a member.
     """
 
+    package: str
     builds: Mapping[str, str]
     exact: tuple[str, ...]
     kernel: str
     files: Mapping[str, str]
-    needs_compiler: bool
-    is_slow: bool
-    stops_at_poles: bool
+    needs_compiler: bool = False
+    is_slow: bool = False
+    stops_at_poles: bool = False
 
+    @property
     def filters(self) -> Mapping[str, Callable[..., str]]:
-        """The filters of the templates, by a name of which the target is a part."""
-        ...
+        """The filters of the templates, ``FILTERS`` of its printer."""
+        found: Mapping[str, Callable[..., str]] = self._module("printer").FILTERS
+        return found
 
     def read(self, text: str, program: Program, system: str) -> list[Body]:
-        """What each branch of the function of a Program does, from the text of the kernel.
+        """What each branch of the function of a Program does, by ``read`` of its reader.
+
+        Args:
+            text: Of the kernel.
+            program: The function.
+            system: Name of the system.
 
         Raises:
             CrossCheckError: It is of no form that the template prints.
         """
-        ...
+        found: list[Body] = self._module("reader").read(text, program, system)
+        return found
 
     def load(self, system: System, build: str, reference: Callable[[], Any]) -> Kernel:
-        """The kernel of a System.
+        """The kernel of a System, by ``load`` of its loader.
 
         Args:
             system: Whose kernel it is.
@@ -78,4 +92,9 @@ class Target(Protocol):
             CrossCheckError: What was compiled differs from the NumPy kernel.
             OutputError: The file cannot be loaded.
         """
-        ...
+        found: Kernel = self._module("loader").load(system, build, reference)
+        return found
+
+    def _module(self, name: str) -> Any:
+        """A module of its package."""
+        return import_module(f"{self.package}.{name}")

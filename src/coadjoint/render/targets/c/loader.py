@@ -69,7 +69,7 @@ class CKernel:
             yield piece
 
 
-def load_kernel(system: System, build: str, reference: Callable[[], NumpyKernel]) -> CKernel:
+def load(system: System, build: str, reference: Callable[[], NumpyKernel]) -> CKernel:
     """The C kernel of a build, verified."""
     verify = partial(_verify, system, build, reference)
     return CKernel(load_library(system.folder, system.name, system.id, FLAGS[build], verify))

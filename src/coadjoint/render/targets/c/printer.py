@@ -39,3 +39,6 @@ def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str
     inner = C.broken(node, WIDTH - column - 4 - 1)
     inner[-1] += ";"
     return indented([f"{to} ={note}", *("    " + text for text in inner)], column)
+
+
+FILTERS: Final = {"c_assignment": c_assignment}

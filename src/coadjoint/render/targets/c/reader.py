@@ -12,7 +12,7 @@ from fractions import Fraction
 from math import isfinite
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
+from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Program, Symbol
 from coadjoint.render.targets.body import Body, failure, joined
 
 _TOKEN = re.compile(
@@ -31,6 +31,11 @@ _STEPS = re.compile(
     r"const size_t _\1_member = \1_stride != 0;"
 )
 _LOOP = "for (size_t _n = 0; _n < count; ++_n) {"
+
+
+def read(text: str, program: Program, system: str) -> list[Body]:
+    """The branches of the function of a Program."""
+    return read_c(text, f"{system}_{program.name}")
 
 
 def read_c(text: str, name: str) -> list[Body]:

@@ -21,6 +21,11 @@ if TYPE_CHECKING:
     from coadjoint.solve.system import System
 
 
+def load(system: System, build: str, reference: Callable[[], Any]) -> NumpyKernel:
+    """The NumPy kernel of a System."""
+    return NumpyKernel(system)
+
+
 class NumpyKernel(KernelModule):
     """The NumPy kernel of a System."""
 

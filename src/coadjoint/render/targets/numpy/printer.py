@@ -32,3 +32,6 @@ def numpy_assignment(node: Node, to: str, column: int = 4, comment: str = "") ->
     'out[0] = Pi1  # dPi1/dt'
     """
     return python_assignment(NUMPY, node, to, column, comment)
+
+
+FILTERS: Final = {"numpy_assignment": numpy_assignment}

@@ -10,30 +10,24 @@ import ast
 from collections.abc import Sequence
 from fractions import Fraction
 
-from coadjoint.lower.program import Node, Number
+from coadjoint.lower.program import Node, Number, Program
 from coadjoint.render.targets.body import Body
 from coadjoint.render.targets.python_text import Functions, Reader
 
 
-def read_numpy(text: str, name: str, arrays: Sequence[str] = ("state", "parameters")) -> Body:
-    """The function ``_name`` of a ``kernel.py``; other forms than our template's fail.
-
-    Args:
-        text: Of the file.
-        name: Of the function.
-        arrays: The arrays that it takes, in order.
-    """
-    reader = _reader(name)
+def read(text: str, program: Program, system: str) -> list[Body]:
+    """The one branch of a function of a ``kernel.py``; other forms than our template's fail."""
+    name, reader = program.name, _reader(program.name)
     functions = reader.functions(text, _is_allowed)
     for wanted in (name, f"_{name}"):
         if wanted not in functions:
             raise reader.refusal(f"there is no function {wanted!r}")
-    _check_calls(reader, functions, arrays)
+    _check_calls(reader, functions, tuple(program.arrays))
     body = Body()
     for line in functions[f"_{name}"].body:
         if not _read_zeros(reader, line, body):
             reader.read(line, body)
-    return body
+    return [body]
 
 
 def read_expression(text: str, name: str) -> Node:

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
     from coadjoint.solve.system import System
 
 
+def load(system: System, build: str, reference: Callable[[], Any]) -> PythonKernel:
+    """The plain Python kernel of a System."""
+    return PythonKernel(system)
+
+
 class PythonKernel(KernelModule):
     """The plain Python kernel of a System."""
 

@@ -21,3 +21,6 @@ def plain_assignment(node: Node, to: str, column: int = 4, comment: str = "") ->
     '_t1 = -sqrt(Pi1)'
     """
     return python_assignment(PYTHON, node, to, column, comment)
+
+
+FILTERS: Final = {"plain_assignment": plain_assignment}

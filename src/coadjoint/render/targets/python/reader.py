@@ -18,8 +18,8 @@ from coadjoint.render.targets.python_text import Functions, Reader
 ROWS = "return [out[first:first + size] for first in range(0, len(out), size)]"
 
 
-def read_plain(text: str, program: Program) -> Body:
-    """The function of a Program; other forms than our template's fail."""
+def read(text: str, program: Program, system: str) -> list[Body]:
+    """The one branch of the function of a Program; other forms than our template's fail."""
     reader = Reader("kernel_python.py", program.name, _called)
     functions = reader.functions(text, _is_allowed)
     if program.name not in functions:
@@ -37,7 +37,7 @@ def read_plain(text: str, program: Program) -> Body:
     assigned = {row for row, _ in body.outputs}
     zeros = (row for row in range(len(program.outputs)) if row not in assigned)
     body.outputs += [(row, Number(Fraction(0))) for row in zeros]
-    return body
+    return [body]
 
 
 def _called(function: ast.expr) -> str | None:
