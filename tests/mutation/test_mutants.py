@@ -66,6 +66,7 @@ JUDGES = {
     "src/coadjoint/spec/core/definitions": ("tests/spec/test_definitions.py",),
     "src/coadjoint/lower": ("tests/lower",),
     "src/coadjoint/render": KERNELS,
+    "templates": KERNELS,
 }
 COPIED = ("src", "templates", "derivations", "tests", "pyproject.toml")
 #: pytest's exit statuses for a failed test and for a tree that cannot even be imported.
