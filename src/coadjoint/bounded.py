@@ -155,13 +155,13 @@ def read_records(paths: Sequence[str]) -> list[dict[str, Any]]:
     for number, path in enumerate(paths):
         report_progress(f"read {path}", number, len(paths))
         try:
-            records.append(_declared(read_spec(path)))
+            records.append(describe_declared(read_spec(path)))
         except CoadjointError as error:
             records.append({"error": error.as_record()})
     return records
 
 
-def _declared(spec: Spec) -> dict[str, Any]:
+def describe_declared(spec: Spec) -> dict[str, Any]:
     """What a spec declares."""
     return {
         "name": spec.name,

@@ -35,7 +35,7 @@ class CoadjointError(Exception):
     exit_status: ClassVar[int] = 2
 
     def __init__(self, message: str, **parts: Any) -> None:
-        super().__init__(shortened(plain(message)))
+        super().__init__(shorten(plain(message)))
         self.parts = parts
 
     def __getattr__(self, name: str) -> Any:
@@ -122,7 +122,7 @@ def plain(text: str) -> str:
     )
 
 
-def shortened(text: str) -> str:
+def shorten(text: str) -> str:
     """A message of at most a screen; of a longer one, the middle is left out."""
     rows = [
         row

@@ -59,11 +59,11 @@ def read_present(path: Path) -> bytes:
 def read_object(path: Path) -> dict[str, Any]:
     """The JSON object in a file; an empty one if there is none that can be read."""
     with suppress(OSError):
-        return parsed(read_regular(path))
+        return parse_object(read_regular(path))
     return {}
 
 
-def parsed(content: bytes) -> dict[str, Any]:
+def parse_object(content: bytes) -> dict[str, Any]:
     """The JSON object that bytes hold; an empty one if they hold none."""
     with suppress(ValueError, RecursionError):
         found = json.loads(content)

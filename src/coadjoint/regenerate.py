@@ -35,7 +35,7 @@ from coadjoint.render.write import (
     write_systems,
 )
 from coadjoint.sandbox import Children, report_progress, run_bounded
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.names import system_refusal
 from coadjoint.spec.reader import read_file
 
@@ -139,7 +139,7 @@ def regenerate(
         OutputError: The folder cannot be written; what stood there is untouched.
     """
     sources, allowed = _sources(paths), allowed_seconds(seconds)
-    rows = {source.name: row for source in sources if (row := _unchanged(source, output))}
+    rows = {source.name: row for source in sources if (row := _unchanged_row(source, output))}
     pending = [source for source in sources if source.name not in rows]
     keep = {source.name for source in sources} if complete else None
     _refuse_early(output, pending, keep)
@@ -192,7 +192,7 @@ def check(
         extra = any(each.kind == "extra" for each in differences)
         raise DriftError(
             f"{output}: {len(differences)} of the generated files differ from a fresh run: "
-            + listed((f"{each.path} ({each.kind})" for each in differences), 8)
+            + list_names((f"{each.path} ({each.kind})" for each in differences), 8)
             + ". Run `coadjoint regenerate` and commit what it writes"
             + ("; it leaves extra files that no run wrote." if extra else "."),
             path=str(output),
@@ -282,7 +282,7 @@ def _holds(path: Path, text: str) -> bool:
     return False
 
 
-def _unchanged(source: _Source, output: Path) -> Row | None:
+def _unchanged_row(source: _Source, output: Path) -> Row | None:
     """The row of a system whose files are those of an earlier, verified run; else None.
 
     What was verified is remembered in the private cache of this machine, by fingerprint.

@@ -286,7 +286,7 @@ class _Task:
         elif self.expired:
             message, limit = self._out_of_patience(), self.wall
         else:
-            message, limit = self._killed(status, errors), self.memory
+            message, limit = self._explain_end(status, errors), self.memory
         return ResourceError(
             f"{self.subject}: {message}",
             limit=limit,
@@ -318,7 +318,7 @@ class _Task:
             f"{WALL_FACTOR} times that), seconds=, or {VARIABLE}."
         )
 
-    def _killed(self, status: int, errors: bytes) -> str:
+    def _explain_end(self, status: int, errors: bytes) -> str:
         """A signal or an exit that nobody here has asked for."""
         found = signal.Signals(-status).name if status < 0 else f"exit status {status}"
         tail = errors.decode(errors="replace").strip()[-400:]
@@ -354,10 +354,10 @@ def child() -> None:
     except CoadjointError as error:
         _send({"error": error.as_record()})
     except Exception as error:
-        _send({"error": _described(error, request).as_record()})
+        _send({"error": _describe(error, request).as_record()})
 
 
-def _described(error: Exception, request: dict[str, Any]) -> CoadjointError:
+def _describe(error: Exception, request: dict[str, Any]) -> CoadjointError:
     """An exception that is none of ours, as one; called where it is handled."""
     if _is_want_of_memory(error):
         memory: int = request["memory"]

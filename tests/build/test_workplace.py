@@ -10,8 +10,8 @@ import pytest
 from coadjoint.build import workplace
 from coadjoint.build.workplace import (
     PREFIX,
-    abandoned,
     keep_folder,
+    list_abandoned,
     remove,
     sweep,
     work_file,
@@ -54,14 +54,14 @@ def test_what_a_killed_run_leaves_is_swept(tmp_path):
     """It is found, and removed; what this process holds and what is not ours stays."""
     status = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False).returncode
     assert status == -signal.SIGKILL
-    assert len(abandoned(tmp_path)) == 2
+    assert len(list_abandoned(tmp_path)) == 2
     (tmp_path / "a file of the user").write_text("")
     (tmp_path / f"{PREFIX}link").symlink_to(tmp_path / "a file of the user")
     kept = keep_folder(tmp_path)
     with work_folder(tmp_path) as held:
         sweep(tmp_path)
         assert held.is_dir()
-        assert abandoned(tmp_path) == []
+        assert list_abandoned(tmp_path) == []
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {"a file of the user", f"{PREFIX}link", kept.name}
     sweep(tmp_path / "not there")
@@ -69,7 +69,7 @@ def test_what_a_killed_run_leaves_is_swept(tmp_path):
 
 def test_a_folder_that_is_swept_before_it_is_locked_is_made_anew(monkeypatch, tmp_path):
     """Between making and locking, another run may take it for litter."""
-    whole, taken = workplace._locked, []
+    whole, taken = workplace._lock, []
 
     def swept_once(path):
         if not taken:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from coadjoint.errors import CoadjointError, SpecError, plain, shortened, system_error
+from coadjoint.errors import CoadjointError, SpecError, plain, shorten, system_error
 from coadjoint.limits import MESSAGE_ROWS
 from coadjoint.resources import systems_folder
 from tests.specs import RIGID_BODY
@@ -148,7 +148,7 @@ def test_a_message_is_at_most_a_screen(text):
     assert message.startswith("top.toml:3:1: ")
     assert message.endswith("Write it anew.")
     assert "[...]" in message
-    assert shortened("short\nand good") == "short\nand good"
+    assert shorten("short\nand good") == "short\nand good"
 
 
 #: Places of a spec that take free text, or that a message repeats.

@@ -91,6 +91,6 @@ def test_magnitudes_keep_products_in_range():
 
 def test_shared_parameters_are_those_of_the_first_member():
     """A shared batch has one set of parameters, contiguous."""
-    shared = FAMILIES["random"].shared()
+    shared = FAMILIES["random"].with_shared_parameters()
     assert shared.parameters.shape == (8,)
     assert shared.parameters.tolist() == FAMILIES["random"].parameters[:, 0].tolist()

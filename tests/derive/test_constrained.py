@@ -75,7 +75,7 @@ def test_entries_of_the_moving_part_are_named_too():
     sin, cos = (f.call(name, f["x"]) for name in ("sin", "cos"))
     assert known["_b1"] == sin
     assert f.is_zero(known["_e1"] - cos * f["u"])
-    assert f.is_zero(equations.closed(f["_c1"]) - (f["u"] * f["v"] + cos * f["u"]))
+    assert f.is_zero(equations.close(f["_c1"]) - (f["u"] * f["v"] + cos * f["u"]))
 
 
 def test_kept_constraints_are_differentiated():

@@ -71,9 +71,9 @@ def test_a_constraint_that_moves():
         (solve,) = found.exact.solves
         t, vx, m, f = (field[name] for name in ("t", "vx", "m", "f"))
         cosine = field.call("cos", t)
-        assert field.is_zero(found.closed(solve.matrix[0][0]) - m * (1 + t**4))
+        assert field.is_zero(found.close(solve.matrix[0][0]) - m * (1 + t**4))
         known = f - m * t**2 * (2 * t * vx + cosine)
-        assert field.is_zero(found.closed(solve.known[0]) - known)
+        assert field.is_zero(found.close(solve.known[0]) - known)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def test_an_input_with_a_rate_moves_a_constraint():
         field = found.setting.field
         (solve,) = found.exact.solves
         t, vx, m, f, db = (field[name] for name in ("t", "vx", "m", "f", "db"))
-        assert field.is_zero(found.closed(solve.known[0]) - f + m * t**2 * (2 * t * vx + db))
+        assert field.is_zero(found.close(solve.known[0]) - f + m * t**2 * (2 * t * vx + db))
 
 
 def test_the_advice_leads_somewhere():

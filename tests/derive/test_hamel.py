@@ -40,7 +40,7 @@ def test_both_roads_solve_the_same_equations(text):
     routes = derived(text)
     projected, hamel = (
         [
-            [*map(equations.closed, (*(e for row in solve.matrix for e in row), *solve.known))]
+            [*map(equations.close, (*(e for row in solve.matrix for e in row), *solve.known))]
             for solve in equations.exact.solves
         ]
         for equations in (routes["nonholonomic"], routes["hamel"])

@@ -48,7 +48,7 @@ def test_other_powers_of_a_root_move_too():
     y, v = of.field["y"], of.field["v"]
     h = of.field.call("sqrt", 1 + y**2)
     definitions = dict(of.equations.exact.definitions)
-    found = of.closed(definitions["_e1"])
+    found = of.close(definitions["_e1"])
     assert of.field.is_zero(found - (1 - 2 / h**3) * y * v / h)
 
 

@@ -203,10 +203,10 @@ def test_residuals_are_left_minus_right():
     ((name, residual),) = equations.exact.residuals
     f = equations.setting.field
     assert (name, residual) == ("blade", f["w"] - f["y"] * f["u"])
-    assert f.is_zero(equations.closed(residual))
+    assert f.is_zero(equations.close(residual))
     of = motion(PENDULUM)
     ((_, residual),) = of.equations.exact.residuals
-    assert not of.field.is_zero(of.equations.closed(residual))
+    assert not of.field.is_zero(of.equations.close(residual))
     assert of.field.is_zero(of.rate(residual))
 
 
@@ -215,7 +215,7 @@ def test_momenta_of_sections():
     more = ("[claims]", '[momenta.J]\nsection = { u = "1", v = "x" }\n[claims]')
     of = motion(PARTICLE, more)
     m, x, y, u, v = symbols(of, "m x y u v")
-    J = of.equations.closed(dict(of.equations.exact.observables)["J"])
+    J = of.equations.close(dict(of.equations.exact.observables)["J"])
     assert of.field.is_zero(J - m * (u + y * y * u + x * v))
 
 

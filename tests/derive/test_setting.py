@@ -62,7 +62,7 @@ def test_constants_with_parameters_live_in_the_field_of_the_state():
     row = setting.algebra.constants[0, 1]
     assert row[2] - setting.field["k"] == 0
     assert isinstance(row[2], Element)
-    assert setting.taken(2) == 2
+    assert setting.take_constant(2) == 2
     assert setting.algebra is setting.algebra
 
 

@@ -222,7 +222,7 @@ def test_statements_are_assigned_once_and_used(system):
             assert reads <= known
             assert statement.name not in known
             known.add(statement.name)
-        assert {s.name for s in program.statements} <= program.used()
+        assert {s.name for s in program.statements} <= program.names_used()
 
 
 def test_parameter_statements_read_parameters_alone(system):

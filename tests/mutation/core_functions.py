@@ -70,12 +70,12 @@ CORE = (
     *core_of(
         "newton-euler",
         "newton_euler",
-        "_rates _forces weighed squared mass_points",
+        "_rates _forces weigh weigh_squares mass_points",
         systems=("heavy_top",),
         tests=(f"{algebras.TOPS} -k 2_1_2",),
         equivalent={
             "mass_points: transpose mass": "the mass matrix is symmetric",
-            "squared: transpose second": "the matrix of second moments is symmetric",
+            "weigh_squares: transpose second": "the matrix of second moments is symmetric",
         },
     ),
     *core_of(
@@ -88,7 +88,7 @@ CORE = (
     *core_of(
         "complexification",
         "complexification",
-        "_momenta _paired _continued",
+        "_momenta _pair _continue",
         systems=("complex_rigid_body",),
         tests=("tests/sources/test_complex.py -k complex_velocities",),
     ),
@@ -148,7 +148,7 @@ CORE = (
     *core_of(
         "nonholonomic",
         "nonholonomic",
-        "_forces _projected _known",
+        "_forces _project_mass _project_forces",
         systems=("chaplygin_sleigh", "chaplygin_ball_centred"),
         tests=(*distributions.PARTICLE, *distributions.MOVING_MASS, *distributions.FORCED),
         fallacies={
@@ -158,17 +158,17 @@ CORE = (
             "_forces: flip slope": "a torque of the other sign",
             "_forces: drop motion": "a moving mass that does not move",
             "_forces: flip force in value": "an external force of the other sign",
-            "_projected: omit b in return": "momenta that B does not project",
-            "_known: omit b": "forces that B does not project",
+            "_project_mass: omit b in return": "momenta that B does not project",
+            "_project_forces: omit b": "forces that B does not project",
         },
     ),
     *core_of(
         "hamel",
         "hamel",
-        "_known",
+        "_right_side",
         systems=("chaplygin_sleigh", "chaplygin_ball_centred", "knife_edge_cvt"),
         tests=(*distributions.FORCED, *distributions.DRIVEN, "tests/prove/test_driven.py"),
-        fallacies={"_known: drop gyroscopic": "a constraint put in before varying"},
+        fallacies={"_right_side: drop gyroscopic": "a constraint put in before varying"},
     ),
     *core_of(
         "projection",

@@ -78,7 +78,7 @@ CHECKS = (
 MUTANTS = (
     *(replace(mutant, always=True) for mutant in (*CHECKS, *SIGNS)),
     *of("identities", "drift: flip equations", tests=("tests/prove/test_driven.py",)),
-    *of("prove/constrained", "_carried: drop own", tests=("tests/prove/test_driven.py",)),
+    *of("prove/constrained", "_differentiate: drop own", tests=("tests/prove/test_driven.py",)),
     *of(
         "driven",
         "own_change: flip lagrangian",
@@ -88,7 +88,7 @@ MUTANTS = (
     *of(
         "prove/symmetries",
         "_commutators: flip explicit",
-        "_moved: flip name",
+        "_move_state: flip name",
         tests=("tests/prove/test_driven.py",),
     ),
     *of(
@@ -244,7 +244,7 @@ MUTANTS = (
         "prove/charts",
         "_closed_defects: rewrite own - _1 -> own - own",
         "_definition_defects: rewrite whole - _1 -> whole - whole",
-        "kept: rewrite self.other.closed(self.carried(relation.element)) -> self.field.zero",
+        "decide_kept: rewrite self.other.close(_1) -> self.field.zero",
         "rank: drop 0",
         "image_relations: compare-GtE _rank_on_domain",
         "reach: rewrite len(relations) == missing and _1 -> bool(relations) and _1",
@@ -257,14 +257,14 @@ MUTANTS = (
     *of(
         "prove/functions",
         "Experiment.__init__: then _turn",
-        "_turned: then _inverse",
+        "_add_turns: then _inverse",
         "_root: skip _functions",
     ),
     *of("samples", "obstacle: always proper"),
     *of(
         "candidates",
         "polynomials: rewrite not unproved -> True",
-        "_counted: rewrite bounded and _1 -> _1",
+        "_count: rewrite bounded and _1 -> _1",
     ),
     *of(
         "polynomial_families",
@@ -275,7 +275,7 @@ MUTANTS = (
         "remainder: bare _basis",
         "_solve: flip slope",
         "_groebner_basis: use 3 for 2",
-        "_split: rewrite self.field.normal(self._on(branch, each)) -> self.field.normal(each)",
+        "_split_branches: rewrite self.field.normal(self._on(_1, _2)) -> self.field.normal(_2)",
     ),
     *of("prove/points", "_step: flip by", tests=("tests/prove/test_points.py",)),
     *of(
@@ -296,7 +296,7 @@ MUTANTS = (
         "prove/lax",
         "lax_decision: rewrite settled(left - _1) -> settled(left - left)",
         "_complete: rewrite own == together == _1 -> own == _1",
-        "_conserved: rewrite same.value - value -> value - value",
+        "_decide_conserved: rewrite same.value - value -> value - value",
         "_bracket: rewrite x * tensor[i][j] * y -> x * tensor[i][i] * y",
     ),
     *of(
@@ -333,7 +333,7 @@ MUTANTS = (
         "value: let closed = self.field.zero",
         tests=("tests/derive/test_decided.py",),
     ),
-    *of("lowering", "_signed_coefficient: flip 1", "_signed: compare-Lt sign"),
+    *of("lowering", "_signed_coefficient: flip 1", "_apply_sign: compare-Lt sign"),
     *of(
         "graph",
         "multiply: rewrite self.negate(self.multiply(a, _1)) -> self.multiply(a, _1)",
@@ -362,7 +362,7 @@ MUTANTS = (
     ),
     *of(
         "prove/reductions",
-        "_kept: rewrite decide_zero(drifts, _1, _2) -> decide_zero([], _1, _2)",
+        "_decide_kept: rewrite decide_zero(drifts, _1, _2) -> decide_zero([], _1, _2)",
         "_section_defects: flip name",
         "on_section: let return = restriction.setting.field.zero",
     ),

@@ -58,7 +58,7 @@ REDUCED = (
         "hamilton-pontryagin",
         "reconstruction",
         ("rigid_body_attitude",),
-        "_turned: rewrite (q, q.conjugate) -> (q.conjugate, q)",
+        "_turn: rewrite (q, q.conjugate) -> (q.conjugate, q)",
     ),
     *of(
         "hamilton-pontryagin",
@@ -140,7 +140,7 @@ BODY_ROUTES = (
         "derive: flip setting in in_state_order",
         "_momenta: exchange Complex",
         "derive: swap bracket",
-        "derive: rewrite _continued(setting, slope, L) -> Complex(slope, setting.field.zero)",
+        "derive: rewrite _continue(setting, slope, L) -> Complex(slope, setting.field.zero)",
     ),
     *of(
         "complexification",
@@ -170,7 +170,7 @@ PAIRS = (
         "lax",
         "integrals",
         ("manakov_so4",),
-        "_chosen: rewrite ordered[place - len(known)] -> ordered[place - 1]",
+        "_choose_independent: rewrite ordered[place - len(known)] -> ordered[place - 1]",
     ),
     *of(
         "manakov",

@@ -29,13 +29,13 @@ BRACKETS = (
         "poisson",
         "structure",
         ("kepler",),
-        "_declared: reverse names in pairs",
+        "_declared_structure: reverse names in pairs",
     ),
     *of(
         "poisson",
         "structure",
         ("monopole_kepler",),
-        ("_declared: reverse names in fields", "the magnetic bracket of the other sign"),
+        ("_declared_structure: reverse names in fields", "the magnetic bracket of the other sign"),
     ),
     *of(
         "nambu",

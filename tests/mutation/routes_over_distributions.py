@@ -32,7 +32,7 @@ CONSTRAINED_LAGRANGIAN = (
         "hamel",
         "hamel",
         BALL,
-        "_known: use structure for bracket",
+        "_right_side: use structure for bracket",
     ),
 )
 
@@ -45,12 +45,12 @@ VARIED = (
         ("_momentum_equations: flip force", "F of the other sign"),
         ("_momentum_equations: flip reaction", "reactions of the other sign"),
         (
-            "_eliminated: rewrite _1(left[name], multipliers)"
+            "_eliminate: rewrite _1(left[name], multipliers)"
             " -> _1(left[name], dict.fromkeys(multipliers, field.zero))",
             "reactions that turn nothing",
         ),
         (
-            "_varied: rewrite _1.momenta[:own] -> _1.momenta[:3] + (setting.field.zero,) * 3",
+            "_vary: rewrite _1.momenta[:own] -> _1.momenta[:3] + (setting.field.zero,) * 3",
             "momenta of given velocities put in before varying",
         ),
         "_rate: flip slope",
@@ -59,7 +59,7 @@ VARIED = (
         PRINCIPLE,
         "nonholonomic_hamilton_pontryagin",
         ("suslov",),
-        "_kept: flip multiplier_name",
+        "_kept_reactions: flip multiplier_name",
     ),
     *of(
         PRINCIPLE,
@@ -112,8 +112,8 @@ DISTRIBUTED = (
         "constrained",
         "kinematics",
         (),
-        "moved: flip field in outer",
-        ("moved: drop outer in slopes", "a root that moves twice"),
+        "differentiate: flip field in outer",
+        ("differentiate: drop outer in slopes", "a root that moves twice"),
         ("_rates_of_roots: omit 2", "the slope of a root without its half"),
         tests=ROOTS,
     ),

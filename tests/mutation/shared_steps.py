@@ -20,7 +20,7 @@ SHARED = (
         "setting",
         TOP,
         "sign: rewrite 1 if _1 else -1 -> -1 if _1 else 1",
-        "_action: negate taken value",
+        "_action: negate take_constant value",
     ),
     *of(
         "setting",
@@ -34,7 +34,7 @@ SHARED = (
         "legendre",
         TOP,
         "legendre_transform: flip lagrangian",
-        "_written_out: unwrap inverse",
+        "_invert_block: unwrap inverse",
     ),
     *of(
         "legendre",
@@ -48,7 +48,7 @@ SHARED = (
         "external",
         ("heavy_top_damped",),
         ("external_forces: flip s", "a friction that drives"),
-        "forced: flip f in rates",
+        "add_forces: flip f in rates",
     ),
     *of(
         "forces",
@@ -107,7 +107,7 @@ SHARED = (
         "reductions",
         "reductions",
         (),
-        "restricted: negate rates name",
+        "restrict: negate rates name",
         tests=PT,
     ),
 )

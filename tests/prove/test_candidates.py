@@ -174,7 +174,7 @@ def test_what_is_not_conserved_is_no_bound():
     """Of the energy and a false integral, which is wrongly called known, only the first counts."""
     along = motion("chaplygin_ball_centred")
     energy, wrong = along.equations.exact.energy, along.field["Omega1"]
-    known = [Known("energy", (along.closed(energy),)), Known("false", (wrong,))]
+    known = [Known("energy", (along.close(energy),)), Known("false", (wrong,))]
     assert CandidateSearch(along, known).polynomials((2, 2)) == (2, ["energy"])
     assert CandidateSearch(along, known[1:]).polynomials((2, 2)) == (1, [])
 

@@ -41,7 +41,7 @@ def pair(text_or_spec, image, spoil=lambda rates: rates):
 def test_two_turning_vectors_carry_the_rigid_body():
     """Pi = P x Q obeys Euler's equations, and reaches every Pi."""
     maps = ChartMap(*pair(spec(), lambda P, Q: cross(P, Q)))
-    assert maps.related().verdict is Verdict.PROVED
+    assert maps.decide_related().verdict is Verdict.PROVED
     statement, decision = reach(maps)
     assert decision.verdict is Verdict.PROVED
     assert "open set" in statement
@@ -51,14 +51,14 @@ def test_two_turning_vectors_carry_the_rigid_body():
 def test_one_wrong_sign_among_the_rates_is_refuted(place):
     """A rate with the other sign is not related to the motion, and the point shows it."""
     flipped = lambda rates: tuple(-r if n == place else r for n, r in enumerate(rates))  # noqa: E731
-    decision = ChartMap(*pair(spec(), lambda P, Q: cross(P, Q), flipped)).related()
+    decision = ChartMap(*pair(spec(), lambda P, Q: cross(P, Q), flipped)).decide_related()
     assert decision.verdict is Verdict.REFUTED
     assert decision.point
 
 
 def test_wrong_map_is_refuted():
     """Pi = Q x P turns the other way round."""
-    decision = ChartMap(*pair(spec(), lambda P, Q: cross(Q, P))).related()
+    decision = ChartMap(*pair(spec(), lambda P, Q: cross(Q, P))).decide_related()
     assert decision.verdict is Verdict.REFUTED
 
 
@@ -80,7 +80,7 @@ def heavy_top_by_hand(spoil=lambda rates: rates):
 def test_submanifold_that_a_map_reaches_is_named():
     """The Clebsch pair of the heavy top reaches Pi . Gamma = 0 alone."""
     maps = ChartMap(*heavy_top_by_hand())
-    assert maps.related().verdict is Verdict.PROVED
+    assert maps.decide_related().verdict is Verdict.PROVED
     statement, decision = reach(maps)
     assert decision.verdict is Verdict.PROVED
     assert "dimension 5 of 6: dot(Pi, Gamma) = 0" in statement
@@ -133,7 +133,7 @@ def test_weight_with_the_other_sign_is_refuted():
     wrong = lambda rates: [  # noqa: E731
         rate if n < 3 else -rate for n, rate in enumerate(rates)
     ]
-    assert ChartMap(*heavy_top_by_hand(wrong)).related().verdict is Verdict.REFUTED
+    assert ChartMap(*heavy_top_by_hand(wrong)).decide_related().verdict is Verdict.REFUTED
 
 
 def test_relation_that_the_motion_leaves_is_refuted():
@@ -147,8 +147,8 @@ def test_relation_that_the_motion_leaves_is_refuted():
     ):
         chart = dataclasses.replace(other.chart, relations=(Relation("it = 0", element),))
         maps = ChartMap(first, dataclasses.replace(other, chart=chart))
-        assert maps.kept().verdict is verdict
-        assert maps.related().verdict is Verdict.PROVED
+        assert maps.decide_kept().verdict is verdict
+        assert maps.decide_related().verdict is Verdict.PROVED
         assert maps.rank == 3
 
 

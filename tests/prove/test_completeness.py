@@ -5,7 +5,7 @@ import pytest
 from coadjoint.derive import derive, make_setting
 from coadjoint.poisson.casimirs import independent
 from coadjoint.prove import prove
-from coadjoint.prove.completeness import ALMOST, IN_PART, bracket_of, completeness, described
+from coadjoint.prove.completeness import ALMOST, IN_PART, bracket_of, completeness, describe
 from coadjoint.prove.zero import Decision, Discovery
 from tests.derive.test_nambu import FOUR
 from tests.specs import RIGID_BODY, shipped, spec
@@ -305,9 +305,9 @@ def test_a_long_casimir_is_described_by_its_size():
     """A statement stays readable: the number of terms and the first one."""
     field = make_setting(shipped("so8_body")).field
     whole = sum((field[name] for name in field.names[:28]), field.zero) ** 2
-    text = described(field, whole)
+    text = describe(field, whole)
     assert text == f"a function with {28 * 29 // 2} terms that begins with M12^2"
-    assert described(field, field["M12"]) == "M12"
+    assert describe(field, field["M12"]) == "M12"
 
 
 @pytest.mark.parametrize(

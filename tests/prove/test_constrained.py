@@ -155,7 +155,7 @@ def test_combinations_of_rows_give_what_determinants_give(monkeypatch):
 def weighted(of, function):
     """The part of a rate that the accelerations have."""
     names = of.distribution.independent
-    slopes = of.field.gradient(of.closed(function), names)
+    slopes = of.field.gradient(of.close(function), names)
     return of.field.sum(s * of.field[f"d{name}_dt"] for s, name in zip(slopes, names, strict=True))
 
 
@@ -249,8 +249,8 @@ def test_the_wheel_of_appell_and_its_heading_are_two_blocks():
     mass = (M + m) * a**2 + m * b**2 + inertia
     for equations in (first, second):
         block = equations.exact.solves[1]
-        assert f.is_zero(equations.closed(block.matrix[0][0]) - mass)
-        assert f.is_zero(equations.closed(block.known[0]) - known)
+        assert f.is_zero(equations.close(block.matrix[0][0]) - mass)
+        assert f.is_zero(equations.close(block.known[0]) - known)
 
 
 def whole(equations):

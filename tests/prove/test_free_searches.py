@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.prove import Verdict, prove
-from coadjoint.prove.reversibility import _solved
+from coadjoint.prove.reversibility import _solve_parities
 from tests.specs import RIGID_BODY, shipped, spec
 
 LINE = """
@@ -73,8 +73,8 @@ def test_nothing_is_said_of_signs_in_functions_of_time():
 def test_equations_modulo_2():
     """A + b = 1, b + c = 1, a = 1 gives b = 0, c = 1; with a + c = 1 there is none."""
     equations = [(frozenset("ab"), 1), (frozenset("bc"), 1), (frozenset("a"), 1)]
-    assert _solved(equations, "abc") == ["a", "c"]
-    assert _solved([*equations, (frozenset("ac"), 1)], "abc") is None
+    assert _solve_parities(equations, "abc") == ["a", "c"]
+    assert _solve_parities([*equations, (frozenset("ac"), 1)], "abc") is None
 
 
 def test_integrals_of_lagranges_top_are_counted():

@@ -23,9 +23,9 @@ def test_points_satisfy_constraints_and_lengths():
     assert len(samples.where.relations) == 2
     for relation in samples.where.relations:
         assert point.value(relation) == 0
-        assert point.moved(samples.slopes(relation)) == 0
+        assert point.differentiate(samples.slopes(relation)) == 0
     assert point.value(samples.field["Omega1"]) != 0
-    assert point.moved(samples.slopes(samples.field["Omega1"])) != 0
+    assert point.differentiate(samples.slopes(samples.field["Omega1"])) != 0
 
 
 def test_points_are_the_same_in_every_run():
@@ -41,7 +41,7 @@ def test_rates_at_points_are_those_of_the_closed_form():
     """A rate by the kernel's definitions equals the quotient of determinants, modulo the prime."""
     along = motion("veselova")
     point, function = next(Samples(along).points()), along.field["Omega1"]
-    rate = point.moved(point.samples.slopes(function))
+    rate = point.differentiate(point.samples.slopes(function))
     assert rate == point.value(along.rate(function)) != 0
 
 

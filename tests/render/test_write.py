@@ -21,7 +21,7 @@ from coadjoint.render.write import (
     MARK,
     TEMPORARY,
     GeneratedSystem,
-    locked,
+    lock,
     manifest_text,
     read_manifest,
     tree_texts,
@@ -510,7 +510,7 @@ def test_a_second_run_says_that_it_waits(folder):
         waited.append("waiting")
         os.close(handle)
 
-    with locked(folder, on_wait=release):
+    with lock(folder, on_wait=release):
         assert waited == ["waiting"]
 
 

@@ -77,8 +77,8 @@ def test_one_step_methods_go_on_from_the_projected_state():
     system, seen = veselova.system, {}
 
     class Watched(Constraints):
-        def put_back(self, solver):
-            state = super().put_back(solver)
+        def move_onto(self, solver):
+            state = super().move_onto(solver)
             seen.setdefault(type(solver).__name__, []).append((solver.y.copy(), solver))
             return state
 

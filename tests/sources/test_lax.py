@@ -173,7 +173,7 @@ def test_2_4_4_isospectral():
     for i in size:
         for j in size[i + 1 :]:
             turned = sum((L[i][k] * B[k][j] - B[i][k] * L[k][j] for k in size), field.zero)
-            assert first.closed(turned - rates[f"M{i + 1}{j + 1}"]) == 0
+            assert first.close(turned - rates[f"M{i + 1}{j + 1}"]) == 0
 
 
 @pytest.mark.parametrize(
@@ -344,7 +344,7 @@ def test_c_4_bloch_iserles(name, size):
         rates = iter(equations.exact.rates)
         for i in range(size):
             for j in range(i, size):
-                assert equations.closed(next(rates)) == expected[i][j] != 0
+                assert equations.close(next(rates)) == expected[i][j] != 0
 
 
 def test_c_4_the_velocity_is_the_sum_over_the_basis():

@@ -52,7 +52,7 @@ def test_2_4_rigid_body_in_lagrangian_form():
         Pi3 * Pi1 / I1 - Pi1 * Pi3 / I3,
         Pi1 * Pi2 / I2 - Pi2 * Pi1 / I1,
     )
-    rates = [found.closed(rate) for rate in found.exact.rates]
+    rates = [found.close(rate) for rate in found.exact.rates]
     assert all(rate == value for rate, value in zip(rates, book, strict=True))
     assert not any(rate == -value for rate, value in zip(rates, book, strict=True))
 

@@ -328,7 +328,7 @@ def test_8_5_the_level_set_matters(sign):
     )
     spoiled = replace(other, chart=replace(other.chart, relations=relations))
     expected = Verdict.PROVED if sign == 1 else Verdict.REFUTED
-    assert ChartMap(first, spoiled).related().verdict is expected
+    assert ChartMap(first, spoiled).decide_related().verdict is expected
 
 
 @pytest.mark.parametrize("name", TOPS)

@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.errors import SpecError
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from tests.constrained import BALL, PARTICLE, SLEIGH
 from tests.specs import RIGID_BODY, spec
 
@@ -192,7 +192,7 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
         spec(RIGID_BODY, ('["euler-poincare", "lie-poisson"]', f'["{route}", "lie-poisson"]'))
     assert caught.value.parts["found"] == route
     assert 'Put "euler-poincare" first.' in str(caught.value)
-    assert listed(["euler-poincare", "lie-poisson"]) in str(caught.value)
+    assert list_names(["euler-poincare", "lie-poisson"]) in str(caught.value)
 
 
 SYMMETRY = '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }'

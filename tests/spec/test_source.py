@@ -3,7 +3,7 @@
 import tomllib
 
 from coadjoint.errors import LimitError, SpecError
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, listed
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
 from coadjoint.spec.core.positions import scan
 from coadjoint.spec.core.source import Source, join_faults, show_value, write_key
 
@@ -92,4 +92,4 @@ def test_words_of_messages():
     assert show_value([1, 2]) == "a list of 2"
     assert show_value("a\nb" * 50).endswith("...")
     assert did_you_mean("zzz", ["Omega"], "else") == "else"
-    assert listed("abc", most=2) == "a, b, ..."
+    assert list_names("abc", most=2) == "a, b, ..."

@@ -103,10 +103,10 @@ def working_folder() -> Iterator[Path]:
         OutputError: None can be written.
     """
     with ExitStack() as stack:
-        yield _entered(stack)
+        yield enter_working_folder(stack)
 
 
-def _entered(stack: ExitStack) -> Path:
+def enter_working_folder(stack: ExitStack) -> Path:
     """A working folder that a stack removes at its end."""
     with suppress(OSError, OutputError):
         base = cache_folder() / WORK

@@ -282,7 +282,7 @@ def _run(
         theirs, ours = os.pipe()
         with _lock:
             if _stopped:
-                raise _interrupted(command)
+                raise _interruption_error(command)
             process = subprocess.Popen(
                 (sys.executable, "-I", "-S", warden.__file__, *limits, *command),
                 cwd=folder,
@@ -296,13 +296,13 @@ def _run(
         try:
             output = process.communicate(timeout=wall_seconds)[0].decode(errors="replace")
         except subprocess.TimeoutExpired:
-            raise _unfinished(command, wall_seconds, "") from None
+            raise _timeout_error(command, wall_seconds, "") from None
         finally:
             with _lock:
                 _running.discard(process)
             _kill_group(process)
         if _stopped:
-            raise _interrupted(command)
+            raise _interruption_error(command)
     except OSError as error:
         raise CompilerError(
             f"{command[0]} could not be started: {error.strerror}. "
@@ -314,11 +314,11 @@ def _run(
             if end >= 0:
                 os.close(end)
     if process.returncode == 128 + signal.SIGXCPU or _OUT_OF_TIME in output:
-        raise _unfinished(command, seconds, " of processor time")
+        raise _timeout_error(command, seconds, " of processor time")
     return process.returncode, output
 
 
-def _unfinished(command: tuple[str, ...], seconds: int, kind: str) -> CompilerError:
+def _timeout_error(command: tuple[str, ...], seconds: int, kind: str) -> CompilerError:
     """The compiler took too long."""
     return CompilerError(
         f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped. "
@@ -328,7 +328,7 @@ def _unfinished(command: tuple[str, ...], seconds: int, kind: str) -> CompilerEr
     )
 
 
-def _interrupted(command: tuple[str, ...]) -> CompilerError:
+def _interruption_error(command: tuple[str, ...]) -> CompilerError:
     return CompilerError(f"the compiler {command[0]} was interrupted.", found=command[0])
 
 

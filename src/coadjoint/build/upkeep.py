@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from coadjoint.build.workplace import abandoned, remove
+from coadjoint.build.workplace import list_abandoned, remove
 from coadjoint.limits import CACHE_BYTES
 
 #: Folders of the cache: objects by key, what was verified, systems of one's own, work in progress.
@@ -69,12 +69,12 @@ def evict(folder: Path, most: int = CACHE_BYTES) -> None:
 def _entries(folder: Path) -> Iterator[_Entry]:
     """Everything that may be evicted."""
     for name in _OURS:
-        for path in kept(folder / name):
+        for path in list_kept(folder / name):
             with suppress(OSError):
                 yield _entry(path)
 
 
-def kept(folder: Path) -> list[Path]:
+def list_kept(folder: Path) -> list[Path]:
     """What runs keep in a folder of the cache, by its name."""
     with suppress(OSError):
         return sorted(each for each in folder.iterdir() if _OURS[folder.name].fullmatch(each.name))
@@ -99,9 +99,9 @@ def find_problems(folder: Path) -> list[str]:
     Args:
         folder: The cache, which need not exist.
     """
-    problems = [f"{path} was left behind by a killed run" for path in abandoned(folder / WORK)]
+    problems = [f"{path} was left behind by a killed run" for path in list_abandoned(folder / WORK)]
     for name in (KERNELS, VERIFIED):
-        for path in kept(folder / name):
+        for path in list_kept(folder / name):
             problems += _problem(path)
     total = sum(entry.size for entry in _entries(folder))
     if total > CACHE_BYTES:

@@ -26,7 +26,7 @@ def work_file(base: Path) -> Iterator[tuple[Path, int]]:
     Raises:
         OSError: It cannot be made.
     """
-    path, handle = _made(base, folder=False)
+    path, handle = _make_and_lock(base, folder=False)
     try:
         yield path, handle
     finally:
@@ -42,7 +42,7 @@ def work_folder(base: Path) -> Iterator[Path]:
     Raises:
         OSError: It cannot be made.
     """
-    path, handle = _made(base, folder=True)
+    path, handle = _make_and_lock(base, folder=True)
     try:
         yield path
     finally:
@@ -56,10 +56,10 @@ def keep_folder(base: Path) -> Path:
     Raises:
         OSError: It cannot be made.
     """
-    return _made(base, folder=True)[0]  # the lock ends with the process
+    return _make_and_lock(base, folder=True)[0]  # the lock ends with the process
 
 
-def abandoned(base: Path) -> list[Path]:
+def list_abandoned(base: Path) -> list[Path]:
     """What runs that were killed have left in a folder."""
     return [path for path in _candidates(base) if _is_free(path)]
 
@@ -68,7 +68,7 @@ def sweep(base: Path) -> None:
     """Remove what runs that were killed have left in a folder."""
     for path in _candidates(base):
         with suppress(OSError):
-            handle = _locked(path)
+            handle = _lock(path)
             if handle is not None:
                 remove(path)  # nobody else can take it: the lock is ours
                 os.close(handle)
@@ -100,14 +100,14 @@ def _candidates(base: Path) -> list[Path]:
 
 def _is_free(path: Path) -> bool:
     with suppress(OSError):
-        handle = _locked(path)
+        handle = _lock(path)
         if handle is not None:
             os.close(handle)
             return True
     return False
 
 
-def _made(base: Path, *, folder: bool) -> tuple[Path, int]:
+def _make_and_lock(base: Path, *, folder: bool) -> tuple[Path, int]:
     """A new file or folder and its lock; one that a sweep took before it was locked is no loss."""
     while True:
         path = base / f"{PREFIX}{secrets.token_hex(8)}"
@@ -116,12 +116,12 @@ def _made(base: Path, *, folder: bool) -> tuple[Path, int]:
         else:
             os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600))
         with suppress(FileNotFoundError):
-            handle = _locked(path)
+            handle = _lock(path)
             if handle is not None:
                 return path, handle
 
 
-def _locked(path: Path) -> int | None:
+def _lock(path: Path) -> int | None:
     """A handle that holds the lock of a path, or None if another process does.
 
     Raises:

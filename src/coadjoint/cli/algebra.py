@@ -100,14 +100,14 @@ def command(
             f"{error} Or use fewer generators, or a lower --degree.",
             **{"found": algebra, **error.parts},
         ) from error
-    text = _rendered(record, form)
+    text = _render(record, form)
     if output is None:
         say(text, end="")
     else:
         write_text(output, text)
 
 
-def _rendered(record: Mapping[str, Any], form: str) -> str:
+def _render(record: Mapping[str, Any], form: str) -> str:
     """The text of a format."""
     if form == "json":
         import json
@@ -135,18 +135,18 @@ def _algebra(word: str, most: int, degree: int) -> LieAlgebra:
     from coadjoint.errors import AlgebraError, LimitError
 
     if is_path(word):
-        return _declared(word, most, degree)
+        return _algebra_of_spec(word, most, degree)
     try:
         return algebra_by_name(word, most=most)
     except LimitError as error:
         raise _too_large(word, error.found, most, degree) from None
     except AlgebraError as error:
         if word in shipped_names():
-            return _declared(word, most, degree)
+            return _algebra_of_spec(word, most, degree)
         raise _unknown(error, word) from None
 
 
-def _declared(word: str, most: int, degree: int) -> LieAlgebra:
+def _algebra_of_spec(word: str, most: int, degree: int) -> LieAlgebra:
     """The algebra of a spec, its advected quantities included."""
     from coadjoint.derive import make_setting
     from coadjoint.derive.structure import momentum_algebra

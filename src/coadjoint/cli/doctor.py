@@ -231,12 +231,12 @@ def _cache() -> str:
 def _cache_state() -> Iterator[Finding]:
     """What is damaged or left over in the cache, and in the systems of one's own there."""
     from coadjoint.build.cache import cache_problems, chosen_folder
-    from coadjoint.build.upkeep import SYSTEMS, kept
+    from coadjoint.build.upkeep import SYSTEMS, list_kept
 
     for problem in cache_problems():
         yield Finding("cache", "heals", problem, "repaired at its next use")
     folder = chosen_folder()
-    for path in kept(folder / SYSTEMS) if folder is not None else ():
+    for path in list_kept(folder / SYSTEMS) if folder is not None else ():
         for found in _tree("own system", path, is_shipped=False):
             heals = found.remedy.startswith("coadjoint regenerate")
             yield Finding(found.what, "heals", found.found, _RELOAD) if heals else found

@@ -30,7 +30,7 @@ import click
 
 from coadjoint import __version__
 from coadjoint.cli.output import say, unwritten
-from coadjoint.errors import CoadjointError, OutputError, shortened, system_error
+from coadjoint.errors import CoadjointError, OutputError, shorten, system_error
 
 #: Commands in the order of the help; each is the object ``command`` of the module of its name.
 COMMANDS: Final = (
@@ -98,14 +98,14 @@ class Commands(click.Group):
             status = error.exit_status
             self._report(ctx, f"error: {error}")
         except Exception as error:
-            refused = _refused(error) if isinstance(error, OSError | ImportError) else None
+            refused = _refusal(error) if isinstance(error, OSError | ImportError) else None
             if refused is not None:
                 status = refused.exit_status
                 self._report(ctx, f"error: {refused}")
             else:  # whatever it is, people get one line and the way to report it
                 status = INTERNAL_FAULT
                 again = f"coadjoint --debug {ctx.invoked_subcommand} ..."
-                fault = shortened(f"{type(error).__name__}: {error}")
+                fault = shorten(f"{type(error).__name__}: {error}")
                 self._report(
                     ctx,
                     f"error: a fault of coadjoint itself: {fault}. "
@@ -137,7 +137,7 @@ def _flush() -> None:
         raise unwritten(error) from error
 
 
-def _refused(error: OSError | ImportError) -> OutputError | None:
+def _refusal(error: OSError | ImportError) -> OutputError | None:
     """What the operating system has refused, as an error that is none of ours; else None."""
     refused = system_error(error)
     if isinstance(error, ImportError):

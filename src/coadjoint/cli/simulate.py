@@ -188,7 +188,7 @@ def default_state(quantities: Quantities) -> list[float]:
     return state
 
 
-def _shown(system: System) -> tuple[str, ...]:
+def _shown_names(system: System) -> tuple[str, ...]:
     """State, what is reconstructed, and observables, by component."""
     tables = (system.STATE, system.RECONSTRUCTED, system.OBSERVABLES)
     return tuple(name for quantities in tables for name in quantities.components)
@@ -199,7 +199,7 @@ def trajectory_csv(system: System, solution: Solution) -> str:
 
     In digits that read back exactly.
     """
-    names = _shown(system)
+    names = _shown_names(system)
     columns = [solution.time.tolist(), *(solution[name].tolist() for name in names)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -252,7 +252,7 @@ def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, fl
 
 def _record(system: System, solution: Solution) -> dict[str, Any]:
     """The run as JSON values."""
-    names = _shown(system)
+    names = _shown_names(system)
     ends, units = _ends(solution, names), {name: solution.unit(name) for name in names}
     return solution.summary() | {
         "initial": {name: first for name, first, _ in ends},

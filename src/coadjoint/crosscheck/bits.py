@@ -59,7 +59,7 @@ def _compare_bits(
     for function in functions:
         one = subject.evaluate(function, batch, "numpy")
         for target in subject.exact:
-            own, expected = _expected(subject, function, target, batch, one)
+            own, expected = _expect(subject, function, target, batch, one)
             other = subject.evaluate(function, own, target)
             different = differing(expected, other)
             if different.any():
@@ -69,7 +69,7 @@ def _compare_bits(
             equal[function][target] += int((~np.isnan(other)).any(axis=0).sum())
 
 
-def _expected(
+def _expect(
     subject: Subject, function: str, target: str, batch: Batch, numpy: Array
 ) -> tuple[Batch, Array]:
     """The members of a batch that a target computes, and what it is to have there."""
@@ -136,17 +136,17 @@ def _bit_batches(points: Points, count: int) -> Iterator[Batch]:
     for seed in range(-(-count // BLOCK)):
         quarter = -(-min(BLOCK, count - seed * BLOCK) // 4)
         for number, batch in enumerate(points.families(seed + 10, quarter).values()):
-            yield batch.shared() if (seed + number) % 2 else batch
+            yield batch.with_shared_parameters() if (seed + number) % 2 else batch
 
 
 def _both_ways(batches: Iterator[Batch]) -> Iterator[Batch]:
     """Each batch with parameters of its own and with shared ones; inputs and time likewise."""
     for batch in batches:
         yield batch
-        yield batch.shared()
+        yield batch.with_shared_parameters()
         if batch.driving:
             yield batch.steady()
-            yield batch.shared().steady()
+            yield batch.with_shared_parameters().steady()
 
 
 def differing(one: Array, other: Array) -> NDArray[np.bool_]:

@@ -31,24 +31,24 @@ def hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]
     """
     size = share | 1
     for family in subject.points.families(seed=0, count=1):
-        yield _drawn(subject, function, family, 0, size)
-    start = _drawn(subject, function, "random", 1, size)
+        yield _draw(subject, function, family, 0, size)
+    start = _draw(subject, function, "random", 1, size)
     alike = _alike(subject.points.families(2, size)["random"], start)
-    yield _completed(
+    yield _complete(
         subject, function, alike, lambda count: _alike(_others(subject, "random", count), start)
-    ).shared()
+    ).with_shared_parameters()
     if start.driving:
         calm = _calm(subject.points.families(4, size)["random"], start)
-        yield _completed(
+        yield _complete(
             subject, function, calm, lambda count: _calm(_others(subject, "random", count), start)
         ).steady()
     yield cancelling(lambda batch: subject.evaluate(function, batch, "numpy"), start, seed=2)
 
 
-def _drawn(subject: Subject, function: str, family: str, seed: int, size: int) -> Batch:
+def _draw(subject: Subject, function: str, family: str, seed: int, size: int) -> Batch:
     """A batch of a family, as many of its members as possible with a value."""
     batch = subject.points.families(seed, size)[family]
-    return _completed(subject, function, batch, lambda count: _others(subject, family, count))
+    return _complete(subject, function, batch, lambda count: _others(subject, family, count))
 
 
 def _others(subject: Subject, family: str, count: int) -> Batch:
@@ -77,7 +77,7 @@ def _calm(batch: Batch, start: Batch) -> Batch:
     return replace(batch, driving=driving)
 
 
-def _completed(
+def _complete(
     subject: Subject, function: str, batch: Batch, others: Callable[[int], Batch]
 ) -> Batch:
     """A batch whose members without a value are replaced by others with one, as far as they go."""

@@ -70,7 +70,7 @@ def _check_same(program: Program, body: Body, file: str) -> int:
         for array, names in program.arrays.items()
         for row, name in enumerate(names)
     }
-    wanted = {name: rows[name] for name in sorted(program.used() & rows.keys())}
+    wanted = {name: rows[name] for name in sorted(program.names_used() & rows.keys())}
     read = {name: body.inputs[name] for name in sorted(body.inputs)}
     if read != wanted:
         raise _difference(program, file, "inputs", read, wanted)

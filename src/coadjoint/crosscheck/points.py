@@ -52,7 +52,7 @@ class Batch:
     parameters: Array
     driving: Mapping[str, Array] = field(default_factory=dict)
 
-    def shared(self) -> Batch:
+    def with_shared_parameters(self) -> Batch:
         """The same states with the first member's parameters for all."""
         return replace(self, parameters=np.ascontiguousarray(self.parameters[:, 0]))
 

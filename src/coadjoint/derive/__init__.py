@@ -48,8 +48,8 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
         )
     given = setting or make_setting(spec)
     if spec.reduction is not None:
-        return reductions.restricted(given, chosen)
-    return external.forced(load_route(chosen)(given))
+        return reductions.restrict(given, chosen)
+    return external.add_forces(load_route(chosen)(given))
 
 
 make_callable(__name__, "derive")

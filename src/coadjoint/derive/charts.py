@@ -21,7 +21,7 @@ from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.solver import Definition
 from coadjoint.derive.records import Chart, Exact, Relation, Step, rate
-from coadjoint.derive.setting import Setting, shaped
+from coadjoint.derive.setting import Setting, shape
 from coadjoint.derive.symmetries import moved_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -61,10 +61,10 @@ def in_chart(
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """The components of the variables of declared charts."""
-    return tuple(n for each in _declared(spec) for v in each.variables for n in v.components)
+    return tuple(n for each in _list_declared(spec) for v in each.variables for n in v.components)
 
 
-def _declared(spec: Spec) -> tuple[DeclaredChart, ...]:
+def _list_declared(spec: Spec) -> tuple[DeclaredChart, ...]:
     charts: tuple[DeclaredChart, ...] = spec.records.get("charts", ())
     return charts
 
@@ -80,7 +80,7 @@ def declared_charts(first: Equations) -> list[Equations]:
             accelerations.
     """
     setting, found = first.setting, []
-    for chart in _declared(setting.spec):
+    for chart in _list_declared(setting.spec):
         if first.kept:
             formula = next(iter(chart.map.values()))
             message = (
@@ -97,7 +97,7 @@ def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
     known = dict[str, Quantity]()
     for v in chart.variables:
         parts = setting.elements(v.components)
-        known |= {**dict(zip(v.components, parts, strict=True)), v.name: shaped(parts, v.shape)}
+        known |= {**dict(zip(v.components, parts, strict=True)), v.name: shape(parts, v.shape)}
     if chart.kind == "rates":
         rates = {
             name: value

@@ -23,7 +23,7 @@ from coadjoint.exact import Element
 from coadjoint.spec.model import component_names
 
 
-def emitted(
+def list_emitted(
     setting: Setting, energy: Element | None, momenta: Sequence[tuple[str, Element]] = ()
 ) -> tuple[Emitted, ...]:
     """Everything that is emitted, in order.
@@ -37,7 +37,7 @@ def emitted(
         *(() if energy is None else (emitted_energy(setting, energy),)),
         *_first(setting),
         *_along_distribution(setting, dict(momenta)),
-        *_declared(setting),
+        *_declared_observables(setting),
         *_momentum_maps(setting, energy),
         *_last(setting),
     )
@@ -75,12 +75,12 @@ def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterato
         yield Emitted(each.name, each.velocity.shape, each.components, unit, parts)
     values |= section_momenta(setting)
     for section in setting.spec.sections:
-        name, kept = section.name, _claimed(setting, section.name)
+        name, kept = section.name, _find_claim(setting, section.name)
         yield Emitted(name, (), (name,), section.unit, (values[name],), kept)
 
 
 @once
-def _declared(setting: Setting) -> tuple[Emitted, ...]:
+def _declared_observables(setting: Setting) -> tuple[Emitted, ...]:
     """The observables of the spec."""
     return tuple(
         Emitted(
@@ -89,7 +89,7 @@ def _declared(setting: Setting) -> tuple[Emitted, ...]:
             each.components,
             each.unit,
             in_parts(setting, each.formula),
-            _claimed(setting, each.name),
+            _find_claim(setting, each.name),
         )
         for each in setting.spec.observables
     )
@@ -99,7 +99,7 @@ def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted
     """The momentum maps of declared symmetries."""
     values = momentum_maps(setting, energy)
     for each in setting.spec.symmetries:
-        parts, kept = values[each.name], _claimed(setting, each.name)
+        parts, kept = values[each.name], _find_claim(setting, each.name)
         whole = in_formulas(each, parts)
         yield Emitted(each.name, each.shape, each.components, each.unit, parts, kept, whole)
 
@@ -119,7 +119,7 @@ def _last(setting: Setting) -> tuple[Emitted, ...]:
     return tuple(found)
 
 
-def _claimed(setting: Setting, name: str) -> Kept:
+def _find_claim(setting: Setting, name: str) -> Kept:
     """Whether the spec claims that a quantity is conserved, everywhere."""
     claims = setting.spec.conserved
     return Kept.ALWAYS if name in {each.everywhere for each in claims} else Kept.UNKNOWN

@@ -102,7 +102,7 @@ class Equations:
     @cached_property
     def velocities(self) -> dict[str, sympy.Expr]:
         """Velocities in state and parameters alone, or as the kernel solves for them."""
-        return {name: self._written(value) for name, value in self.exact.definitions}
+        return {name: self._write(value) for name, value in self.exact.definitions}
 
     @cached_property
     def poisson_tensor(self) -> sympy.ImmutableMatrix | None:
@@ -112,7 +112,7 @@ class Equations:
             return None
         return sympy.ImmutableMatrix([[self._sympy(entry) for entry in row] for row in tensor])
 
-    def closed(self, element: Element) -> Element:
+    def close(self, element: Element) -> Element:
         """An element with the definitions substituted: in state and parameters alone.
 
         The names of `kept` stay, where the kernel solves for velocities.
@@ -158,10 +158,10 @@ class Equations:
 
     def work(self, function: Element) -> Element:
         """What external forces add to the rate of a function of the state."""
-        field, closed = self.setting.field, self.closed(function)
+        field, closed = self.setting.field, self.close(function)
         slopes = field.gradient(closed, self.setting.state)
         pairs = zip(slopes, self.exact.forces, strict=bool(self.exact.forces))
-        return field.sum(slope * self.closed(force) for slope, force in pairs if slope and force)
+        return field.sum(slope * self.close(force) for slope, force in pairs if slope and force)
 
     @cached_property
     def projection(self) -> Equations | None:
@@ -186,16 +186,16 @@ class Equations:
 
     def _sympy(self, element: Element) -> sympy.Expr:
         """An element in state, parameters, inputs and time, but for the unknowns of `unsolved`."""
-        return self._written(element).xreplace(self._closed_forms.values)
+        return self._write(element).xreplace(self._closed_forms.values)
 
-    def _written(self, element: Element) -> sympy.Expr:
+    def _write(self, element: Element) -> sympy.Expr:
         """An element in these, and in what the kernel solves for."""
-        return self.setting.field.to_sympy(self.closed(element))
+        return self.setting.field.to_sympy(self.close(element))
 
     @cached_property
     def _closed_forms(self) -> ClosedForms:
         named = set(self.kept) - self.intermediates
-        return closed_forms(self.exact, named, self._written)
+        return closed_forms(self.exact, named, self._write)
 
     def latex(self) -> str:
         """The definitions and rates as a LaTeX ``aligned`` block."""

@@ -53,7 +53,9 @@ class ImplicitSolve:
         rows = [entry for row in self.solve.matrix for entry in row]
         return [*rows, *self.solve.known, *self.factors.values(), *self.unknowns]
 
-    def solved(self, known: Mapping[str, Sloped[Any]], value: Evaluate) -> dict[str, Sloped[Any]]:
+    def differentiate(
+        self, known: Mapping[str, Sloped[Any]], value: Evaluate
+    ) -> dict[str, Sloped[Any]]:
         """The unknowns with their slopes.
 
         Args:
@@ -67,7 +69,7 @@ class ImplicitSolve:
         slopes: list[dict[int, Any]] = [{} for _ in names]
         for variable in sorted(set().union(*rows)):
             column = [row.get(variable) for row in rows]
-            for i, slope in enumerate(self._substituted(column, weights)):
+            for i, slope in enumerate(self._substitute(column, weights)):
                 if slope is not None:
                     slopes[i][variable] = slope
         return {name: Sloped(x[i], slopes[i]) for i, name in enumerate(names)}
@@ -82,7 +84,7 @@ class ImplicitSolve:
                 found[variable] = add(found[variable], part) if variable in found else part
         return found
 
-    def _substituted(self, column: list[Any], weights: Mapping[tuple[int, int], Any]) -> list[Any]:
+    def _substitute(self, column: list[Any], weights: Mapping[tuple[int, int], Any]) -> list[Any]:
         """``A^-1 r`` by L, D and U; None is zero."""
         size = range(len(column))
         y: list[Any] = []

@@ -78,7 +78,7 @@ def lax_integrals(setting: Setting) -> Integrals | None:
     if pair is None:
         return None
     coefficients = tuple(expanded_traces(setting, pair))
-    return Integrals(pair, coefficients, tuple(_chosen(setting, coefficients)))
+    return Integrals(pair, coefficients, tuple(_choose_independent(setting, coefficients)))
 
 
 def expanded_traces(setting: Setting, pair: LaxPair) -> Iterator[Coefficient]:
@@ -121,7 +121,9 @@ def _scale(field: Field, element: Element) -> Fraction:
     return Fraction(common if numbers[0] > 0 else -common, shared)
 
 
-def _chosen(setting: Setting, coefficients: Iterable[Coefficient]) -> Iterator[Coefficient]:
+def _choose_independent(
+    setting: Setting, coefficients: Iterable[Coefficient]
+) -> Iterator[Coefficient]:
     """Coefficients independent of what is known and of each other, the shortest first."""
     field, known = setting.field, known_integrals(setting)
     ordered = sorted(coefficients, key=lambda each: len(field.terms(each.value)))

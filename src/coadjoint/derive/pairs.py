@@ -18,7 +18,7 @@ from coadjoint.derive.setting import Setting, once
 from coadjoint.exact import Element
 from coadjoint.exact.dense import Matrix, commutator
 from coadjoint.exact.linear import Span
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,8 @@ def rates_of(setting: Setting, pair: LaxPair, route: str) -> tuple[Element, ...]
         raise refusal(
             setting,
             route,
-            f"L does not determine {listed(missing)}",
-            listed(missing),
+            f"L does not determine {list_names(missing)}",
+            list_names(missing),
             "an L in which every component of the state occurs, independently of the others",
             "Put it into L.",
         )
@@ -135,8 +135,8 @@ def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:
                 setting,
                 route,
                 f"the entry ({row}, {column}) of L is not affine in the state: its derivative by "
-                f"{name} depends on {listed(sorted(inside))}",
-                listed(sorted(inside)),
+                f"{name} depends on {list_names(sorted(inside))}",
+                list_names(sorted(inside)),
                 "an L that is affine in the state",
                 "Choose the entries of L as variables.",
             )

@@ -16,7 +16,7 @@ from sympy.printing.mathml import mathml
 
 from coadjoint.derive.interpret import Quantity
 from coadjoint.derive.mechanics.solver import Solve
-from coadjoint.derive.setting import shaped
+from coadjoint.derive.setting import shape
 from coadjoint.exact import Element
 from coadjoint.spec.model import Shape
 
@@ -49,7 +49,7 @@ def symbol(name: str) -> Left:
     return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
 
 
-def signed(sign: int, text: str) -> str:
+def sign_text(sign: int, text: str) -> str:
     """A sum, or minus it in brackets.
 
     >>> signed(1, "a + b"), signed(-1, "a + b")
@@ -148,7 +148,7 @@ class Emitted:
     @property
     def whole(self) -> Quantity:
         """What its name stands for in formulas."""
-        return shaped(self.values, self.shape) if self.form is None else self.form
+        return shape(self.values, self.shape) if self.form is None else self.form
 
 
 @dataclass(frozen=True)

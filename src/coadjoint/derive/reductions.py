@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics import external
@@ -44,7 +44,7 @@ class Restriction:
         """A function of the whole state."""
         field, own = self.setting.field, self.whole.setting
         values = {name: field[name] for name in (*own.state, *own.parameters, *own.driving)}
-        return own.field.evaluate(self.whole.closed(function), values, field.number, field.call)
+        return own.field.evaluate(self.whole.close(function), values, field.number, field.call)
 
     @cached_property
     def rates(self) -> dict[str, Element]:
@@ -53,7 +53,7 @@ class Restriction:
         return {name: self(value) for name, value in pairs}
 
 
-def restricted(setting: Setting, route: str) -> Equations:
+def restrict(setting: Setting, route: str) -> Equations:
     """The equations of what is left, by a route for the whole system.
 
     Raises:
@@ -66,7 +66,7 @@ def restricted(setting: Setting, route: str) -> Equations:
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
     section = tuple(restriction.section.items())
-    exact = Exact(section, kept, energy, emitted(setting, energy), None)
+    exact = Exact(section, kept, energy, list_emitted(setting, energy), None)
     return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
 
 
@@ -92,7 +92,7 @@ def whole_equations(setting: Setting, route: str) -> Equations:
     """The equations of the system before the restriction, in a field of its own."""
     reduction = setting.spec.reduction
     assert reduction is not None, f"{setting.spec.name} is not restricted"
-    whole = external.forced(load_route(route)(make_setting(reduction.whole)))
+    whole = external.add_forces(load_route(route)(make_setting(reduction.whole)))
     if whole.chart is not None:
         raise refusal(
             setting,

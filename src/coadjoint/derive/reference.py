@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
-from coadjoint.derive.sloped import Sloped, negative, scaled
+from coadjoint.derive.sloped import Sloped, negative, scale
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
@@ -62,15 +62,15 @@ class Reference:
         if function not in self._functions:
             rows = rows_of(self.equations, function)
             assert rows is not None, function
-            self._functions[function] = rows, self._needed(function, rows)
+            self._functions[function] = rows, self._needed_definitions(function, rows)
         rows, _ = self._functions[function]
         if rows.by:
             return self._slopes(function, inputs, number, call)
         return self._values(function, inputs, number, call)
 
-    def _needed(self, function: str, rows: Rows) -> list[tuple[str, Element]]:
+    def _needed_definitions(self, function: str, rows: Rows) -> list[tuple[str, Element]]:
         """The definitions on which a function rests, in their order."""
-        inner = [e for solve in self._implied(function) for e in solve.elements]
+        inner = [e for solve in self._implicit_solves(function) for e in solve.elements]
         return rows.of.definitions_of([*rows.elements, *inner])
 
     def _values(
@@ -84,14 +84,14 @@ class Reference:
         def value(element: Element) -> Any:
             return field.evaluate(element, known, number, call, factors)
 
-        implied = {solve.last: solve for solve in self._implied(function)}
+        implied = {solve.last: solve for solve in self._implicit_solves(function)}
         for name, definition in definitions:
             known[name] = value(definition)
             if name in implied:
-                known |= implied[name].solved(known, value)
+                known |= implied[name].differentiate(known, value)
         return [value(element) for element in rows.elements]
 
-    def _implied(self, function: str) -> list[ImplicitSolve]:
+    def _implicit_solves(self, function: str) -> list[ImplicitSolve]:
         """The solves whose solutions are differentiated by the rule for implicit functions."""
         if not self.implicit or KERNEL_FUNCTIONS[function].by not in ("inputs", "parameters"):
             return []
@@ -116,13 +116,13 @@ class Reference:
             return Sloped(number(value), {})
 
         def apply(function: str, argument: Sloped[Value]) -> Sloped[Value]:
-            return _applied(function, argument, number, call)
+            return _apply(function, argument, number, call)
 
         rates = self._values(function, known, constant, apply)
         return [rate.slopes.get(j, zero) for rate in rates for j in range(len(names))]
 
 
-def _applied(
+def _apply(
     function: str, argument: Sloped[Value], number: Number[Value], call: Apply[Value]
 ) -> Sloped[Value]:
     """``f(u)`` with the slopes ``f'(u) u'``."""
@@ -131,13 +131,13 @@ def _applied(
 
     match function:
         case "sqrt":
-            slopes = scaled(argument.slopes, truediv(number(Fraction(1, 2)), value))
+            slopes = scale(argument.slopes, truediv(number(Fraction(1, 2)), value))
         case "sin":
-            slopes = scaled(argument.slopes, call("cos", u))
+            slopes = scale(argument.slopes, call("cos", u))
         case "cos":
-            slopes = scaled(argument.slopes, negative(call("sin", u)))
+            slopes = scale(argument.slopes, negative(call("sin", u)))
         case "exp":
-            slopes = scaled(argument.slopes, value)
+            slopes = scale(argument.slopes, value)
         case _:
             assert function == "log", function
             slopes = {j: truediv(slope, u) for j, slope in argument.slopes.items()}

@@ -130,7 +130,7 @@ class Setting:
         """
         algebra = self.spec.algebra
         assert algebra is not None, f"{self.spec.name} has a declared bracket and no algebra"
-        return algebra.over(self.taken)
+        return algebra.over(self.take_constant)
 
     @cached_property
     def actions(self) -> Mapping[str, Representation]:
@@ -144,12 +144,12 @@ class Setting:
     def _action(self, declared: Representation) -> Representation:
         """A declared action, its entries in this field."""
         matrices = tuple(
-            {place: self.taken(value) for place, value in matrix.items()}
+            {place: self.take_constant(value) for place, value in matrix.items()}
             for matrix in declared.matrices
         )
         return Representation(self.algebra, declared.name, declared.dimension, matrices)
 
-    def taken(self, constant: Fraction | int | Element) -> Fraction | int | Element:
+    def take_constant(self, constant: Fraction | int | Element) -> Fraction | int | Element:
         """A constant of the algebra as it can be reckoned with here."""
         return self.field.adopt(constant) if isinstance(constant, Element) else constant
 
@@ -184,7 +184,7 @@ class Setting:
         for each in self.spec.constraints:
             parts = self.elements(each.reactions)
             found |= zip(each.reactions, parts, strict=True)
-            found[each.reaction] = shaped(parts, each.shape)
+            found[each.reaction] = shape(parts, each.shape)
         return found
 
     def excess(
@@ -310,7 +310,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     for quantity in quantities:
         values[quantity.name] = whole(quantity, values)
     for each in spec.reconstruction:
-        values[each.name] = shaped([values[name] for name in each.components], each.shape)
+        values[each.name] = shape([values[name] for name in each.components], each.shape)
     setting = Setting(spec, field, values)
     field.assume(_conditions(setting))
     return setting
@@ -385,17 +385,17 @@ def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:
-        return weighted(parts, quantity.elements)
+        return weigh(parts, quantity.elements)
     form = quantity.form if isinstance(quantity, Variable | Parameter) else ""
-    return unpacked(parts, form) if form in FORMS else shaped(parts, quantity.shape)
+    return unpacked(parts, form) if form in FORMS else shape(parts, quantity.shape)
 
 
-def weighted(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
+def weigh(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
     """``sum x_i e_i`` for matrices e_i."""
     return dense.weighted_sum(parts, matrices, size(matrices), 0 * parts[0])
 
 
-def shaped(parts: Sequence[Element], shape: Shape) -> Quantity:
+def shape(parts: Sequence[Element], shape: Shape) -> Quantity:
     """Components, row by row, as an element, a vector or a matrix."""
     parts = tuple(parts)
     match shape:

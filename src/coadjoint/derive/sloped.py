@@ -38,7 +38,7 @@ class Sloped(Generic[Value]):
         return Sloped(add(self.value, other.value), _together(self.slopes, other.slopes))
 
     def __mul__(self, other: Sloped[Value]) -> Sloped[Value]:
-        slopes = _together(scaled(self.slopes, other.value), scaled(other.slopes, self.value))
+        slopes = _together(scale(self.slopes, other.value), scale(other.slopes, self.value))
         return Sloped(mul(self.value, other.value), slopes, self.factors + other.factors)
 
     def __truediv__(self, other: Sloped[Value]) -> Sloped[Value]:
@@ -71,6 +71,6 @@ def _together(one: Mapping[int, Value], other: Mapping[int, Value]) -> dict[int,
     return total
 
 
-def scaled(slopes: Mapping[int, Value], factor: Value) -> dict[int, Value]:
+def scale(slopes: Mapping[int, Value], factor: Value) -> dict[int, Value]:
     """Slopes times a factor."""
     return {j: mul(slope, factor) for j, slope in slopes.items()}

@@ -38,14 +38,14 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
     """
     bracket = setting.spec.poisson
     if bracket is not None:
-        return _declared(setting, bracket)
+        return _declared_structure(setting, bracket)
     if setting.spec.algebra is None:
         return _of_configuration(setting)
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = (*setting.momenta, *advected)
     sign = -setting.sign  # minus for left-invariant systems
     whole = lie_poisson(momentum_algebra(setting), setting.field, coordinates, sign)
-    return _reordered(whole, setting.state)
+    return _reorder(whole, setting.state)
 
 
 def has_structure(setting: Setting) -> bool:
@@ -69,7 +69,7 @@ def _of_configuration(setting: Setting) -> PoissonStructure:
     field, q = setting.field, setting.positions
     if setting.momenta:
         pairs = list(zip(q, setting.momenta, strict=True))
-        return _reordered(magnetic(field, pairs, {}, setting.weights), setting.state)
+        return _reorder(magnetic(field, pairs, {}, setting.weights), setting.state)
     known = mechanics(setting)
     W, A = known.inverse_mass, known.mixed
     turning = tuple(tuple(A[j][i] - A[i][j] for j in range(len(q))) for i in range(len(q)))
@@ -78,10 +78,10 @@ def _of_configuration(setting: Setting) -> PoissonStructure:
     rows = [(*zero, *row) for row in W]
     rows += [(*(-w for w in column), *row) for column, row in zip(W, velocities, strict=True)]
     names = (*q, *setting.velocities)
-    return _reordered(PoissonStructure(field, names, tuple(rows), setting.spec.name), setting.state)
+    return _reorder(PoissonStructure(field, names, tuple(rows), setting.spec.name), setting.state)
 
 
-def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
+def _declared_structure(setting: Setting, bracket: Poisson) -> PoissonStructure:
     """The bracket that a spec states."""
     field, names = setting.field, setting.state
     entries = {(i, j): setting.formula(formula) for i, j, formula in bracket.entries}
@@ -93,7 +93,7 @@ def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
                 return declared(field, names, entries, setting.spec.name)
         pairs = [(names[i], names[j]) for i, j in bracket.pairs]
         fields = {(names[i], names[j]): value for (i, j), value in entries.items()}
-        return _reordered(magnetic(field, pairs, fields, bracket.weights), names)
+        return _reorder(magnetic(field, pairs, fields, bracket.weights), names)
     except AlgebraError as error:
         formula = (*bracket.functions, *(formula for *_, formula in bracket.entries))[0]
         path, key = setting.spec.path, ".".join(formula.key.split(".")[:2])
@@ -106,7 +106,7 @@ def _declared(setting: Setting, bracket: Poisson) -> PoissonStructure:
         ) from None
 
 
-def _reordered(structure: PoissonStructure, names: Sequence[str]) -> PoissonStructure:
+def _reorder(structure: PoissonStructure, names: Sequence[str]) -> PoissonStructure:
     """The same bracket with its coordinates in another order; others commute with everything."""
     places = dict(zip(structure.names, range(len(structure.names)), strict=True))
     tensor = tuple(

@@ -16,7 +16,7 @@ from types import MappingProxyType
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Quantity, entries
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.setting import Setting, once, shaped
+from coadjoint.derive.setting import Setting, once, shape
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
@@ -47,7 +47,7 @@ def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Quantity:
     """The components of a momentum map as what it is in formulas."""
     if symmetry.form in ("antisymmetric", "symmetric"):
         return unpacked(components, symmetry.form)
-    return shaped(components, symmetry.shape)
+    return shape(components, symmetry.shape)
 
 
 def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
@@ -57,24 +57,24 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     momenta are canonical, and elsewhere J itself.
     """
     setting, structure = equations.setting, structure_of(equations)
-    values = tuple(map(equations.closed, _values(setting, symmetry, equations.exact.energy)))
+    values = tuple(map(equations.close, _values(setting, symmetry, equations.exact.energy)))
     motion = VectorField(
-        setting.field, setting.state, tuple(map(equations.closed, equations.exact.rates))
+        setting.field, setting.state, tuple(map(equations.close, equations.exact.rates))
     )
     generators = []
     for element, value in _resting(setting)[symmetry.name]:
-        resting = equations.closed(value)
+        resting = equations.close(value)
         X, is_lifted = _generator(setting, structure, symmetry, element, resting)
         if symmetry.time is not None:
             energy = equations.exact.energy
             assert energy is not None, "the values were refused without one"
-            tau = equations.closed(_taken(setting, symmetry.time, symmetry, element))
+            tau = equations.close(_evaluate_at(setting, symmetry.time, symmetry, element))
             X = X - motion.like(scale(tau, motion.components))
             if is_lifted:  # of positions and time together: the momentum of time is -E
                 turned = structure.hamiltonian_vector_field(tau)
-                X = X - motion.like(scale(equations.closed(energy), turned))
+                X = X - motion.like(scale(equations.close(energy), turned))
         generators.append(X)
-    algebra = symmetry.algebra.over(setting.taken)
+    algebra = symmetry.algebra.over(setting.take_constant)
     sign = 1 if symmetry.side == "left" else -1
     return MomentumMap(algebra, structure, tuple(generators), values, sign)
 
@@ -83,8 +83,8 @@ def structure_of(equations: Equations) -> PoissonStructure:
     """The emitted bracket, velocities put in."""
     tensor = equations.exact.poisson_tensor
     assert tensor is not None, "only what has a bracket is asked for it"
-    closed = tuple(tuple(map(equations.closed, row)) for row in tensor)
-    return PoissonStructure(equations.setting.field, equations.setting.state, closed)
+    close = tuple(tuple(map(equations.close, row)) for row in tensor)
+    return PoissonStructure(equations.setting.field, equations.setting.state, close)
 
 
 def positions(setting: Setting) -> tuple[str, ...]:
@@ -106,7 +106,9 @@ def _elements(setting: Setting, symmetry: Symmetry) -> list[Quantity]:
         count = 1 + max(max(place) for matrix in algebra.matrices for place in matrix)
         return [
             tuple(
-                tuple(field.zero + setting.taken(matrix.get((r, c), 0)) for c in range(count))
+                tuple(
+                    field.zero + setting.take_constant(matrix.get((r, c), 0)) for c in range(count)
+                )
                 for r in range(count)
             )
             for matrix in algebra.matrices
@@ -116,12 +118,14 @@ def _elements(setting: Setting, symmetry: Symmetry) -> list[Quantity]:
     return [field.vector(int(i == k) for i in range(n)) for k in range(n)]
 
 
-def _taken(setting: Setting, formula: Formula, symmetry: Symmetry, element: Quantity) -> Element:
+def _evaluate_at(
+    setting: Setting, formula: Formula, symmetry: Symmetry, element: Quantity
+) -> Element:
     """A scalar formula at one element."""
-    return setting.formula(formula, _named(symmetry, element))
+    return setting.formula(formula, _name_element(symmetry, element))
 
 
-def _named(symmetry: Symmetry, element: Quantity) -> dict[str, Quantity]:
+def _name_element(symmetry: Symmetry, element: Quantity) -> dict[str, Quantity]:
     """An element, and its parts along the blocks of the algebra, by the names in formulas."""
     named = {symmetry.element: element}
     if not symmetry.as_matrix and isinstance(element, tuple):
@@ -141,7 +145,7 @@ def _moves(setting: Setting, symmetry: Symmetry, element: Quantity) -> Moves:
             name: setting.field.sum(a * x for a, x in zip(row, symbols, strict=True) if a)
             for name, row in zip(names, element, strict=True)
         }
-    return moved_components(setting, symmetry.generators, _named(symmetry, element))
+    return moved_components(setting, symmetry.generators, _name_element(symmetry, element))
 
 
 def moved_components(
@@ -158,12 +162,12 @@ def moved_components(
         if formula is not None:
             parts = entries(setting.value(formula, known))
             if variable.form in FORMS:
-                parts = _kept(setting, parts, variable.form, formula)
+                parts = _kept_entries(setting, parts, variable.form, formula)
             found |= zip(variable.components, parts, strict=True)
     return found
 
 
-def _kept(
+def _kept_entries(
     setting: Setting, parts: Sequence[Element], form: str, formula: Formula
 ) -> tuple[Element, ...]:
     """The entries that a form keeps, if the matrix is of the form."""
@@ -190,7 +194,7 @@ def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tup
             if energy is None:
                 problem = "time moves, and the motion has no energy"
                 raise _fault(setting, symmetry.time, problem, "Leave time out.")
-            value = value - energy * _taken(setting, symmetry.time, symmetry, element)
+            value = value - energy * _evaluate_at(setting, symmetry.time, symmetry, element)
         found.append(value)
     return tuple(found)
 
@@ -207,7 +211,7 @@ def _resting(setting: Setting) -> dict[str, list[tuple[Quantity, Element]]]:
 def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
     """J of one element, without the part of time."""
     if symmetry.map is not None:
-        return _taken(setting, symmetry.map, symmetry, element)
+        return _evaluate_at(setting, symmetry.map, symmetry, element)
     moves = _moves(setting, symmetry, element)
     covector = _covector(setting)
     if moves.keys() <= covector.keys():

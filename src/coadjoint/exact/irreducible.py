@@ -184,7 +184,7 @@ def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
     if degree > 2:
         yield from (factor for factor, _ in polynomial.factor_list()[1])
         return
-    content, own = _split_content(polynomial, place)
+    content, own = _part_content(polynomial, place)
     yield from _factors_of(content)
     if degree == 1:
         yield own
@@ -195,8 +195,8 @@ def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
     if root is None:
         yield own
         return
-    yield _split_content(2 * a * symbol + b - root, place)[1]
-    yield _split_content(2 * a * symbol + b + root, place)[1]
+    yield _part_content(2 * a * symbol + b - root, place)[1]
+    yield _part_content(2 * a * symbol + b + root, place)[1]
 
 
 def _powers(polynomial: PolyElement, place: int) -> dict[int, PolyElement]:
@@ -208,7 +208,7 @@ def _powers(polynomial: PolyElement, place: int) -> dict[int, PolyElement]:
     return {power: polynomial.ring.from_dict(terms) for power, terms in result.items()}
 
 
-def _split_content(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
+def _part_content(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
     """The greatest factor without a symbol, and the rest."""
     content = polynomial.ring.zero
     for part in _powers(polynomial, place).values():

@@ -36,7 +36,7 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
     assert not equations.kept, "velocities that the kernel solves for have no closed form"
     rows = rows_of(equations, name)
     assert rows is not None, name
-    values = [rows.of.closed(element) for element in rows.elements]
+    values = [rows.of.close(element) for element in rows.elements]
     if not rows.by:
         return values
     return [slope for value in values for slope in equations.setting.field.gradient(value, rows.by)]

@@ -44,7 +44,7 @@ class Graph:
         """An input or statement."""
         return self._intern("symbol", (), name)
 
-    def named(self, name: str, numbers: Mapping[str, Fraction]) -> int:
+    def node_of_name(self, name: str, numbers: Mapping[str, Fraction]) -> int:
         """The number that a name stands for, or its symbol."""
         return self.number(numbers[name]) if name in numbers else self.symbol(name)
 

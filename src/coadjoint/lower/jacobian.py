@@ -84,7 +84,9 @@ def jacobian(
         residuals: What these are the slopes of.
     """
     graph, n = Graph(), len(rhs.state)
-    definitions, values = _inserted(graph, rhs, {name for name, _ in equations.exact.definitions})
+    definitions, values = _insert_definitions(
+        graph, rhs, {name for name, _ in equations.exact.definitions}
+    )
     slopes: dict[int, Slopes] = {graph.symbol(x): {} for x in rhs.names}
     slopes |= {graph.symbol(x): {x: graph.number(1)} for x in variables}
     rows: dict[int, dict[str, int]] = {}
@@ -104,7 +106,7 @@ def jacobian(
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
         columns = [_through(graph, row, slopes, variables) for row in own]
         own_factors = {place: next(factors_of) for place in places}
-        solved |= _solved(graph, solve, variables, columns, own_factors)
+        solved |= _solve_slopes(graph, solve, variables, columns, own_factors)
         first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
@@ -149,7 +151,9 @@ def _total(graph: Graph, slope: Slopes, solved: Mapping[str, Slopes], name: str)
     return graph.sum([*direct, *through])
 
 
-def _inserted(graph: Graph, rhs: Program, defined: set[str]) -> tuple[dict[str, int], list[int]]:
+def _insert_definitions(
+    graph: Graph, rhs: Program, defined: set[str]
+) -> tuple[dict[str, int], list[int]]:
     """The nodes of the definitions by name, and of the outputs; temporaries are written out."""
     definitions: dict[str, int] = {}
     temporaries: dict[str, int] = {}
@@ -159,7 +163,7 @@ def _inserted(graph: Graph, rhs: Program, defined: set[str]) -> tuple[dict[str, 
     return definitions, [graph.insert(output.value, temporaries) for output in rhs.outputs]
 
 
-def _solved(
+def _solve_slopes(
     graph: Graph,
     solve: Solve,
     variables: Sequence[str],

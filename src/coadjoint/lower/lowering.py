@@ -239,13 +239,13 @@ class Lowering:
             )
             products = [(sign, self._shared[level][product]) for sign, product in members]
             if len(products) == 1 or coefficient == 1:
-                terms += [self._signed(sign, [factor], product) for sign, product in products]
+                terms += [self._apply_sign(sign, [factor], product) for sign, product in products]
             else:
-                inner = graph.sum(self._signed(sign, [], product) for sign, product in products)
+                inner = graph.sum(self._apply_sign(sign, [], product) for sign, product in products)
                 terms.append(graph.multiply(factor, inner))
         return terms
 
-    def _signed(self, sign: int, lead: list[int], product: Product) -> int:
+    def _apply_sign(self, sign: int, lead: list[int], product: Product) -> int:
         node = self.graph.product([*lead, *map(self._factor, product)])
         return node if sign > 0 else self.graph.negate(node)
 
@@ -255,7 +255,7 @@ class Lowering:
             return self.graph.product(map(self._factor, self._pairs[name]))
         known = self.field.adjoined.get(name)
         if known is None:
-            return self.graph.named(name, self._numbers)
+            return self.graph.node_of_name(name, self._numbers)
         level = self._level(known.argument)
         argument = self._build(self._form(known.argument, level), level)
         return self.graph.call(known.function, argument)
@@ -388,7 +388,7 @@ def _shorter(equations: Equations, element: Element) -> Element:
     """
     field, members = equations.setting.field, equations.moving
     try:
-        closed = equations.closed(element)
+        close = equations.close(element)
     except OverflowError:  # functions of other arguments, for which the field has no room
         return element
 
@@ -400,6 +400,6 @@ def _shorter(equations: Equations, element: Element) -> Element:
         }
         return len(products)
 
-    divisors = (divisor for written in field.quotients(closed) for divisor, _ in written.divisors)
+    divisors = (divisor for written in field.quotients(close) for divisor, _ in written.divisors)
     moving = any(field.reach(divisor) & members for divisor in divisors)
-    return closed if terms(closed) < terms(element) and not moving else element
+    return close if terms(close) < terms(element) and not moving else element

@@ -85,7 +85,7 @@ class Naming:
         seen: set[int] = set()
         pending = [node for _, node in self.outputs]
         while pending:
-            node = self._unsigned(pending.pop())
+            node = self._strip_sign(pending.pop())
             uses[node] += 1
             if node in seen:
                 continue
@@ -96,7 +96,7 @@ class Naming:
                 pending.extend([] if definition is None else [definition])
         return uses
 
-    def _unsigned(self, node: int) -> int:
+    def _strip_sign(self, node: int) -> int:
         """The node below a sign."""
         negated = self.graph.kinds[node] == "negate"
         return self.graph.operands[node][0] if negated else node

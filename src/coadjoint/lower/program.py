@@ -157,7 +157,7 @@ class Program:
         yield from (statement.value for statement in self.statements)
         yield from (output.value for output in self.outputs)
 
-    def used(self) -> frozenset[str]:
+    def names_used(self) -> frozenset[str]:
         """Names that some statement or output reads."""
         return frozenset(
             node.name for value in self.values() for node in walk(value) if isinstance(node, Symbol)

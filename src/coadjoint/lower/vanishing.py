@@ -39,7 +39,7 @@ def vanishing(function: str, places: Iterable[int], equations: Equations) -> Ite
             for name, value in own.exact.definitions:
                 known.define(name, value)
         i, j = divmod(place, len(variables)) if variables else (place, None)
-        closed = known.closed(values[i])
+        closed = known.close(values[i])
         if closed is None:
             continue
         if field.is_zero(closed if j is None else field.derivative(closed, variables[j])):

@@ -86,14 +86,14 @@ def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
     yield (
         f"{first.route} and {name} give the same motion, {through}",
         "equivalence",
-        chart_map.related,
+        chart_map.decide_related,
     )
     if relations:
-        yield f"{other.way} keeps {relations}{held}", "equivalence", chart_map.kept
+        yield f"{other.way} keeps {relations}{held}", "equivalence", chart_map.decide_kept
     statement, decision = reach(chart_map)
     yield statement, "equivalence", lambda: decision
 
 
 def _same_rates(first: Equations, other: Equations) -> list[Element]:
     pairs = zip(first.exact.rates, other.exact.rates, strict=True)
-    return [first.closed(a) - other.closed(b) for a, b in pairs]
+    return [first.close(a) - other.close(b) for a, b in pairs]

@@ -77,7 +77,7 @@ class ReducedBracket:
         """``M_k`` in velocities of the basis and positions, by the velocities that they are of."""
         fields = self.basis.fields
         along = momenta_along(self.found.setting, list(fields.values()))
-        return dict(zip(fields, map(self.basis.closed, along), strict=True))
+        return dict(zip(fields, map(self.basis.close, along), strict=True))
 
     @cached_property
     def tensor(self) -> Tensor:
@@ -85,12 +85,12 @@ class ReducedBracket:
         emitted = self.equations.exact.poisson_tensor
         if emitted is None:
             emitted = brackets(self.found, self.basis.fields, self.names)
-        return tuple(tuple(map(self.basis.closed, row)) for row in emitted)
+        return tuple(tuple(map(self.basis.close, row)) for row in emitted)
 
     @cached_property
     def slopes(self) -> Row:
         """``(dH/dM, dH/dz)`` as the theorem has them: ``(eta, -dl_c/dz)``, in state order."""
-        constrained = self.basis.closed(self.equations.setting.lagrangian)
+        constrained = self.basis.close(self.equations.setting.lagrangian)
         return tuple(
             self.field[n] if n in self.momenta else -self.field.derivative(constrained, n)
             for n in self.names
@@ -100,7 +100,7 @@ class ReducedBracket:
         """``dH`` by velocities and positions, minus what the chain rule makes of `slopes`."""
         energy = self.equations.exact.energy
         assert energy is not None, "a Lagrangian has an energy"
-        closed = self.basis.closed(energy)
+        closed = self.basis.close(energy)
         return [
             self.field.derivative(closed, by)
             - self.field.sum(

@@ -17,7 +17,7 @@ from coadjoint.derive.structure import momentum_algebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.completeness import bracket_of, completeness, described
+from coadjoint.prove.completeness import bracket_of, completeness, describe
 from coadjoint.prove.driven import has_moving_momenta, motion_defects
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import (
@@ -156,7 +156,7 @@ def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator
     known = completeness(first, proved=proved)
     for casimir in known.found:
         yield (
-            f"{described(first.setting.field, casimir)} is a Casimir",
+            f"{describe(first.setting.field, casimir)} is a Casimir",
             "casimir",
             partial(casimir_defects, first, casimir, known.generating),
         )

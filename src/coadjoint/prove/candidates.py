@@ -40,7 +40,7 @@ from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import Exponents, Solution, solve
 from coadjoint.exact.linear import SpanModulo
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.completeness import described
+from coadjoint.prove.completeness import describe
 from coadjoint.prove.motion import Motion, vector_names
 from coadjoint.prove.polynomial_families import SPARE, Degrees, PolynomialFamily
 from coadjoint.prove.reversibility import reversal_defects
@@ -198,7 +198,7 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
     known = known_integrals(motion)
     search, where = CandidateSearch(motion, known), _almost_all(motion)
     if search.samples.obstacle:
-        yield _passed_over(search)
+        yield _pass_over(search)
         return
     degrees = affordable(search)
     if search.independent(search.found(degrees)):
@@ -206,12 +206,12 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
         if not at_numbers.samples.obstacle:
             search, where = at_numbers, _at_defaults(motion)
             for element in search.new(degrees):
-                text = f"{described(motion.field, element)} is conserved{where.lstrip(',')}"
+                text = f"{describe(motion.field, element)} is conserved{where.lstrip(',')}"
                 yield text, "integrals", partial(search.drift, element)
-    yield _counted(search, degrees, where)
+    yield _count(search, degrees, where)
 
 
-def _counted(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
+def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     """How many integrals there are: proved where bounds from both sides meet, else found."""
     found, scope = search.found(degrees), f"integrals {_scope(search, degrees)}{where}"
     (certain, names), bounded = search.polynomials(degrees), search.bounded(degrees)
@@ -247,7 +247,7 @@ def _at_defaults(motion: Motion) -> str:
     return f", at the default parameters{others}{motion.at_all_times}"
 
 
-def _passed_over(search: CandidateSearch) -> Examined:
+def _pass_over(search: CandidateSearch) -> Examined:
     """That nothing was looked for, and why."""
     names = ", ".join(each.text for each in search.known) or "constants"
     text = f"integrals beside {names} were not looked for: {search.samples.obstacle}"
@@ -261,22 +261,22 @@ def known_integrals(motion: Motion) -> list[Known]:
     """
     setting, spec, where = motion.setting, motion.spec, Samples(motion).where
     names, energy = motion.emitted, motion.equations.exact.energy
-    stated = {} if energy is None else {"energy": [motion.closed(energy)]}
+    stated = {} if energy is None else {"energy": [motion.close(energy)]}
     for claim in spec.conserved:
-        level = [motion.closed(g) for f in claim.where for g in setting.components(f, names)]
+        level = [motion.close(g) for f in claim.where for g in setting.components(f, names)]
         if all(where.contains(g) for g in level):
-            parts = list(map(motion.closed, setting.components(claim.formula, names)))
+            parts = list(map(motion.close, setting.components(claim.formula, names)))
             stated[claim.formula.in_one_line] = parts
     for casimir in spec.casimirs:
-        stated[casimir.in_one_line] = list(map(motion.closed, setting.components(casimir)))
+        stated[casimir.in_one_line] = list(map(motion.close, setting.components(casimir)))
     emitted = dict(motion.equations.exact.observables)
     named = [(each.name, each.components) for each in spec.sections]
     named += [(each.name, each.components) for each in spec.symmetries]
     named += [(each.name, each.components) for each in spec.spatial]
     for name, components in named:
-        stated[name] = [motion.closed(emitted[component]) for component in components]
+        stated[name] = [motion.close(emitted[component]) for component in components]
     pair = lax_integrals(setting)
-    stated |= {} if pair is None else {name: [motion.closed(x)] for name, x in pair.named}
+    stated |= {} if pair is None else {name: [motion.close(x)] for name, x in pair.named}
     known, found = {*setting.state, *setting.parameters}, list[Known]()
     for text, parts in stated.items():
         plain = parts and all(motion.field.reach(part) <= known for part in parts)
@@ -289,7 +289,7 @@ def _changes(motion: Motion, parts: Sequence[Element]) -> bool:
     """Whether functions certainly change along the motion, or have no values at its points."""
     samples = Samples(motion, None, parts)
     point = next(samples.points(), None)
-    return point is None or any(point.moved(samples.slopes(part)) for part in parts)
+    return point is None or any(point.differentiate(samples.slopes(part)) for part in parts)
 
 
 def default_numbers(spec: Spec) -> dict[str, Fraction]:
@@ -313,14 +313,14 @@ def affordable(search: CandidateSearch) -> Degrees:
 
 def _scope(search: CandidateSearch, degrees: Degrees) -> str:
     """What was searched, in words: polynomials in these names."""
-    text = f"of degree <= {degrees[0]} in {_named(search, search.velocities)}"
+    text = f"of degree <= {degrees[0]} in {_name_generators(search, search.velocities)}"
     if search.positions:
-        text += f" and <= {degrees[1]} in {_named(search, search.positions)}"
+        text += f" and <= {degrees[1]} in {_name_generators(search, search.positions)}"
     lengths = search.samples.where.text
     return f"{text}, where {lengths}" if lengths else text
 
 
-def _named(search: CandidateSearch, names: Sequence[str]) -> str:
+def _name_generators(search: CandidateSearch, names: Sequence[str]) -> str:
     """Generators as a statement names them: whole vectors by their name."""
     whole, field = {each.name for each in search.motion.spec.state}, search.field
     shown = vector_names(search.motion, names)

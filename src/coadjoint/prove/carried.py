@@ -54,8 +54,8 @@ def carry_over(motion: Motion) -> Motion:
         equations.exact,
         definitions=tuple(each for each in equations.exact.definitions if each[0] in found.solved),
         rates=tuple(motion.written_rates.values()),
-        poisson_tensor=tuple(tuple(map(motion.closed, row)) for row in tensor),
+        poisson_tensor=tuple(tuple(map(motion.close, row)) for row in tensor),
         solves=(),
-        forces=tuple(map(motion.closed, forces)) if any(forces) else (),
+        forces=tuple(map(motion.close, forces)) if any(forces) else (),
     )
     return Motion(replace(equations, exact=exact, distribution=None))

@@ -68,14 +68,14 @@ class ChartMap:
         """A function of the declared state as one of the chart's variables."""
         return self.field.substitute(element, self.image)
 
-    def carried(self, function: Element) -> Element:
+    def rate_along_route(self, function: Element) -> Element:
         """The time derivative of a function of the chart's variables along the route."""
         own = explicit(self.first.setting, function)
         slopes = self.field.gradient(function, self.chart.variables)
         pairs = zip(slopes, self.other.exact.rates, strict=True)
         return own + self.field.sum(slope * rate for slope, rate in pairs if slope and rate)
 
-    def related(self) -> Decision:
+    def decide_related(self) -> Decision:
         """Whether ``D phi . Y = X o phi``.
 
         Velocities that both routes define stay symbols, where the definitions agree: what is left
@@ -91,31 +91,34 @@ class ChartMap:
         """``D phi . Y - X o phi`` with the velocities that both routes define as symbols."""
         kept = {name for name, _ in self.other.exact.definitions}
         missing = {
-            name: self.pull_back(self.first.closed(self.field[name]))
+            name: self.pull_back(self.first.close(self.field[name]))
             for name, _ in self.first.exact.definitions
             if name not in kept
         }
         for name, rate in zip(self.first.setting.state, self.first.exact.rates, strict=True):
-            yield self.carried(self.image[name]) - self.field.substitute(rate, self.image | missing)
+            yield self.rate_along_route(self.image[name]) - self.field.substitute(
+                rate, self.image | missing
+            )
 
     def _closed_defects(self) -> Iterator[Element]:
         """``D phi . Y - X o phi`` with each route's own velocities written out."""
         for name, rate in zip(self.first.setting.state, self.first.exact.rates, strict=True):
-            own = self.other.closed(self.carried(self.image[name]))
-            yield own - self.pull_back(self.first.closed(rate))
+            own = self.other.close(self.rate_along_route(self.image[name]))
+            yield own - self.pull_back(self.first.close(rate))
 
     def _definition_defects(self) -> Iterator[Element]:
         """What the emitted route defines, at the image, minus what this one defines."""
         defined = dict(self.first.exact.definitions)
         for name, _ in self.other.exact.definitions:
             if name in defined:
-                whole = self.pull_back(self.first.closed(self.field[name]))
-                yield whole - self.other.closed(self.field[name])
+                whole = self.pull_back(self.first.close(self.field[name]))
+                yield whole - self.other.close(self.field[name])
 
-    def kept(self) -> Decision:
+    def decide_kept(self) -> Decision:
         """Whether the motion keeps the relations between the variables."""
         drifts = [
-            self.other.closed(self.carried(relation.element)) for relation in self.chart.relations
+            self.other.close(self.rate_along_route(relation.element))
+            for relation in self.chart.relations
         ]
         return decide_zero(drifts, self.field, self.domain)
 

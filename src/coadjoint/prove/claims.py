@@ -188,7 +188,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     _check_domain(spec.name, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
-        found = _examined(spec, statement, examine, field)
+        found = _examine(spec, statement, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
         entry = make_entry(statement, kind, found, seconds)
         if isinstance(entry, Claim):
@@ -209,7 +209,7 @@ def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
             yield from examined
 
 
-def _examined(
+def _examine(
     spec: Spec,
     statement: str,
     examine: Callable[[], Sequence[Element] | Decision | Discovery],

@@ -103,7 +103,7 @@ def bracket_of(equations: Equations) -> PoissonStructure:
     """The emitted Poisson tensor as a structure."""
     setting, emitted = equations.setting, equations.exact.poisson_tensor
     assert emitted is not None, f"the route {equations.route} knows no bracket"
-    tensor = tuple(tuple(map(equations.closed, row)) for row in emitted)
+    tensor = tuple(tuple(map(equations.close, row)) for row in emitted)
     return PoissonStructure(setting.field, setting.state, tensor, f"bracket of {setting.spec.name}")
 
 
@@ -202,7 +202,7 @@ def _search(
     return search_summands(poisson_structure(setting), algebra, degree, known)
 
 
-def described(field: Field, casimir: Element) -> str:
+def describe(field: Field, casimir: Element) -> str:
     """A Casimir as a statement shows it."""
     terms = field.terms(casimir)
     text = element_text(field, casimir) if len(terms) < SHOWN else ""

@@ -89,7 +89,7 @@ class ConstrainedRates(Motion):
 
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and velocities, or of reactions."""
-        return self.value(self._carried(self.in_state(function)))
+        return self.value(self._differentiate(self.in_state(function)))
 
     def balance(self, function: Element, gain: Element, along: Row) -> Element:
         """The time derivative of a function minus what it gains, in the state alone.
@@ -100,10 +100,10 @@ class ConstrainedRates(Motion):
             along: The vector of the frame whose equation of motion says so, if there is one.
         """
         names = self.distribution.frame.velocities
-        direction = {rate_name(n): self.closed(x) for n, x in zip(names, along, strict=False)}
-        return self.value(self._carried(self.in_state(function)) - gain, direction)
+        direction = {rate_name(n): self.close(x) for n, x in zip(names, along, strict=False)}
+        return self.value(self._differentiate(self.in_state(function)) - gain, direction)
 
-    def _carried(self, function: Element) -> Element:
+    def _differentiate(self, function: Element) -> Element:
         """The time derivative of a function of state and time, in accelerations."""
         own = explicit(self.equations.setting, function)
         names = self.equations.setting.state
@@ -115,13 +115,13 @@ class ConstrainedRates(Motion):
         """The rates in the state, without accelerations."""
         return {name: self.rate(self.field[name]) for name in self.setting.state}
 
-    def written(self, function: Element) -> Element:
+    def write(self, function: Element) -> Element:
         """A function of the state alone."""
         return self.in_state(function)
 
     def in_state(self, function: Element) -> Element:
         """A function of the state alone, also where it names reactions."""
-        closed = self.closed(function)
+        closed = self.close(function)
         rests = self.field.reach(closed) & set(self.equations.kept)
         return self.value(closed) if rests else closed
 
@@ -132,7 +132,7 @@ class ConstrainedRates(Motion):
             element: In accelerations and multipliers.
             direction: A combination of the equations that may give it, by the names of theirs.
         """
-        rest = self.field.substitute(self.closed(element), self.resting)
+        rest = self.field.substitute(self.close(element), self.resting)
         parts = []
         for block in self.solves:
             slopes = self.field.gradient(rest, block.names)
@@ -173,7 +173,7 @@ class ConstrainedRates(Motion):
         sections = (section_components(self.setting, each) for each in self.spec.sections)
         velocities = self.equations.setting.elements(found.independent)
         return [
-            dict(zip(map(rate_name, found.independent), map(self.closed, values), strict=True))
+            dict(zip(map(rate_name, found.independent), map(self.close, values), strict=True))
             for values in (velocities, *sections)
         ]
 
@@ -185,7 +185,7 @@ class ConstrainedRates(Motion):
         known: dict[str, Element] = {}
         for name, value in self.equations.exact.definitions:
             if name in names:
-                known[name] = self.closed(self.field.substitute(value, known))
+                known[name] = self.close(self.field.substitute(value, known))
         return known
 
     @property
@@ -242,8 +242,8 @@ class ConstrainedRates(Motion):
         return [
             replace(
                 solve,
-                matrix=tuple(tuple(map(self.closed, row)) for row in solve.matrix),
-                known=list(map(self.closed, solve.known)),
+                matrix=tuple(tuple(map(self.close, row)) for row in solve.matrix),
+                known=list(map(self.close, solve.known)),
             )
             for solve in self.equations.exact.solves
         ]
@@ -251,7 +251,7 @@ class ConstrainedRates(Motion):
     def energy_balance(self) -> Element:
         """``dE/dt`` minus the power of declared forces and of constraints that move."""
         balance = Balance(self.equations)
-        return self.value(self._carried(self.closed(balance.energy)) - balance.power)
+        return self.value(self._differentiate(self.close(balance.energy)) - balance.power)
 
 
 def motion_of(equations: Equations) -> Motion:
@@ -273,7 +273,7 @@ def about_constraints(motion: ConstrainedRates) -> Iterator[Examined]:
     yield (
         f"the kernel solves for the accelerations: {factored} = {matrix}",
         "constraint",
-        lambda: _solved(motion.equations),
+        lambda: _solve_defects(motion.equations),
     )
 
 
@@ -338,7 +338,7 @@ def _products(found: Distribution) -> tuple[Row, ...]:
     )
 
 
-def _solved(first: Equations) -> list[Element]:
+def _solve_defects(first: Equations) -> list[Element]:
     """What vanishes if the definitions solve the linear equations."""
     definitions = dict(first.exact.definitions)
     return [
@@ -363,7 +363,7 @@ def same_solves(first: Equations, other: Equations) -> list[Element]:
         if rate_name(x) in solved:  # each is what its own equations are solved for
             defects += [a - field[rate_name(x)], b - field[rate_name(x)]]
         else:
-            defects.append(first.closed(a) - other.closed(b))
+            defects.append(first.close(a) - other.close(b))
     resting, others = (ConstrainedRates(each).resting for each in (first, other))
     return defects + [resting[name] - others[name] for name in resting if name in others]
 
@@ -374,5 +374,5 @@ def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
     for solve in equations.exact.solves:
         for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
             entries = zip((*solve.names, ""), (*row, known), strict=True)
-            found |= {(name, by): equations.closed(entry) for by, entry in entries}
+            found |= {(name, by): equations.close(entry) for by, entry in entries}
     return found

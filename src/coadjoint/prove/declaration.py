@@ -47,7 +47,7 @@ def kernel_context(
         observables=tuple(_observable(equations, each) for each in equations.exact.emitted),
         programs=tuple(programs.values()),
         supported=supported,
-        reconstructed=tuple(_followed(spec, each) for each in spec.reconstruction),
+        reconstructed=tuple(_declare_followed(spec, each) for each in spec.reconstruction),
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         domain=tuple(bound for bound, _ in bounds(equations)),
@@ -82,7 +82,7 @@ def _quantity(declared: Declared) -> Quantity:
     )
 
 
-def _followed(spec: Spec, each: Reconstructed) -> Quantity:
+def _declare_followed(spec: Spec, each: Reconstructed) -> Quantity:
     """What is reconstructed as the generated package declares it."""
     upright = spec.rolling.normal if spec.rolling and each.attitude and each.of_rolling else ""
     default = None if each.default is None else tuple(map(float, each.default))

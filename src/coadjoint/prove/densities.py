@@ -82,7 +82,7 @@ class Measure:
         """The velocities that kept constraints give in terms of the others."""
         field, known = self.field, dict[str, Element]()
         for _, residual in self.motion.kept:
-            value = field.substitute(self.motion.closed(residual), known)
+            value = field.substitute(self.motion.close(residual), known)
             slopes = zip(self.velocities, field.gradient(value, self.velocities), strict=True)
             name, slope = next((n, s) for n, s in slopes if not field.is_zero(s))
             root = -field.substitute(value, {name: field.zero}) / slope
@@ -193,7 +193,7 @@ class Measure:
         for point in islice(samples.points(), len(factors) + POINTS):
             pairs = zip(factors, slopes, strict=True)
             rates = [
-                point.moved(each) * pow(point.value(factor), -1, samples.prime)
+                point.differentiate(each) * pow(point.value(factor), -1, samples.prime)
                 for factor, each in pairs
             ]
             rows.append([*rates, -point.value(self.divergence)])

@@ -26,8 +26,8 @@ def own_change(equations: Equations) -> Element:
     setting, energy = equations.setting, equations.exact.energy
     assert energy is not None, "only an energy changes"
     if setting.momenta or setting.spec.lagrangian is None:
-        return explicit(setting, equations.closed(energy))
-    return -equations.closed(explicit(setting, setting.lagrangian))
+        return explicit(setting, equations.close(energy))
+    return -equations.close(explicit(setting, setting.lagrangian))
 
 
 def changes_by_time(equations: Equations) -> bool:
@@ -83,5 +83,5 @@ def while_constant(equations: Equations, elements: Iterable[Element]) -> str:
     """The condition on the inputs under which functions are integrals; "" if there is none."""
     if not equations.setting.inputs:
         return ""
-    needed = names_inputs(equations.setting, map(equations.closed, elements))
+    needed = names_inputs(equations.setting, map(equations.close, elements))
     return " while the inputs are constant" if needed else ""

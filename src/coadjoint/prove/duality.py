@@ -42,7 +42,7 @@ def _momenta(equations: Equations) -> tuple[Element, ...]:
     """``p(v)`` from ``v = w dh/dp``."""
     setting, (names, weights) = equations.setting, _names(equations)
     assert equations.exact.energy is not None, "the route canonical has a Hamiltonian"
-    h = equations.closed(equations.exact.energy)
+    h = equations.close(equations.exact.energy)
     velocities = setting.elements(setting.velocities)
     values = [v * (1 / w) for v, w in zip(velocities, weights, strict=True)]
     return conjugates(setting.field, h, names, values, lambda text, _: DerivationError(text))
@@ -68,5 +68,5 @@ def _defects(equations: Equations, momenta: Sequence[Element]) -> list[Element]:
     triples = zip(momenta, velocities, weights, strict=True)
     paired = field.sum(p * v * (1 / w) for p, v, w in triples)
     solved = dict(zip(names, momenta, strict=True))
-    h = field.substitute(equations.closed(equations.exact.energy), solved)
+    h = field.substitute(equations.close(equations.exact.energy), solved)
     return [paired - h - setting.formula(formula)]

@@ -22,7 +22,7 @@ from coadjoint.exact.ranks import CHANCE
 from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import search_summands
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
-from coadjoint.prove.completeness import DEGREE, Completeness, described, scope_of
+from coadjoint.prove.completeness import DEGREE, Completeness, describe, scope_of
 from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero, make_entry, proved_by_normal_form
 
 #: Columns of text that a table of brackets may take.
@@ -101,7 +101,7 @@ class Examination:
         )
         return Document(
             f"Lie algebra {algebra.name}",
-            f"{_counted(algebra.dimension, 'generator')}: {', '.join(algebra.basis)}.",
+            f"{_count_in_words(algebra.dimension, 'generator')}: {', '.join(algebra.basis)}.",
             "",
             f"Blocks: {blocks}." if blocks else "",
             (self._table(), self._invariants(), self._casimirs(), self._verdicts()),
@@ -167,7 +167,7 @@ class Examination:
 
     def _rank(self) -> str:
         """The rank: certain where there are as many Casimirs as it leaves room for."""
-        count = _counted(self.casimirs.expected, "independent Casimir")
+        count = _count_in_words(self.casimirs.expected, "independent Casimir")
         if isinstance(self.casimirs.decision, Decision):
             return f"{self.rank}, so {count} {self.casimirs.scope}"
         return (
@@ -183,7 +183,7 @@ class Examination:
         for n, casimir in enumerate(self.casimirs.found, 1):
             name = symbol(f"casimir{n}")
             if len(self.field.terms(casimir)) > TERMS:
-                told = f"{described(self.field, casimir)}; as JSON it is there in full"
+                told = f"{describe(self.field, casimir)}; as JSON it is there in full"
                 words.append((name.text, told))
             else:
                 upright = replace(name, latex=rf"\mathrm{{casimir}}_{{{n}}}")
@@ -215,7 +215,7 @@ def _head(name: str) -> Line:
     return Line(shown.text, shown.latex, f"<math>{shown.mathml}</math>")
 
 
-def _counted(number: int, noun: str) -> str:
+def _count_in_words(number: int, noun: str) -> str:
     """A count in words."""
     return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"
 
@@ -296,18 +296,18 @@ def _entries(
     algebra: LieAlgebra, structure: PoissonStructure, known: Completeness
 ) -> tuple[tuple[Claim, ...], tuple[Finding, ...]]:
     """Claims and findings about an algebra."""
-    entries = list(_examined(algebra, structure, known))
+    entries = list(_examine(algebra, structure, known))
     claims = tuple(entry for entry in entries if isinstance(entry, Claim))
     return claims, tuple(entry for entry in entries if isinstance(entry, Finding))
 
 
-def _examined(
+def _examine(
     algebra: LieAlgebra, structure: PoissonStructure, known: Completeness
 ) -> Iterator[Claim | Finding]:
     """Everything about an algebra, examined one after the other."""
-    yield _timed(f"{algebra.name} satisfies the Jacobi identity", algebra.check_jacobi)
+    yield _time_check(f"{algebra.name} satisfies the Jacobi identity", algebra.check_jacobi)
     if algebra.matrices:
-        yield _timed(
+        yield _time_check(
             f"the matrices of {algebra.name} commute like its basis", algebra.check_matrices
         )
     refuted = 0
@@ -315,7 +315,7 @@ def _examined(
         start = perf_counter()
         decision = _is_casimir(structure, casimir)
         refuted += decision.verdict is not Verdict.PROVED
-        statement = f"{described(structure.field, casimir)} is a Casimir"
+        statement = f"{describe(structure.field, casimir)} is a Casimir"
         yield make_entry(statement, "casimir", decision, perf_counter() - start)
     if not refuted:
         yield make_entry(known.statement, "casimir", known.decision, 0.0)
@@ -328,7 +328,7 @@ def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
     return decide_zero(structure.casimir_defects(function), structure.field)
 
 
-def _timed(statement: str, check: Callable[[], object]) -> Claim | Finding:
+def _time_check(statement: str, check: Callable[[], object]) -> Claim | Finding:
     """A claim about constants whose check raises if it fails."""
     start = perf_counter()
     check()

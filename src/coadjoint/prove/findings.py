@@ -92,7 +92,7 @@ def nonzero_at_a_point(
     return first_nonzero(values, field, where)
 
 
-def shown(field: Field, value: Element) -> str:
+def show_value(field: Field, value: Element) -> str:
     """`` = value`` where that is short, else that it is not zero."""
     text = element_text(field, field.normal(value).combined())
     return f" = {text}" if len(text) <= SHOWN else " is not zero"

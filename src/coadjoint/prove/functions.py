@@ -100,9 +100,9 @@ class Functions:
         """The rational number that an argument is at the given parameters, or None."""
         if not self.field.function_free(argument):
             return None
-        return self.field.as_number(self._settled(argument))
+        return self.field.as_number(self._settle(argument))
 
-    def _settled(self, argument: Element) -> Element:
+    def _settle(self, argument: Element) -> Element:
         """A function-free argument at the given parameters."""
         numbers = {name: self.field.number(x) for name, x in self._numbers.items()}
         return self.field.substitute(argument, numbers)
@@ -149,14 +149,14 @@ class Functions:
             return Lattice(moves, tuple({0: 1} for _ in arguments))
         if self._numbers and not all(map(self.field.function_free, arguments)):
             return None  # roots of numbers may be numbers
-        settled = [self._settled(a) if self._numbers else a for a in arguments]
+        settled = [self._settle(a) if self._numbers else a for a in arguments]
         vectors = [self._vector(argument) for argument in settled]
         if any(vector is None for vector in vectors):
             return None
-        return self._reduced([vector for vector in vectors if vector is not None])
+        return self._reduce([vector for vector in vectors if vector is not None])
 
     def _vanishes(self, argument: Element) -> bool:
-        return self.field.function_free(argument) and self._settled(argument) == 0
+        return self.field.function_free(argument) and self._settle(argument) == 0
 
     def _vector(self, argument: Element) -> dict[Any, Fraction] | None:
         """The coefficients of an argument by its products of powers; None with sums below a bar."""
@@ -176,7 +176,7 @@ class Functions:
                 found[key] = found.get(key, Fraction(0)) + monomial.number
         return {key: x for key, x in found.items() if x}
 
-    def _reduced(self, vectors: Sequence[Mapping[Any, Fraction]]) -> Lattice:
+    def _reduce(self, vectors: Sequence[Mapping[Any, Fraction]]) -> Lattice:
         """The arguments in a basis whose last members are those that do not move.
 
         With the products that move in front, rows of the echelon form that begin behind these are
@@ -316,7 +316,7 @@ class FunctionsAtPoint:
         multiples = self._functions.lattices[group].multiples[place]
         if multiples and not argument.value:  # the argument is 0, and nobody knew
             raise ZeroDivisionError(f"{each.function} of 0")
-        x, y = self._turned(group, multiples)
+        x, y = self._add_turns(group, multiples)
         return y if each.function == "sin" else x
 
     def _root(self, name: str, argument: Residue) -> Residue:
@@ -335,7 +335,7 @@ class FunctionsAtPoint:
             self._functions.proper.add(name)
             raise
 
-    def _turned(self, group: tuple[str, ...], multiples: Multiples) -> Turn:
+    def _add_turns(self, group: tuple[str, ...], multiples: Multiples) -> Turn:
         """The product of powers of turns: addition of arguments."""
         prime = self._experiment.prime
         result = Residue(1, prime), Residue(0, prime)

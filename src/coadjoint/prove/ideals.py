@@ -79,7 +79,7 @@ class Ideal:
         found = [each for each in map(field.normal, relations) if each != 0]
         self.given = tuple(found)
         self._between_parameters = [each for each in found if self._is_generic(each)]
-        self.relations = tuple(map(self._stripped, found))
+        self.relations = tuple(map(self._strip, found))
         numerators = list(map(numerator, self.relations))
         numerators += map(numerator, self._of_functions())
         self._places = sorted(
@@ -152,7 +152,7 @@ class Ideal:
                 found.append(own**2 + field[known.partner] ** 2 - 1)
         return found
 
-    def _stripped(self, relation: Element) -> Element:
+    def _strip(self, relation: Element) -> Element:
         """A relation without factors that are not zero; those that only we exclude are noted."""
         factors = self._factors(relation)
         generic = [] if self._between_parameters else list(filter(self._is_generic, factors))
@@ -182,10 +182,12 @@ class Ideal:
         self._count, own = 0, self._between_parameters
         others = [each for each in self.relations if each not in own]
         found = list[Branch]()
-        for first in tuple(self._split(own, Branch())):  # all before what follows is generic
+        for first in tuple(
+            self._split_branches(own, Branch())
+        ):  # all before what follows is generic
             self._declared = first.rest
             start = Branch(first.solved, (), first.nonzero)
-            found += self._split([*first.rest, *others], start)
+            found += self._split_branches([*first.rest, *others], start)
         return tuple(regular for branch in found for regular in self._regular(branch))
 
     def _regular(self, branch: Branch) -> list[Branch]:
@@ -233,7 +235,7 @@ class Ideal:
                 points = Points(self.field, (), branch, functions)
                 yield from ((points, point) for point in points)
 
-    def _split(self, relations: Sequence[Element], branch: Branch) -> Iterator[Branch]:
+    def _split_branches(self, relations: Sequence[Element], branch: Branch) -> Iterator[Branch]:
         """The branches of some relations below what is solved for already."""
         try:
             left = [self.field.normal(self._on(branch, each)) for each in relations]
@@ -249,13 +251,13 @@ class Ideal:
                 others = [*left[:n], *left[n + 1 :]]
                 for count, factor in enumerate(factors):
                     self._count += count > 0
-                    yield from self._split([factor, *others], branch)
+                    yield from self._split_branches([factor, *others], branch)
                 return
             left[n] = factors[0]
         squares = [self._signs.squares(relation) for relation in left]
         if any(squares):
             parts = (s or [r] for s, r in zip(squares, left, strict=True))
-            yield from self._split([each for part in parts for each in part], branch)
+            yield from self._split_branches([each for part in parts for each in part], branch)
             return
         yield from self._solve(left, branch)
 
@@ -281,10 +283,10 @@ class Ideal:
         except ZeroDivisionError:
             return
         nonzero = (*branch.nonzero, slope) if divides else branch.nonzero
-        yield from self._split(others, Branch({**known, name: root}, (), nonzero))
+        yield from self._split_branches(others, Branch({**known, name: root}, (), nonzero))
         if divides and not alone:
             self._count += 1
-            yield from self._split([slope, rest, *others], branch)
+            yield from self._split_branches([slope, rest, *others], branch)
 
     def _linear(
         self, left: Sequence[Element], branch: Branch

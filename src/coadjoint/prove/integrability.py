@@ -30,7 +30,7 @@ from coadjoint.prove.findings import (
     first_nonzero,
     for_parameters,
     guess,
-    shown,
+    show_value,
 )
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
@@ -78,15 +78,15 @@ class Basis:
     def fields(self) -> dict[str, Row]:
         """The fields by their velocities, components along the frame."""
         field = self.found.setting.field
-        xi = [self._linear(self.closed(value)) for value in self.found.xi]
+        xi = [self._linear(self.close(value)) for value in self.found.xi]
         return {name: tuple(field.derivative(x, name) for x in xi) for name in self.names}
 
-    def closed(self, element: Element) -> Element:
+    def close(self, element: Element) -> Element:
         """An element in the velocities of the fields and the positions alone."""
         field = self.found.setting.field
         return field.substitute(field.substitute(element, self.found.solved), self.eliminated)
 
-    def annihilated(self, vector: Sequence[Element]) -> Row:
+    def annihilate(self, vector: Sequence[Element]) -> Row:
         """``A v``: zero for vectors of the distribution."""
         field = self.found.setting.field
         return tuple(
@@ -115,7 +115,7 @@ def about_integrability(first: Equations) -> Iterator[Examined]:
         decision,
         f"{subject} integrable: [D_i, D_j] stays in the distribution",
         f"{subject} not integrable {where}{for_parameters(found.setting, [value])}: "
-        f"{name}{shown(field, value)}",
+        f"{name}{show_value(field, value)}",
     )
     if name:
         growth = Growth(basis)
@@ -126,7 +126,7 @@ def brackets_of(basis: Basis) -> dict[str, Element]:
     """``rolling1([D_Omega1, D_Omega2])`` for all constraints and pairs of fields."""
     found, values = basis.found, dict[str, Element]()
     for (a, one), (b, two) in combinations(basis.fields.items(), 2):
-        parts = basis.annihilated(found.frame.bracket(one, two))
+        parts = basis.annihilate(found.frame.bracket(one, two))
         for equation, part in zip(found.equations, parts, strict=True):
             values[f"{equation.name}([D_{a}, D_{b}])"] = part
     return values
@@ -149,8 +149,8 @@ class Growth:
         rows: list[Row] = []
         newest = [frame.bracket(a, b) for a, b in combinations(fields, 2)]
         while True:
-            whole = [*rows, *map(basis.annihilated, newest)]
-            chosen = self._chosen(whole)
+            whole = [*rows, *map(basis.annihilate, newest)]
+            chosen = self._choose_rows(whole)
             self.ranks.append(len(chosen))
             if self.ranks[-1] in (self.ranks[-2], codimension):
                 break
@@ -162,7 +162,7 @@ class Growth:
     def _field(self) -> Field:
         return self.basis.found.setting.field
 
-    def _chosen(self, rows: Sequence[Row]) -> list[int]:
+    def _choose_rows(self, rows: Sequence[Row]) -> list[int]:
         """Places of rows that span all of them; what proves so is kept."""
         sparse = [{j: e for j, e in enumerate(row) if e != 0} for row in rows]
         chosen = independent_rows(self._field, sparse)

@@ -49,13 +49,13 @@ class InvariantFactors:
     def short(self) -> list[Element]:
         """Those among the velocities and the factors of the common divisor of their rates."""
         velocities = [self.field[name] for name in self.free]
-        return self._chosen([*velocities, *self._shared(velocities)])
+        return self._choose_invariant([*velocities, *self._common_factors(velocities)])
 
     def all(self) -> list[Element]:
         """Those among all candidates that are not too large to be factored."""
-        return self._chosen([*self.short(), *self._factored()])
+        return self._choose_invariant([*self.short(), *self._factors()])
 
-    def _chosen(self, candidates: Iterable[Element]) -> list[Element]:
+    def _choose_invariant(self, candidates: Iterable[Element]) -> list[Element]:
         """Candidates that depend on velocities and are invariant, each once."""
         known = list[Element]()
         for candidate in candidates:
@@ -82,7 +82,7 @@ class InvariantFactors:
         """The rates of the free velocities."""
         return [self._rate(self.field[name]) for name in self.free]
 
-    def _shared(self, velocities: Sequence[Element]) -> list[Element]:
+    def _common_factors(self, velocities: Sequence[Element]) -> list[Element]:
         """The factors of the greatest common divisor of the rates."""
         numerators = [numerator(rate) for rate in self.rates if rate != 0]
         if not numerators or max(map(len, numerators)) > LONGEST:
@@ -91,7 +91,7 @@ class InvariantFactors:
         whole = self.field.from_polynomial(divisor)
         return find_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
 
-    def _factored(self) -> Iterator[Element]:
+    def _factors(self) -> Iterator[Element]:
         """The factors of the rates and of the determinant."""
         for element in (*self.rates, *self._determinant()):
             if self._is_short(element):

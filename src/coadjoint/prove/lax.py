@@ -66,7 +66,7 @@ def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
     """Whether ``dL/dt = [L, M]`` along a motion, or the entry where it is not."""
     setting = motion.setting
     rates = dict(zip(setting.state, motion.exact.rates, strict=True))
-    settled = motion.closed
+    settled = motion.close
     if LegendreMap.applies(motion):
         settled = partial(LegendreMap(motion).pull_back, motion)
     everything = []
@@ -100,7 +100,7 @@ def _about_integrals(
         yield (
             f"{name}, from tr L^{each.trace} at {found.pair.spectral}^{each.power}, is conserved",
             "conserved",
-            partial(_conserved, first, found, name, each, of_pair),
+            partial(_decide_conserved, first, found, name, each, of_pair),
         )
     pairs = list(combinations(found.emitted, 2))
     length = first.setting.field.terms
@@ -146,7 +146,7 @@ def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Disco
     )
 
 
-def _conserved(
+def _decide_conserved(
     first: Equations,
     found: Integrals,
     name: str,

@@ -22,9 +22,9 @@ from coadjoint.exact.dense import determinant
 from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.completeness import SHOWN, described
+from coadjoint.prove.completeness import SHOWN, describe
 from coadjoint.prove.densities import DENOMINATOR, POINTS, REST, Condition, Measure, Powers
-from coadjoint.prove.findings import shown
+from coadjoint.prove.findings import show_value
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors
 from coadjoint.prove.motion import Motion
@@ -85,7 +85,7 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     )
     if not moved and (value := point.value(measure.divergence)):
         proof = Decision(Verdict.PROVED, f"{value} at a random point modulo {samples.prime}")
-        shown_text = shown(motion.field, Measure(motion).divergence)
+        shown_text = show_value(motion.field, Measure(motion).divergence)
         return f"{none}: div X{shown_text}", "measure", lambda: proof
     if measure.is_affine and any(point.value(second) for second in measure.curved):
         decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
@@ -133,7 +133,7 @@ def _of_positions(
     were looked at for one value of the inputs.
     """
     powers = measure.exponents(_factors_of_minors(motion, measure), points)
-    found = None if powers is None else _stated(motion, powers)
+    found = None if powers is None else _state(motion, powers)
     if found is not None or not measure.is_affine or motion.setting.driving:
         return found
     search = Discovery(
@@ -158,21 +158,21 @@ def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examin
         for search in (whole.short, whole.all):
             tried = search()
             powers = measure.powers_along([*others, *tried], samples)
-            found = None if powers is None else _stated(motion, powers)
+            found = None if powers is None else _state(motion, powers)
             if found is not None:
                 return found
-    names = ", ".join(described(motion.field, factor) for factor in tried)
+    names = ", ".join(describe(motion.field, factor) for factor in tried)
     word = motion.fibre_word
     text = f" that is a product of powers of {names}" if names else f" that depends on {word}"
     ended = Discovery(SEARCHED.format(word), _generic(motion).lstrip(", "))
     return f"no invariant measure was found with a density{text}", "measure", lambda: ended
 
 
-def _stated(motion: Motion, powers: Powers) -> Examined | None:
+def _state(motion: Motion, powers: Powers) -> Examined | None:
     """A measure, on vectors of any length if it can be; None if it is refuted."""
     defect, samples = [Measure(motion).defect(powers)], Samples(motion)
     finite = ", where its density is finite" if any(x < 0 for _, x in powers) else ""
-    written = f"{_written(motion, powers)}{_form(motion)}{motion.at_all_times}"
+    written = f"{_write(motion, powers)}{_form(motion)}{motion.at_all_times}"
     proof = decide_zero(defect, motion.field, motion.where)
     if proof.verdict is Verdict.PROVED:
         return f"an invariant measure{finite}: {written}", "measure", lambda: proof
@@ -225,7 +225,7 @@ def _form(motion: Motion) -> str:
     return " ".join(f"d{each.name}" for each in motion.spec.state) + kept
 
 
-def _written(motion: Motion, powers: Powers) -> str:
+def _write(motion: Motion, powers: Powers) -> str:
     """A density in front of a volume; a long determinant goes by its name."""
     text, velocities = "", {*motion.fibre}
     for factor, exponent in powers:
@@ -234,14 +234,14 @@ def _written(motion: Motion, powers: Powers) -> str:
             turning = bool(motion.field.reach(factor) & velocities)
             whole = element_text(motion.field, factor) if turning else ""
             short = turning and len(whole) <= LONGEST
-            base = f"|{whole if short else described(motion.field, factor)}|"
+            base = f"|{whole if short else describe(motion.field, factor)}|"
         text += base + (f"^({exponent})" if exponent != 1 else "") + " "
     return text
 
 
 def _name(motion: Motion, factor: Element) -> str:
     """The name of a determinant of the kernel's matrix that has too many terms to be shown."""
-    if len(described(motion.field, factor)) <= SHOWN // 2:
+    if len(describe(motion.field, factor)) <= SHOWN // 2:
         return ""
     for matrix in motion.matrices:
         whole = len(motion.fibre) + len(motion.kept)

@@ -96,12 +96,12 @@ class Motion:
 
     # -- rates ----------------------------------------------------------------------------
 
-    def closed(self, element: Element) -> Element:
+    def close(self, element: Element) -> Element:
         """An element in what equations know by name, the parameters put in where they have numbers.
 
         With constraints that is the state and the accelerations.
         """
-        return self.put(self.equations.closed(element))
+        return self.put(self.equations.close(element))
 
     def put(self, element: Element) -> Element:
         """An element with the numbers of the parameters, where these are given."""
@@ -111,7 +111,7 @@ class Motion:
     def rates(self) -> dict[str, Element]:
         """``dx/dt`` of the state, with the names that the kernel solves for."""
         names = self.setting.state
-        return dict(zip(names, map(self.closed, self.equations.exact.rates), strict=True))
+        return dict(zip(names, map(self.close, self.equations.exact.rates), strict=True))
 
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and time, inputs held constant."""
@@ -122,9 +122,9 @@ class Motion:
         """The same written in the state, where that can be done."""
         return self.rates
 
-    def written(self, function: Element) -> Element:
+    def write(self, function: Element) -> Element:
         """A function written in the state, where that can be done."""
-        return self.closed(function)
+        return self.close(function)
 
     def in_state(self, function: Element) -> Element:
         """A function with a decidable zero: of the state alone, or of velocities in its place."""
@@ -177,7 +177,7 @@ class Motion:
         if tensor is None or self.spec.is_driven:
             return None
         columns = [
-            self.field.sum(map(self.field.derivative, map(self.closed, column), names))
+            self.field.sum(map(self.field.derivative, map(self.close, column), names))
             for column in zip(*tensor, strict=True)
         ]
         return None if any(columns) else self.field.zero

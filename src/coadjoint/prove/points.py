@@ -129,7 +129,7 @@ class Points:
         """What the conditions name beside symbols, in an order in which it can be computed."""
         region, found = self.ring.region, dict[str, Element]()
         own = (
-            self._reached((*self.elements, *self._defined, *self._roots))
+            self._reachable((*self.elements, *self._defined, *self._roots))
             | self.branch.solved.keys()
         )
         # of functions of velocities the momenta follow, of others the velocities
@@ -142,7 +142,7 @@ class Points:
                 visit(inner)
             found[name] = written[name]
 
-        for name in sorted(self._reached(each.element for each in self._conditions)):
+        for name in sorted(self._reachable(each.element for each in self._conditions)):
             visit(name)
         return found
 
@@ -157,7 +157,7 @@ class Points:
     def names(self) -> tuple[str, ...]:
         """The symbols that are free, in the order of the field."""
         given = self.definitions.keys() | self.branch.solved.keys()
-        reached = self._reached(self._involved) - given
+        reached = self._reachable(self._involved) - given
         return tuple(name for name in self.ring.names if name in reached)
 
     @cached_property
@@ -178,7 +178,7 @@ class Points:
         stated = [(each.element, each.strict) for each in self._conditions]
         return (*arguments, *signs, *solved, *stated)
 
-    def _reached(self, elements: Iterable[Element]) -> frozenset[str]:
+    def _reachable(self, elements: Iterable[Element]) -> frozenset[str]:
         return frozenset[str]().union(*map(self.ring.reach, elements))
 
     # -- values ---------------------------------------------------------------------------
@@ -202,7 +202,7 @@ class Points:
         numbers = {name: real(value) for name, value in values.items()}
         return self.ring.evaluate(element, numbers, real, real_function)
 
-    def _violated(self, free: Mapping[str, Any]) -> list[Element]:
+    def _list_violated(self, free: Mapping[str, Any]) -> list[Element]:
         """What fails at a point; where functions are not defined, their arguments alone.
 
         Raises:
@@ -235,7 +235,7 @@ class Points:
                 if number < PLAIN and not self.branch.rest:
                     found: Values | None = start
                 else:
-                    found = self._moved(start, TARGETS[number % len(TARGETS)])
+                    found = self._move(start, TARGETS[number % len(TARGETS)])
                 with suppress(ZeroDivisionError, ValueError, OverflowError):
                     if found is not None and self._is_inside(found):
                         yield found
@@ -244,7 +244,7 @@ class Points:
         """The defaults, moved onto the branch and into the domain."""
         with mpmath.workdps(DIGITS), suppress(ZeroDivisionError, ValueError, OverflowError):
             start = next(iter(random_points(self.names, self.ring.positive)))
-            found = self._moved(start | self._defaults, TARGETS[0])
+            found = self._move(start | self._defaults, TARGETS[0])
             if found is not None and self._is_inside(found):
                 yield found
 
@@ -256,7 +256,7 @@ class Points:
 
     def _is_inside(self, free: Values) -> bool:
         """Whether all that is assumed holds, and no divisor and no determinant vanishes."""
-        if self._violated(free):
+        if self._list_violated(free):
             return False
         values = self.complete(free)
         for each in self._defined:
@@ -305,19 +305,19 @@ class Points:
                     for name, x in point.items()
                 }
 
-    def _moved(self, start: Values, target: Fraction) -> Values | None:
+    def _move(self, start: Values, target: Fraction) -> Values | None:
         """A point near another one at which everything holds; None if none is found."""
         free: Values = {name: real(value) for name, value in start.items()}
         zeros = [(each, mpmath.mpf(0)) for each in self.branch.rest]
         with suppress(ZeroDivisionError, ValueError, OverflowError), mpmath.workdps(2 * DIGITS):
             for _ in range(MOVES):
-                failed = self._violated(free)
+                failed = self._list_violated(free)
                 if not failed:
-                    return self._arrived(free, zeros) if zeros else self._rounded(free)
+                    return self._arrive(free, zeros) if zeros else self._round(free)
                 free, _ = self._step(free, [*((each, real(target)) for each in failed), *zeros])
         return None
 
-    def _arrived(self, free: Values, zeros: Sequence[Wanted]) -> Values | None:
+    def _arrive(self, free: Values, zeros: Sequence[Wanted]) -> Values | None:
         """Newton's method to where the rest vanishes; its last step says how near that is."""
         size = mpmath.mpf(1)
         for count in range(STEPS):
@@ -337,12 +337,12 @@ class Points:
         with mpmath.workdps(4 * DIGITS):
             return bool(self._step(free, zeros)[1] < most)
 
-    def _rounded(self, free: Values) -> Values | None:
+    def _round(self, free: Values) -> Values | None:
         """A rational point near another one, of small numbers if these do."""
         for digits in (1, 2, 4, 8, 16):
             near = {name: _fraction(x).limit_denominator(10**digits) for name, x in free.items()}
             generic = all(bool(near[name]) or not x for name, x in free.items())
-            if generic and not self._violated(near):
+            if generic and not self._list_violated(near):
                 return near
         return None
 
@@ -352,7 +352,7 @@ class Points:
         Slopes are differences over a small part of the step before: values have twice the digits
         that are wanted. What is wanted may depend on each other, so that a multiple of 1 is added.
         """
-        needed = self._reached(each for each, _ in wanted)
+        needed = self._reachable(each for each, _ in wanted)
 
         def values(at: Values) -> list[Any]:
             whole = at if needed <= free.keys() else self.complete(at)

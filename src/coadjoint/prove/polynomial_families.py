@@ -103,7 +103,7 @@ class PolynomialFamily:
         for point in islice(self._source, max(count - len(self._points), 0)):
             self._points.append(point)
             x = [point.value(generator) for generator in self.generators]
-            self.values_at.append((x, [point.moved(slopes) for slopes in self._slopes]))
+            self.values_at.append((x, [point.differentiate(slopes) for slopes in self._slopes]))
         return self._points[:count]
 
     @cached_property

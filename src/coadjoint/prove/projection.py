@@ -49,8 +49,8 @@ def _arrival(projection: Equations) -> list[Element]:
     after = dict(zip(projection.setting.state, projection.exact.rates, strict=True))
     definitions = dict(projection.exact.definitions)
     defects = [
-        projection.closed(field.substitute(residual, after)) - rows[multiplier_name(n)]
-        for n, (_, residual) in enumerate(_kept(projection).kept)
+        projection.close(field.substitute(residual, after)) - rows[multiplier_name(n)]
+        for n, (_, residual) in enumerate(_kept_constraints(projection).kept)
     ]
     return defects + [
         defect
@@ -61,7 +61,7 @@ def _arrival(projection: Equations) -> list[Element]:
 
 def _least(projection: Equations) -> list[Element]:
     """``M d + A^T u`` minus the rows of the solve that make it vanish; changes of positions."""
-    field, found = projection.setting.field, _kept(projection)
+    field, found = projection.setting.field, _kept_constraints(projection)
     after = zip(projection.setting.state, projection.exact.rates, strict=True)
     changes = {name: value - field[name] for name, value in after}
     rows, eta = _rows(projection), found.independent
@@ -80,23 +80,23 @@ def _least(projection: Equations) -> list[Element]:
 
 def _rest(projection: Equations) -> Decision:
     """The right sides, which vanish on the constraints: the change solves ``K d = 0`` there."""
-    sides = [projection.closed(k) for solve in projection.exact.solves for k in solve.known]
+    sides = [projection.close(k) for solve in projection.exact.solves for k in solve.known]
     motion = ConstrainedRates(projection)
     return decide_zero(sides, motion.field, motion.where)
 
 
-def _kept(projection: Equations) -> Distribution:
+def _kept_constraints(projection: Equations) -> Distribution:
     assert projection.distribution is not None, "asked for only where constraints are kept"
     return projection.distribution
 
 
 def _rows(projection: Equations) -> dict[str, Element]:
     """``A x - b`` of the solves by the name of the unknown of the row, in the state and x."""
-    field, closed = projection.setting.field, projection.closed
+    field, close = projection.setting.field, projection.close
     rows = {}
     for solve in projection.exact.solves:
         x = projection.setting.elements(solve.names)
         for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
-            left = field.sum(closed(a) * value for a, value in zip(row, x, strict=True))
-            rows[name] = left - closed(known)
+            left = field.sum(close(a) * value for a, value in zip(row, x, strict=True))
+            rows[name] = left - close(known)
     return rows

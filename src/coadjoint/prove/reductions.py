@@ -33,7 +33,7 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
     if reduction.where:
         where = ", ".join(f"{formula.in_one_line} = 0" for formula in reduction.where)
         functions = [g for f in reduction.where for g in whole.setting.components(f)]
-        kept = partial(_kept, whole, functions, where)
+        kept = partial(_decide_kept, whole, functions, where)
         yield f"the whole motion keeps {where}", "reduction", kept
         vanishing = partial(_on_section, restriction, functions)
         yield f"where {section}, {where}", "reduction", vanishing
@@ -62,10 +62,10 @@ def _decide(whole: Equations, examine: Callable[[], Found]) -> Decision | Discov
     return decide_zero(found, whole.setting.field)
 
 
-def _kept(whole: Equations, functions: Sequence[Element], where: str) -> Decision:
+def _decide_kept(whole: Equations, functions: Sequence[Element], where: str) -> Decision:
     """That the rates of some functions vanish where they do."""
     field, state = whole.setting.field, whole.setting.state
-    rates = [whole.closed(rate) for rate in whole.exact.rates]
+    rates = [whole.close(rate) for rate in whole.exact.rates]
     drifts = [
         field.sum(slope * rate for slope, rate in zip(field.gradient(f, state), rates, strict=True))
         for f in functions

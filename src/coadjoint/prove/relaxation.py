@@ -53,7 +53,9 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
         if not spec.is_forced:
             law = ("dS/dt = <dS, G dS>: the entropy never falls", "conserved", known.entropy)
             claims.append(law)
-    claims.append((f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.added))
+    claims.append(
+        (f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.list_added)
+    )
     yield from claimed_by(spec, (relaxation.table,), claims, first.setting.field)
 
 
@@ -95,7 +97,7 @@ class _Relaxed:
         gained = dot(slopes, apply(self.G, slopes))
         return [rate - gained for rate in drift(self.first, S)]
 
-    def added(self) -> list[Element]:
+    def list_added(self) -> list[Element]:
         """The rates minus ``P dh``, the forces and what G adds."""
         relaxation = self.first.spec.relaxation
         assert relaxation is not None

@@ -52,12 +52,12 @@ def about_reversal(motion: Motion) -> Iterator[Examined]:
     yield finding(
         "transformation",
         decision,
-        f"the motion is time reversible: it runs back with {_turned(motion, motion.fibre)}",
-        f"the motion is not time reversible by {_turned(motion, motion.fibre)}{scope}: {name}",
+        f"the motion is time reversible: it runs back with {_map_text(motion, motion.fibre)}",
+        f"the motion is not time reversible by {_map_text(motion, motion.fibre)}{scope}: {name}",
     )
 
 
-def _turned(motion: Motion, names: Sequence[str]) -> str:
+def _map_text(motion: Motion, names: Sequence[str]) -> str:
     """The map in words: ``Pi -> -Pi, t -> -t``."""
     shown = list[str]()
     for each in motion.spec.state:
@@ -99,7 +99,7 @@ def reversal_defects(motion: Motion) -> dict[str, Element]:
                 if (unknown := multiplier_name(n)) in shares
             }
             for which, part in parts.items():
-                force = motion.equations.closed(part)
+                force = motion.equations.close(part)
                 defect = force - field.substitute(force, back)
                 values[f"the force of {name}{which} is not even in them"] = defect
     for name, rate in motion.rates.items():
@@ -130,7 +130,7 @@ def _other_signs(motion: Motion) -> Examined | None:
     """Another change of signs that reverses a free motion; or that none does; else None."""
     field, time = motion.field, {*turned_by_time(motion.setting)}
     parities, is_complete = _parities(motion, time)
-    signs = _solved(parities, motion.setting.state)
+    signs = _solve_parities(parities, motion.setting.state)
     if signs is None:
         if not is_complete:
             return None
@@ -146,7 +146,7 @@ def _other_signs(motion: Motion) -> Examined | None:
     found = decide_zero(defects, field)
     if found.verdict is not Verdict.PROVED:
         return None
-    text = f"the motion is time reversible: it runs back with {_turned(motion, signs)}"
+    text = f"the motion is time reversible: it runs back with {_map_text(motion, signs)}"
     return text, "transformation", lambda: found
 
 
@@ -178,7 +178,7 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
     return found, is_complete
 
 
-def _solved(parities: Sequence[Parity], state: Sequence[str]) -> list[str] | None:
+def _solve_parities(parities: Sequence[Parity], state: Sequence[str]) -> list[str] | None:
     """Names whose signs turn, by elimination modulo 2; None where there are none.
 
     >>> _solved([(frozenset("ab"), 1), (frozenset("a"), 0)], "ab")

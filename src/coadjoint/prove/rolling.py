@@ -36,7 +36,7 @@ def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
         f"the point of the body at the contact is at rest: {rolling.velocity} = "
         f"cross({rolling.turning}, {text})",
         "rolling",
-        lambda: decide_zero([first.closed(x) for x in slip], motion.field, motion.where),
+        lambda: decide_zero([first.close(x) for x in slip], motion.field, motion.where),
     )
     relations = " and ".join(filter(None, [f"|{Gamma}| = 1", motion.where.text]))
     unit = motion.where.also([dot(normal, normal) - 1], relations)
@@ -50,6 +50,6 @@ def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
         f"the height dot({Gamma}, {text}) changes by dot({Gamma}, {rolling.velocity})",
         "rolling",
         lambda: decide_zero(
-            [motion.rate(height) - first.closed(dot(normal, Y))], motion.field, unit
+            [motion.rate(height) - first.close(dot(normal, Y))], motion.field, unit
         ),
     )

@@ -69,7 +69,7 @@ class Point:
         ring, number = self.samples.field, self.call.number
         return ring.evaluate(element, self.values, number, self.call, self.factors).value
 
-    def moved(self, slopes: Slopes) -> int:
+    def differentiate(self, slopes: Slopes) -> int:
         """``dF/dt`` of a function of the state, from its slopes."""
         total = sum(self.value(s) * self.velocity[name] for name, s in slopes)
         return total % self.samples.prime
@@ -194,10 +194,10 @@ class Samples:
             for each in self.motion.equations.spec.having_role("advected")
             if each.default is not None
             and sum(x**2 for x in each.default) == 1
-            and self.field.is_zero(self.motion.rate(self.squared(each)))
+            and self.field.is_zero(self.motion.rate(self.square(each)))
         )
 
-    def squared(self, variable: Variable) -> Element:
+    def square(self, variable: Variable) -> Element:
         """The square of the length of a vector."""
         return self.field.sum(self.field[name] ** 2 for name in variable.components)
 
@@ -208,7 +208,7 @@ class Samples:
         With the numbers of the parameters, where these are given.
         """
         kept = self.motion.where
-        lengths = [self.squared(each) - 1 for each in self.unit]
+        lengths = [self.square(each) - 1 for each in self.unit]
         texts = [f"dot({each.name}, {each.name}) = 1" for each in self.unit]
         text = ", ".join(filter(None, (kept.text, *texts)))
         if not self._given:
@@ -241,7 +241,7 @@ class Samples:
         call = FunctionsAtPoint(self._experiment)
         call.learn({name: x for name, x in values.items() if name not in velocities})
         point = Point(self, values, call)
-        values |= self._allowed(point)
+        values |= self._allow(point)
         call.learn(values)
         for name, definition in self._needed:
             values[name] = Residue(point.value(definition), self.prime)
@@ -258,7 +258,7 @@ class Samples:
         below = square + one
         return [(square + -one) / below, *((x + x) / below for x in flat)]
 
-    def _allowed(self, point: Point) -> Values:
+    def _allow(self, point: Point) -> Values:
         """Velocities that the kept constraints allow: some of them, from the others.
 
         Raises:

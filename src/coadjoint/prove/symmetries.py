@@ -40,7 +40,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
         J = momentum_map(first, symmetry)
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
-            of_map += _noether(first, symmetry, J, first.closed(energy))
+            of_map += _noether(first, symmetry, J, first.close(energy))
         yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
     if energy is not None:
         yield from _about_integrals(first, known)
@@ -97,7 +97,7 @@ def _noether(
 ) -> Iterator[Examined]:
     """What is conserved since h is invariant: nothing is claimed of the other components."""
     rates, setting = J.rates(h), first.setting
-    own = [explicit(setting, first.closed(value)) + first.work(value) for value in J.values]
+    own = [explicit(setting, first.close(value)) + first.work(value) for value in J.values]
     invariant = [n for n, rate in enumerate(rates) if rate == 0 and setting.field.is_zero(own[n])]
     if invariant:
         names = [symmetry.components[n] for n in invariant]
@@ -139,7 +139,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
 def _flows(first: Equations, formula: Formula, known: Mapping[str, Quantity]) -> list[VectorField]:
     """The Hamiltonian vector field of each component of an integral."""
     structure = structure_of(first)
-    parts = map(first.closed, first.setting.components(formula, known))
+    parts = map(first.close, first.setting.components(formula, known))
     return [
         VectorField(structure.field, structure.names, structure.hamiltonian_vector_field(part))
         for part in parts
@@ -173,7 +173,7 @@ def _kind_of(first: Equations, flows: Sequence[VectorField]) -> str:
 def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element]:
     """``[X_h, X_F] + dX_F/dt`` with the emitted rates as X_h."""
     setting = first.setting
-    rates = tuple(map(first.closed, first.exact.rates))
+    rates = tuple(map(first.close, first.exact.rates))
     motion = VectorField(setting.field, setting.state, rates)
     return [
         part + explicit(setting, own)
@@ -192,7 +192,7 @@ def _claimed_bracket(
     structure = structure_of(first)
 
     def parts(formula: Formula) -> list[Element]:
-        return [first.closed(part) for part in first.setting.components(formula, known)]
+        return [first.close(part) for part in first.setting.components(formula, known)]
 
     brackets = [structure.bracket(a, b) for a in parts(claim.left) for b in parts(claim.right)]
     return [a - b for a, b in zip(brackets, parts(claim.value), strict=True)]
@@ -218,7 +218,7 @@ def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision
     return decide_zero(defects(), motion.field, motion.where)
 
 
-def _moved(motion: Motion, transformation: Transformation) -> dict[str, Element]:
+def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Element]:
     """What becomes of each component of the state, and of time and rates of inputs."""
     setting, field = motion.setting, motion.field
     found = {name: field[name] for name in setting.state}
@@ -229,7 +229,7 @@ def _moved(motion: Motion, transformation: Transformation) -> dict[str, Element]
 
 def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:
     """``D phi . X + dphi/dt -+ X o phi``, and the kept constraints after the map."""
-    setting, field, phi = motion.setting, motion.field, _moved(motion, transformation)
+    setting, field, phi = motion.setting, motion.field, _move_state(motion, transformation)
     rates = motion.written_rates
     whole = VectorField(field, setting.state, tuple(rates.values()))
     sign = -1 if transformation.reverses_time else 1
@@ -249,7 +249,7 @@ def _exchange_defects(
 ) -> list[Element]:
     """``F o phi`` minus what it should be."""
     field, known = motion.field, motion.emitted
-    phi, parts = _moved(motion, transformation), entries(known[observable])
-    moved = [field.substitute(motion.written(part), phi) for part in parts]
-    expected = map(motion.written, motion.setting.components(formula, known))
+    phi, parts = _move_state(motion, transformation), entries(known[observable])
+    moved = [field.substitute(motion.write(part), phi) for part in parts]
+    expected = map(motion.write, motion.setting.components(formula, known))
     return [a - b for a, b in zip(moved, expected, strict=True)]

@@ -124,10 +124,10 @@ def claimed_by(
     """
     accepted = key in spec.accepted
     for statement, kind, examine in examined:
-        yield statement, kind, partial(_marked, examine, ring, accepted=accepted)
+        yield statement, kind, partial(_mark, examine, ring, accepted=accepted)
 
 
-def _marked(
+def _mark(
     examine: Callable[[], Sequence[Element] | Decision | Discovery], ring: Field, *, accepted: bool
 ) -> Decision | Discovery:
     """The decision about a claim of a spec, with the mark whether support is enough."""
@@ -215,10 +215,10 @@ def _decide_where(
         whole = Branch(rest=where.relations, regular=where.nonzero)
         named = (*where.given, *defined)
         found = _look(left, ring, whole, where.scope, named)
-        return found if isinstance(found, Decision) else _supported(found, where)
+        return found if isinstance(found, Decision) else _support(found, where)
 
 
-def _supported(count: int, where: Ideal) -> Decision:
+def _support(count: int, where: Ideal) -> Decision:
     method = f"{DIGITS}-digit values at {count} points where {where.scope}"
     return Decision(Verdict.SUPPORTED, method)
 
@@ -253,7 +253,7 @@ def _decide_on_branches(
     if not split:
         raise UndecidedError(f"it has no value anywhere where {where.scope}. {ADVICE}")
     if counts:
-        return _supported(sum(counts), where)
+        return _support(sum(counts), where)
     branches = f"each of {split} branches" if split > 1 else "the solutions"
     return _proof(elements, where, defined, f"on {branches} of {where.scope}")
 

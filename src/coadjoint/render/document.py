@@ -82,11 +82,11 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
     )
     made.filters |= {
-        "aligned": aligned,
+        "aligned": align,
         "abreast": abreast,
-        "described": described,
-        "tabulated": tabulated,
-        "wrapped": wrapped,
+        "described": describe,
+        "tabulated": tabulate,
+        "wrapped": wrap,
     }
     return made
 
@@ -114,7 +114,7 @@ def latex_escaped(text: str) -> str:
     return printable(text).translate(_LATEX_ESCAPES)
 
 
-def wrapped(text: str, indent: int = 0) -> list[str]:
+def wrap(text: str, indent: int = 0) -> list[str]:
     r"""A paragraph in lines of the text format, whatever its own line breaks.
 
     >>> wrapped("one\ntwo")
@@ -129,7 +129,7 @@ def wrapped(text: str, indent: int = 0) -> list[str]:
     )
 
 
-def aligned(lines: Sequence[Mapping[str, str]]) -> list[str]:
+def align(lines: Sequence[Mapping[str, str]]) -> list[str]:
     """Lines ``left = right`` with their equals signs in one column, long ones continued.
 
     Many short lines stand in several such columns, to be read down.
@@ -158,7 +158,7 @@ def abreast(lines: Sequence[Mapping[str, str]]) -> int:
     return max(1, min(4, (WIDTH - INDENT) // (widest + 3)))
 
 
-def tabulated(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
+def tabulate(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
     """A table with a line under its heads.
 
     >>> tabulated([[{"text": t} for t in row] for row in (("", "H", "X"), ("H", ".", "2*X"))])
@@ -174,7 +174,7 @@ def tabulated(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
     return [texts[0], rule, *texts[1:]]
 
 
-def described(words: Sequence[Sequence[str]]) -> list[str]:
+def describe(words: Sequence[Sequence[str]]) -> list[str]:
     """Names with what is said of them in a second column, long texts continued.
 
     >>> described([("rank", "2"), ("Killing form", "3 minus")])

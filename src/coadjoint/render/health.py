@@ -27,7 +27,7 @@ from coadjoint.render.ownership import (
     leftovers,
     make_plan,
 )
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 
 _AGAIN: Final = "coadjoint regenerate"
 
@@ -70,7 +70,7 @@ def tree_problems(folder: Path, *, is_shipped: bool = False) -> Iterator[Problem
             yield Problem(f"{folder / name} is missing or was changed", _AGAIN)
     changed = [name for name in manifest["systems"] if not is_intact(folder, name)]
     if changed:
-        yield Problem(f"{folder}: files of {listed(changed, 8)} are missing or changed", _AGAIN)
+        yield Problem(f"{folder}: files of {list_names(changed, 8)} are missing or changed", _AGAIN)
     for name in changed:
         certificate = folder / name / "certificate.json"
         if "claims" not in read_certificate(certificate):
@@ -78,7 +78,7 @@ def tree_problems(folder: Path, *, is_shipped: bool = False) -> Iterator[Problem
     if not is_shipped:
         files = {name: list(entry["files"]) for name, entry in manifest["systems"].items()}
         yield from _in_the_way(folder, files)
-    yield from _unlisted(folder, manifest["systems"])
+    yield from _list_unlisted(folder, manifest["systems"])
     for path in leftovers(folder):
         yield Problem(f"{path} was left behind by a killed run", "the next run removes it", True)
     yield from _lock(folder / LOCK)
@@ -92,11 +92,11 @@ def _in_the_way(folder: Path, files: Mapping[str, Collection[str]]) -> Iterator[
         make_plan(folder, files)
     except OutputError as error:
         strange = error.parts.get("found")
-        found = f"{folder}: {listed(strange, 8)}" if isinstance(strange, list) else str(error)
+        found = f"{folder}: {list_names(strange, 8)}" if isinstance(strange, list) else str(error)
         yield Problem(f"{found}: no run wrote this", "move it away")
 
 
-def _unlisted(folder: Path, systems: Collection[str]) -> Iterator[Problem]:
+def _list_unlisted(folder: Path, systems: Collection[str]) -> Iterator[Problem]:
     """Folders that a run wrote and the manifest does not know."""
     for path in sorted(folder.iterdir()):
         if path.name not in systems and not path.is_symlink() and path.is_dir() and is_marked(path):

@@ -98,11 +98,11 @@ def fingerprint(texts: Mapping[str, str]) -> str:
 
 def elementary_functions(programs: Iterable[Program]) -> tuple[str, ...]:
     """Functions beyond sqrt that Programs call; where there are none, all targets agree in bits."""
-    called = _called(programs)
+    called = _list_called(programs)
     return tuple(name for name in FUNCTIONS if name in called and name != "sqrt")
 
 
-def _called(programs: Iterable[Program]) -> list[str]:
+def _list_called(programs: Iterable[Program]) -> list[str]:
     """All functions that Programs call, in alphabetical order, as imports have them."""
     values = (value for program in programs for value in program.values())
     called = {operation(node) for value in values for node in walk(value)}
@@ -119,8 +119,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "licence": _licence(context.license),
             "id": identity,
             "chunk": CHUNK,
-            "routes": _wrapped([*context.routes, *_unproved(context.supported)]),
-            "equations": _wrapped(context.equations),
+            "routes": _wrap([*context.routes, *_note_unproved(context.supported)]),
+            "equations": _wrap(context.equations),
             "state": _rows(context.state),
             "reconstructed": _rows(context.reconstructed, len(_rows(context.state))),
             "parameters": _rows(context.parameters),
@@ -132,8 +132,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
             ],
-            "called": _called(context.programs),
-            "elementary": tuple_text(map(quoted, elementary_functions(context.programs))),
+            "called": _list_called(context.programs),
+            "elementary": tuple_text(map(quote, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
             "system": _system(context, identity),
             "declared": {
@@ -146,7 +146,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
     return {file: rendered[template] for file, template in TEMPLATES.items()}
 
 
-def _unproved(number: int) -> list[str]:
+def _note_unproved(number: int) -> list[str]:
     """The line of the head about claims that are not proved; none if all are."""
     claims = "1 claim is" if number == 1 else f"{number} claims are"
     text = f"{claims} numerically supported and NOT proved: see certificate.json."
@@ -159,7 +159,7 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     domain = ["DOMAIN"] * bool(context.domain)
     others = ("RECONSTRUCTED", "INPUTS", "TIME")
     present = [f"{name.lower()}={name}" for name in others if name in _tables(context)]
-    return [quoted(context.name), *tables, quoted(identity), *domain, *present]
+    return [quote(context.name), *tables, quote(identity), *domain, *present]
 
 
 def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
@@ -182,7 +182,7 @@ def _licence(expression: str) -> str:
     return f"SPDX-License-Identifier: {expression}" if expression else NO_LICENSE
 
 
-def _wrapped(lines: Iterable[str]) -> list[str]:
+def _wrap(lines: Iterable[str]) -> list[str]:
     """Lines for the head of a file, the long ones continued on indented lines."""
     return [
         piece
@@ -207,7 +207,7 @@ def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
 
 def _function(program: Program, summary: str) -> Function:
     """A Program as the templates read it."""
-    used, rows = program.used(), list(enumerate(program.outputs))
+    names_used, rows = program.names_used(), list(enumerate(program.outputs))
     return Function(
         name=program.name,
         summary=summary,
@@ -216,15 +216,15 @@ def _function(program: Program, summary: str) -> Function:
         size=len(program.outputs),
         result=_result(program.shape),
         rows=len(program.state),
-        state=_read(program.state, used),
-        parameters=_read(program.parameters, used),
+        state=_read(program.state, names_used),
+        parameters=_read(program.parameters, names_used),
         driving={
-            array: _read(names, used)
+            array: _read(names, names_used)
             for array, names in program.arrays.items()
             if array in ("inputs", "time")
         },
         python_inputs={
-            array: _unpacked(names, used, array) for array, names in program.arrays.items()
+            array: _unpack(names, names_used, array) for array, names in program.arrays.items()
         },
         of_parameters=program.at_level("parameters"),
         of_member=program.at_level("member"),
@@ -262,7 +262,7 @@ def _costs(program: Program) -> list[str]:
     costs = [f"Operations per member: {_counts(program, 'member')}."]
     if program.at_level("parameters"):
         costs += [f"Of the parameters alone: {_counts(program, 'parameters')}."]
-    return _wrapped(costs)
+    return _wrap(costs)
 
 
 def _counts(program: Program, level: str) -> str:
@@ -271,7 +271,7 @@ def _counts(program: Program, level: str) -> str:
     return ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "none"
 
 
-def _unpacked(names: Sequence[str], used: frozenset[str], source: str) -> list[str]:
+def _unpack(names: Sequence[str], used: frozenset[str], source: str) -> list[str]:
     """Python lines that take the used names from ``source``, as many to a line as fit.
 
     All of them on one line where that fits, as a book names them; an unused name is ``_``.
@@ -299,9 +299,7 @@ def _piece(slots: Sequence[str], start: int, stop: int, source: str) -> str:
 
 def _shapes(programs: Sequence[Program]) -> list[str]:
     """The entries of the table of functions."""
-    return [
-        f"{quoted(program.name)}: {tuple_text(map(str, program.shape))}" for program in programs
-    ]
+    return [f"{quote(program.name)}: {tuple_text(map(str, program.shape))}" for program in programs]
 
 
 def declaration(record: Quantity | Bound) -> list[str]:
@@ -324,7 +322,7 @@ def _literal(value: Any) -> str:
     """A value as Python text: texts in double quotes, tuples of such values, and numbers."""
     if isinstance(value, tuple):
         return tuple_text(map(_literal, value))
-    return quoted(value) if isinstance(value, str) else repr(value)
+    return quote(value) if isinstance(value, str) else repr(value)
 
 
 def tuple_text(entries: Iterable[str]) -> str:
@@ -337,6 +335,6 @@ def tuple_text(entries: Iterable[str]) -> str:
     return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """A Python string literal in double quotes."""
     return json.dumps(text)

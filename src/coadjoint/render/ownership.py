@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from coadjoint.errors import OutputError
-from coadjoint.files import is_table_of_texts, parsed, read_object, read_present
-from coadjoint.spec.core.faults import listed
+from coadjoint.files import is_table_of_texts, parse_object, read_object, read_present
+from coadjoint.spec.core.faults import list_names
 
 MANIFEST: Final = "manifest.json"
 LOCK: Final = ".lock"
@@ -104,7 +104,7 @@ def make_plan(
         OSError: The folder cannot be read.
     """
     refuse_installed(folder)
-    manifest = parsed(read_present(folder / MANIFEST))
+    manifest = parse_object(read_present(folder / MANIFEST))
     is_whole = is_manifest(manifest)
     old = manifest["systems"] if is_whole else {}
     stay = old if keep is None else {name: old[name] for name in old if name in keep}
@@ -117,7 +117,7 @@ def make_plan(
     if plan.foreign:
         raise OutputError(
             f"{folder}: nothing is written, since no run of coadjoint wrote what stands in the "
-            f"way: {listed(plan.foreign, 8)}. Move it away, or choose another folder with "
+            f"way: {list_names(plan.foreign, 8)}. Move it away, or choose another folder with "
             "--output.",
             path=str(folder),
             found=plan.foreign,

@@ -94,36 +94,36 @@ class Printer:
         text = self.text(node)
         return text if _binding(node) >= place else f"({text})"
 
-    def broken(self, node: Node, width: int) -> list[str]:
+    def break_lines(self, node: Node, width: int) -> list[str]:
         """``node`` on lines of at most ``width`` columns where it can be, one operand to a line."""
-        return self._broken_operand(node, SUM, width, lead="")
+        return self._break_operand(node, SUM, width, lead="")
 
-    def _broken_operand(self, node: Node, place: int, width: int, lead: str) -> list[str]:
+    def _break_operand(self, node: Node, place: int, width: int, lead: str) -> list[str]:
         """The same for an operand at its place; ``lead`` begins the first line."""
         text = lead + self._operand(node, place)
         if len(text) <= width:
             return [text]
         if _binding(node) < place:
-            return self._bracketed(lead + "(", node, width)
+            return self._bracket(lead + "(", node, width)
         match node:
             case Call(function=function, argument=argument):
-                return self._bracketed(f"{lead}{self.function_prefix}{function}(", argument, width)
+                return self._bracket(f"{lead}{self.function_prefix}{function}(", argument, width)
             case Negate(operand=operand):
-                return self._broken_operand(operand, ATOM, width, lead + "-")
+                return self._break_operand(operand, ATOM, width, lead + "-")
             case Add() | Multiply() | Divide():
-                return self._broken_chain(node, width, lead)
+                return self._break_chain(node, width, lead)
         return [text]
 
-    def _bracketed(self, opening: str, node: Node, width: int) -> list[str]:
-        inner = self._broken_operand(node, SUM, width - 4, lead="")
+    def _bracket(self, opening: str, node: Node, width: int) -> list[str]:
+        inner = self._break_operand(node, SUM, width - 4, lead="")
         return [opening, *("    " + line for line in inner), ")"]
 
-    def _broken_chain(self, node: Compound, width: int, lead: str) -> list[str]:
+    def _break_chain(self, node: Compound, width: int, lead: str) -> list[str]:
         (_, first), *rest = _chain(node)
         place = _binding(node)
-        lines = self._broken_operand(first, place, width, lead)
+        lines = self._break_operand(first, place, width, lead)
         for sign, right in rest:
-            lines += self._broken_operand(right, place + 1, width, f"{sign} ")
+            lines += self._break_operand(right, place + 1, width, f"{sign} ")
         return lines
 
 
@@ -140,8 +140,8 @@ def python_assignment(printer: Printer, node: Node, to: str, column: int, commen
     if not note and not _is_long_chain(node):
         # The formatter would move these parentheses onto an operand; a comment holds them.
         note = "  # in this order"
-    inner = printer.broken(node, WIDTH - column - 4)
-    return indented([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
+    inner = printer.break_lines(node, WIDTH - column - 4)
+    return indent([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
 
 
 def python_call(arguments: Sequence[str], to: str, column: int, end: str = "") -> str:
@@ -154,9 +154,9 @@ def python_call(arguments: Sequence[str], to: str, column: int, end: str = "") -
     if column + len(f"{to}({joined}){end}") <= WIDTH:
         return f"{to}({joined}){end}"
     if column + 4 + len(joined) <= WIDTH:
-        return indented([f"{to}(", "    " + joined, f"){end}"], column)
+        return indent([f"{to}(", "    " + joined, f"){end}"], column)
     lines = ["    " + line for entry in arguments for line in _entry_lines(entry, column + 4)]
-    return indented([f"{to}(", *lines, f"){end}"], column)
+    return indent([f"{to}(", *lines, f"){end}"], column)
 
 
 def _entry_lines(entry: str, column: int) -> list[str]:
@@ -167,7 +167,7 @@ def _entry_lines(entry: str, column: int) -> list[str]:
     return [f"{opening}(", *(f"    {item}," for item in items.split(", ")), "),"]
 
 
-def indented(lines: list[str], column: int) -> str:
+def indent(lines: list[str], column: int) -> str:
     """Lines as one text, all but the first moved to ``column``."""
     return ("\n" + " " * column).join(lines)
 

@@ -45,7 +45,7 @@ __all__ = [
     "SYSTEM_FILES",
     "TEMPORARY",
     "GeneratedSystem",
-    "locked",
+    "lock",
     "manifest_text",
     "read_manifest",
     "tree_texts",
@@ -154,19 +154,19 @@ def write_systems(
             something that no run wrote is in the way, and nothing is written.
     """
     refuse_installed(folder)
-    with _reported(folder):
+    with _report_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    with locked(folder, on_wait):
-        with _reported(folder):
+    with lock(folder, on_wait):
+        with _report_errors(folder):
             plan = make_plan(folder, {name: each.texts for name, each in systems.items()}, keep)
         entries = plan.entries | {name: system.record() for name, system in systems.items()}
         contents = {name: _kernel_first(system.texts) for name, system in systems.items()}
         last = {**PACKAGE, MANIFEST: manifest_text(entries, templates)}
         for path in leftovers(folder):
-            with _reported(path):
+            with _report_errors(path):
                 path.unlink()
         for path in plan.empty:
-            with _reported(path):
+            with _report_errors(path):
                 path.rmdir()
         write_folders(folder, contents, last, lambda: _remove(plan))
 
@@ -179,10 +179,10 @@ def _kernel_first(texts: Mapping[str, str]) -> dict[str, str]:
 def _remove(plan: Plan) -> None:
     """Remove what the tree no longer has."""
     for path in plan.files:
-        with _reported(path):
+        with _report_errors(path):
             path.unlink(missing_ok=True)
     for path in plan.folders:
-        with _reported(path):
+        with _report_errors(path):
             path.rmdir()
 
 
@@ -206,10 +206,10 @@ def write_folders(
     with ExitStack() as stack:
         staged = []
         for name, texts in contents.items():
-            with _reported(folder / name):
+            with _report_errors(folder / name):
                 (folder / name).mkdir(exist_ok=True)
-            staged.append(stack.enter_context(_staged(folder / name, texts)))
-        finish = stack.enter_context(_staged(folder, last or {}))
+            staged.append(stack.enter_context(_stage(folder / name, texts)))
+        finish = stack.enter_context(_stage(folder, last or {}))
         for take_place in staged:
             take_place()
         before_last()
@@ -217,25 +217,25 @@ def write_folders(
 
 
 @contextmanager
-def _staged(folder: Path, texts: Mapping[str, str]) -> Iterator[Callable[[], None]]:
+def _stage(folder: Path, texts: Mapping[str, str]) -> Iterator[Callable[[], None]]:
     """Write temporary files of ``texts``; yields what renames them; removes those not renamed."""
     temporaries: dict[str, str] = {}
-    with _reported(folder):
+    with _report_errors(folder):
         handle = os.open(folder, _FOLDER)
     try:
-        with _reported(folder):
+        with _report_errors(folder):
             _remove_temporaries(handle)
         for name, text in texts.items():
             temporaries[name] = f".coadjoint-{secrets.token_hex(8)}.tmp"
-            with _reported(folder / name):
+            with _report_errors(folder / name):
                 _write_synced(temporaries[name], text.encode(), handle)
 
         def take_place() -> None:
             for name in texts:
-                with _reported(folder / name):
+                with _report_errors(folder / name):
                     os.replace(temporaries[name], name, src_dir_fd=handle, dst_dir_fd=handle)
                 del temporaries[name]
-            with _reported(folder):
+            with _report_errors(folder):
                 os.fsync(handle)
 
         yield take_place
@@ -266,7 +266,7 @@ def _remove_temporaries(folder: int) -> None:
 
 
 @contextmanager
-def locked(folder: Path, on_wait: Callable[[], None] = lambda: None) -> Iterator[None]:
+def lock(folder: Path, on_wait: Callable[[], None] = lambda: None) -> Iterator[None]:
     """Hold the lock of a generated tree; the lock file stays, the lock ends with the process.
 
     Args:
@@ -276,11 +276,11 @@ def locked(folder: Path, on_wait: Callable[[], None] = lambda: None) -> Iterator
     Raises:
         OutputError: The lock file cannot be opened.
     """
-    with _reported(folder / LOCK):
+    with _report_errors(folder / LOCK):
         flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC
         handle = os.open(folder / LOCK, flags, 0o644)
     try:
-        with _reported(folder / LOCK):
+        with _report_errors(folder / LOCK):
             _lock(handle, on_wait)
         yield
     finally:
@@ -297,7 +297,7 @@ def _lock(handle: int, on_wait: Callable[[], None]) -> None:
 
 
 @contextmanager
-def _reported(path: Path) -> Iterator[None]:
+def _report_errors(path: Path) -> Iterator[None]:
     """Turn an error of the operating system into one that names the path."""
     try:
         yield

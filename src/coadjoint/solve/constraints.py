@@ -80,7 +80,7 @@ class Constraints:
         moved[: len(own)] = np.where(np.isfinite(nearest).all(axis=0), nearest, own)
         return moved
 
-    def put_back(self, solver: scipy.integrate.OdeSolver) -> Array:
+    def move_onto(self, solver: scipy.integrate.OdeSolver) -> Array:
         """The state after a step, on the constraints; a one-step method goes on from there."""
         state = self.onto(solver.t, solver.y)
         if self.any and isinstance(solver, ONE_STEP):

@@ -67,7 +67,7 @@ class Domain:
                 "domain", self._state, parameters, out=self._rows, target=target, **driving.now
             )
 
-    def violated(self, time: float, state: Array) -> int | None:
+    def find_violated(self, time: float, state: Array) -> int | None:
         """The first row that is violated or not finite at a state; None inside the domain."""
         if not self.bounds:
             return None
@@ -83,7 +83,7 @@ class Domain:
         Raises:
             KernelArgumentError: A condition does not hold, or the motion is singular there.
         """
-        row = self.violated(time, state)
+        row = self.find_violated(time, state)
         if row is None:
             return
         bound, value = self.bounds[row], float(self._rows[row])
@@ -116,14 +116,14 @@ class Domain:
             return None
         start, inside = before[0], before
         for point in points:
-            row = self.violated(*point)
+            row = self.find_violated(*point)
             if row is not None:
                 gap = RESOLUTION * (point[0] - start)
-                return self._bisected(path(), inside, point[0], row, gap)
+                return self._bisect(path(), inside, point[0], row, gap)
             inside = point
         return None
 
-    def _bisected(
+    def _bisect(
         self,
         path: Callable[[float], Array],
         inside: tuple[float, Array],
@@ -138,7 +138,7 @@ class Domain:
             if not time < middle < outside:  # no double lies between
                 break
             found = path(middle)
-            beyond = self.violated(middle, found)
+            beyond = self.find_violated(middle, found)
             if beyond is None:
                 time, state = middle, found
             else:
@@ -149,7 +149,7 @@ class Domain:
 
     def reason(self, exit_: Exit) -> str:
         """Why a trajectory ends at an exit."""
-        self.violated(exit_.time, exit_.state)
+        self.find_violated(exit_.time, exit_.state)
         value = float(self._rows[exit_.row])
         return (
             f"{self._problem(exit_.row)} after t = {exit_.time:.12g}, where "
@@ -159,7 +159,7 @@ class Domain:
 
     def remark(self, time: float, state: Array) -> str:
         """How close to a bound a state is, for trajectories that end inside; "" without bounds."""
-        if self.violated(time, state) is not None or not self.bounds:
+        if self.find_violated(time, state) is not None or not self.bounds:
             return ""
         row = int(np.argmin(self._rows))
         value = float(self._rows[row])

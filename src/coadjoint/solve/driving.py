@@ -104,7 +104,7 @@ class Function(Signal):
             KernelArgumentError: Another shape than ``(m,)``, or no finite number.
         """
         where = f"of the function inputs at t = {time:.12g}"
-        values = _packed(self.system, self.function(float(time)), where)
+        values = _pack(self.system, self.function(float(time)), where)
         return _one(self.system, values, where)
 
     def over(self, times: Array) -> Array:
@@ -176,11 +176,11 @@ def _signal(system: System, given: Any, start: float, end: float) -> Signal | No
     if callable(given):
         return Function(system, given)
     if isinstance(given, tuple) and any(np.ndim(part) for part in given):
-        return _sampled(system, given, start, end)
-    return Signal(_one(system, _packed(system, given, ""), ""))
+        return _sample(system, given, start, end)
+    return Signal(_one(system, _pack(system, given, ""), ""))
 
 
-def _sampled(system: System, given: tuple[Any, ...], start: float, end: float) -> Signal:
+def _sample(system: System, given: tuple[Any, ...], start: float, end: float) -> Signal:
     """Samples over the whole of a run.
 
     Raises:
@@ -203,7 +203,7 @@ def _sampled(system: System, given: tuple[Any, ...], start: float, end: float) -
             "times.",
             found=str(given[0])[:80],
         )
-    values = _packed(system, given[1], " samples")
+    values = _pack(system, given[1], " samples")
     wanted = (system.INPUTS.size, times.size)
     if values.ndim == 1 and wanted[0] == 1:
         values = values[np.newaxis]
@@ -226,7 +226,7 @@ def _sampled(system: System, given: tuple[Any, ...], start: float, end: float) -
     return Previous(times, values) if kind == "previous" else Linear(times, values)
 
 
-def _packed(system: System, given: Any, where: str) -> Array:
+def _pack(system: System, given: Any, where: str) -> Array:
     """Inputs as an array, a number for the only one of a system; errors say where."""
     only = system.INPUTS.size == 1 and given is not None and np.ndim(given) == 0
     try:

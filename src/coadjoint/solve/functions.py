@@ -53,7 +53,7 @@ def by_name(method: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
     names = ", ".join(method.__code__.co_varnames[1:most])
 
     @wraps(method)
-    def called(*given: _Given.args, **named: _Given.kwargs) -> _Result:
+    def call(*given: _Given.args, **named: _Given.kwargs) -> _Result:
         if len(given) > most:
             raise KernelArgumentError(
                 f"{method.__name__} takes {names} by position, and found {len(given) - most} more; "
@@ -64,7 +64,7 @@ def by_name(method: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
             )
         return method(*given, **named)
 
-    return called
+    return call
 
 
 class Method(Protocol):

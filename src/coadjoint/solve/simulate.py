@@ -50,7 +50,7 @@ def simulate(
 ) -> Solution:
     """Integrate one trajectory; arguments as in `System.simulate`."""
     initial = _initial(system, state)
-    packed = _shared(system, parameters)
+    packed = _share(system, parameters)
     times = _times(t, samples)
     name = _method(method)
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
@@ -140,7 +140,7 @@ def _follow(
             reason = solver.step() or ""
             if reason or not np.isfinite(solver.y).all():
                 break
-            before, here = here, (solver.t, constraints.put_back(solver))
+            before, here = here, (solver.t, constraints.move_onto(solver))
             path = partial(constraints.along, solver.dense_output)
             after = int(np.searchsorted(times, solver.t, side="right"))
             if after > reached:
@@ -148,7 +148,7 @@ def _follow(
             points = zip(times[reached:after].tolist(), states.T[reached:after], strict=True)
             end = domain.leaves(path, before, [*points, here])
             if end is not None:
-                return *_ended(times, states, end), "DOMAIN", domain.reason(end)
+                return *_cut_at_exit(times, states, end), "DOMAIN", domain.reason(end)
             reached, steps = after, steps + 1
             if after < times.size and solver.status != "running":
                 solver = stretches.next(here[1]) or solver
@@ -167,7 +167,7 @@ def _follow(
     return times, states, "OK", ""
 
 
-def _ended(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
+def _cut_at_exit(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
     """The samples before an exit, and the exit itself."""
     reached = int(np.searchsorted(times, end.time, side="right"))
     if times[reached - 1] == end.time:
@@ -241,7 +241,7 @@ def _initial(system: System, state: Any) -> Array:
     return initial
 
 
-def _shared(system: System, parameters: Any) -> Array:
+def _share(system: System, parameters: Any) -> Array:
     """One set of parameters."""
     packed = pack_parameters(system, parameters).copy()
     if packed.ndim != 1:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
@@ -99,7 +99,9 @@ def check_routes(reading: Reading) -> None:
                 ("routes", place),
                 f"the route {route} {obstacles[0].problem}",
                 found=route,
-                expected=f"one of {listed(others)}" if others else "a route that fits the tables",
+                expected=f"one of {list_names(others)}"
+                if others
+                else "a route that fits the tables",
                 hint=_advise(reading, obstacles, others),
             )
     _check_first(reading.source, file)
@@ -208,7 +210,7 @@ def _check_first(source: Source, file: Any) -> None:
         ("routes", 0),
         f"the route {first} {problem}",
         found=first,
-        expected=f"one of {listed(fitting)} before it",
+        expected=f"one of {list_names(fitting)} before it",
         hint=f'Put "{fitting[0]}" first.' if fitting else "",
     )
 
@@ -231,7 +233,7 @@ def _check_use(source: Source, file: Any) -> None:
                 (key,),
                 f"no route uses the {key.title() if key in _ENERGIES else f'table [{key}]'}",
                 found=key,
-                expected=f"one of the routes {listed(readers)}"
+                expected=f"one of the routes {list_names(readers)}"
                 if readers
                 else f"no table [{key}] here",
                 hint=f"{add} [{key}].",
@@ -255,7 +257,7 @@ def check_used(source: Source, spec: Spec) -> None:
                 key,
                 f"{each.name!r} occurs in no formula",
                 found=each.name,
-                expected=f"a formula that names {listed(each.components)}",
+                expected=f"a formula that names {list_names(each.components)}",
                 hint=f"Use it in the energy or a force, or {rest}.",
                 at=source.positions.key(key),
             )
@@ -282,7 +284,7 @@ def check_blocks(reading: Reading) -> None:
         blocks = [variable.block for variable in of_role[partner]]
         for variable in of_role[role]:
             if variable.block not in blocks:
-                span = listed(algebra.basis[place] for place in variable.block)
+                span = list_names(algebra.basis[place] for place in variable.block)
                 raise reading.at_key(
                     ("variables", variable.name),
                     f"the {role} {variable.name!r} has no {partner} of the same block",
@@ -305,7 +307,7 @@ def _check_overlaps(
                     f"{variable.name!r} and {owners[place]!r} both span {algebra.basis[place]}",
                     variable.name,
                     f"one {role} for each vector of the basis",
-                    f"Blocks of {algebra.name} are {listed(algebra.blocks) or 'undeclared'}.",
+                    f"Blocks of {algebra.name} are {list_names(algebra.blocks) or 'undeclared'}.",
                 )
             owners[place] = variable.name
 
@@ -360,8 +362,8 @@ def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebr
         block = f", block = [{names}]" if covered else ""
         raise reading.source.fault(
             ("variables",),
-            f"no {role} spans {listed(left)}",
-            found=listed(left),
+            f"no {role} spans {list_names(left)}",
+            found=list_names(left),
             expected=f"{_PLURALS[role]} over the whole of {algebra.name}",
             hint=f'Write for instance {reading.free_name(example)} = {{ role = "{role}"{block} }}.',
         )

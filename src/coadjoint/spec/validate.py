@@ -19,7 +19,7 @@ from pydantic_core import ErrorDetails
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.core.decimals import read_float
-from coadjoint.spec.core.faults import did_you_mean, find_near, listed
+from coadjoint.spec.core.faults import did_you_mean, find_near, list_names
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, Span
 from coadjoint.spec.core.source import Source, join_faults, show_value
@@ -225,7 +225,7 @@ def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
         path,
         f"unknown key {show_value(path[-1])}",
         found=str(path[-1]),
-        expected=f"one of {listed(known, most=len(known))}",
+        expected=f"one of {list_names(known, most=len(known))}",
         hint=did_you_mean(str(path[-1]), known),
         at=source.positions.key(path),
     )

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
 from coadjoint.derive.mechanics.distribution import Equation, Row
@@ -56,7 +56,7 @@ class ConstrainedMotion(Kinematics):
         eta = self.frame.setting.elements(found.independent)
         matrix, known = [], []
         for *row, rest in kept_rows(found):
-            matrix.append(tuple(map(self.named, row)))
+            matrix.append(tuple(map(self.name_of_entry, row)))
             carried = [self.rate(a) * x for a, x in zip(row, eta, strict=True)]
             known.append(-field.sum([*carried, self.rate(rest)]))
         return tuple(matrix), tuple(known)
@@ -129,7 +129,7 @@ class ConstrainedMotion(Kinematics):
             for n, (equation, _) in enumerate(found.kept)
         }
         rows = dict(zip((each.reaction for each in found.equations), found.A, strict=True))
-        for place, equation in self._unravelled():
+        for place, equation in self._order_given():
             inertia = field.sum(m * t for m, t in zip(mass[place], turned, strict=True))
             others = field.sum(
                 rows[name][place] * field[name] for name in values if rows[name][place] != 0
@@ -138,7 +138,7 @@ class ConstrainedMotion(Kinematics):
             values[equation.reaction] = (inertia - forces[place] - others) / own
         return [*rates, *values.items()]
 
-    def _unravelled(self) -> Iterator[tuple[int, Equation]]:
+    def _order_given(self) -> Iterator[tuple[int, Equation]]:
         """Given velocities with their constraints, those first that no other constraint names.
 
         Along such a velocity ``p' - F = A^T lambda`` has but one multiplier that is not known yet.
@@ -189,10 +189,10 @@ def emission(
     energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
     residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
     return Exact(
-        (*definitions, *solved, *motion.computed(reactions)),
+        (*definitions, *solved, *motion.list_computed(reactions)),
         rates,
         energy,
-        emitted(setting, energy, reduced_momenta(motion.distribution)),
+        list_emitted(setting, energy, reduced_momenta(motion.distribution)),
         almost_poisson(setting),
         solves,
         residuals,

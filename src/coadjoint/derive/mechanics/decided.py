@@ -52,7 +52,7 @@ class Decided:
         self._definitions: dict[str, Element] = {}
         self._closed: dict[str, Element | None] = {}
         self._tries = 0
-        self._points: list[dict[str, Residue]] | None = self._drawn()
+        self._points: list[dict[str, Residue]] | None = self._draw_points()
 
     def define(self, name: str, element: Element) -> Element:
         """Note a definition, and return the value that the kernel should compute for it."""
@@ -74,7 +74,7 @@ class Decided:
         moves = self.moves(element)
         if not values or (any(x.value for x in values) and not (moves and len({*values}) == 1)):
             return element
-        closed = self.closed(element)
+        closed = self.close(element)
         if closed is None or self.field.reach(closed) & self._first:
             return element
         return closed if moves or closed == 0 else element
@@ -83,12 +83,12 @@ class Decided:
         """Whether an element is zero once its definitions are put in."""
         return bool(self.value(element) == 0)
 
-    def closed(self, element: Element) -> Element | None:
+    def close(self, element: Element) -> Element | None:
         """The normal form of an element with all definitions put in; None where it is too long."""
         inner = {}
         for name in self.field.reach(element) & self._definitions.keys():
             if name not in self._closed:
-                self._closed[name] = self.closed(self._definitions[name])
+                self._closed[name] = self.close(self._definitions[name])
             value = self._closed[name]
             if value is None:
                 return None
@@ -104,7 +104,7 @@ class Decided:
 
     # -- points modulo a prime --------------------------------------------------------------
 
-    def _drawn(self) -> list[dict[str, Residue]]:
+    def _draw_points(self) -> list[dict[str, Residue]]:
         """Points at which every name has a value, the parameters the same ones."""
         self._tries += 1
         return [
@@ -134,7 +134,7 @@ class Decided:
     def _redraw(self) -> None:
         """Other points, with the values of the definitions; None where there were too many."""
         while self._tries < TRIES:
-            points = self._drawn()
+            points = self._draw_points()
             try:
                 for at in points:
                     for name, value in self._definitions.items():

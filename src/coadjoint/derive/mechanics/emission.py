@@ -7,7 +7,7 @@ Read next: `coadjoint.derive.structure`.
 
 from __future__ import annotations
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.records import Exact, Step, symbol
 from coadjoint.derive.setting import Setting
@@ -18,7 +18,7 @@ from coadjoint.exact import Element
 def emission(setting: Setting, rates: tuple[Element, ...]) -> Exact:
     """The equations in momenta, velocities as definitions."""
     transform = legendre(setting)
-    seen = emitted(setting, transform.energy)
+    seen = list_emitted(setting, transform.energy)
     tensor = poisson_structure(setting).tensor
     return Exact(transform.definitions, rates, transform.energy, seen, tensor, transform.solves)
 

@@ -51,14 +51,14 @@ def symbols(spec: Spec) -> tuple[str, ...]:
 def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Element, ...]:
     """The declared force ``f - dR/dxi`` along each velocity."""
     field, spec = setting.field, setting.spec
-    found = dict.fromkeys(velocities, field.zero) | _declared(setting, "velocity")
+    found = dict.fromkeys(velocities, field.zero) | _declared_forces(setting, "velocity")
     if spec.dissipation is not None:
         lost = slopes(setting, spec.dissipation, velocities)
         found = {name: found[name] - s for name, s in zip(velocities, lost, strict=True)}
     return tuple(found[name] for name in velocities)
 
 
-def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
+def _declared_forces(setting: Setting, *roles: str) -> dict[str, Element]:
     """The declared forces along variables of some roles, by component."""
     return {
         name: part
@@ -72,7 +72,7 @@ def _declared(setting: Setting, *roles: str) -> dict[str, Element]:
     }
 
 
-def forced(free: Equations) -> Equations:
+def add_forces(free: Equations) -> Equations:
     """Equations of motion with the declared forces and dissipation; unchanged without any.
 
     Routes with constraints, and those with momenta of their own, put the forces in themselves.
@@ -82,7 +82,7 @@ def forced(free: Equations) -> Equations:
         return free
     named = zip(symbols(setting.spec), free.exact.rates, strict=False)
     shown = [(symbol(name), value) for name, value in named]
-    free, forces = _named(free), added_rates(setting)
+    free, forces = _name_rates(free), added_rates(setting)
     added = tuple(f + x for f, x in zip(forces, relaxed_rates(free), strict=True))
     rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
     lines = zip(setting.state, added, rates, strict=True)
@@ -103,7 +103,7 @@ def forced(free: Equations) -> Equations:
     return replace(free, exact=exact, steps=(*free.steps, step))
 
 
-def _named(free: Equations) -> Equations:
+def _name_rates(free: Equations) -> Equations:
     """The motion with names for its rates where a double bracket uses them twice."""
     names = symbols(free.spec)
     if not names:
@@ -116,7 +116,7 @@ def _named(free: Equations) -> Equations:
 def added_rates(setting: Setting) -> list[Element]:
     """What the forces add to the rate of each component of the state."""
     field, velocities = setting.field, setting.velocities
-    found = _declared(setting, "momentum", "coordinate")
+    found = _declared_forces(setting, "momentum", "coordinate")
     along = external_forces(setting, velocities)
     if setting.momenta and velocities:
         for name, force, weight in zip(setting.momenta, along, setting.weights, strict=True):

@@ -134,7 +134,7 @@ class Kinematics:
         """What ``_b1``, ``_b2``, ... are."""
         return _moving_entries(self.distribution)
 
-    def named(self, entry: Element) -> Element:
+    def name_of_entry(self, entry: Element) -> Element:
         """An entry of B, beta or A, by its name where it has one."""
         field = self.frame.setting.field
         for n, known in enumerate(self.entries):
@@ -152,9 +152,9 @@ class Kinematics:
                 return field[f"_e{n + 1}"]
             if entry == -known:
                 return -field[f"_e{n + 1}"]
-        return self.moved(entry)
+        return self.differentiate(entry)
 
-    def moved(self, function: Element, name: str = "") -> Element:
+    def differentiate(self, function: Element, name: str = "") -> Element:
         """``dz/dt . df/dz + df/dt`` of a function of positions, with the rates by their names.
 
         A square root h moves by its rate: ``N/h`` by ``(N' - (N/h) h')/h``, with the name of N/h.
@@ -187,7 +187,7 @@ class Kinematics:
         return [
             (
                 f"_g{n + 1}",
-                self.moved(field.adjoined[root].argument) / (2 * field[root]),
+                self.differentiate(field.adjoined[root].argument) / (2 * field[root]),
             )
             for n, root in enumerate(self.roots)
         ]
@@ -224,7 +224,7 @@ class Kinematics:
     @cached_property
     def B(self) -> Matrix:
         """``d xi / d eta`` with names for its moving entries."""
-        return tuple(tuple(map(self.named, row)) for row in self.distribution.B)
+        return tuple(tuple(map(self.name_of_entry, row)) for row in self.distribution.B)
 
     @cached_property
     def c(self) -> Row:
@@ -256,7 +256,7 @@ class Kinematics:
                 field.sum(
                     [
                         *(b * x for b, x in zip(self.B[n], eta, strict=True)),
-                        self.named(found.beta[n]),
+                        self.name_of_entry(found.beta[n]),
                     ]
                 ),
             )
@@ -269,7 +269,7 @@ class Kinematics:
         setting = self.frame.setting
         return Decided(setting.field, setting.state)
 
-    def computed(self, definitions: Iterable[Definition]) -> list[Definition]:
+    def list_computed(self, definitions: Iterable[Definition]) -> list[Definition]:
         """Definitions as the kernel computes them; intermediates that are zero are left out."""
         lines = [(name, self.decided.define(name, value)) for name, value in definitions]
         return [(name, value) for name, value in lines if value != 0 or not name.startswith("_")]
@@ -280,7 +280,8 @@ class Kinematics:
         rates = self.frame_rates
         entries = [(f"_b{n + 1}", entry) for n, entry in enumerate(self.entries)]
         moved = [
-            (f"_e{n + 1}", self.moved(entry, f"_b{n + 1}")) for n, entry in enumerate(self.entries)
+            (f"_e{n + 1}", self.differentiate(entry, f"_b{n + 1}"))
+            for n, entry in enumerate(self.entries)
         ]
         positions = [
             (rate_name(name), rates[name])
@@ -290,6 +291,6 @@ class Kinematics:
         convected = [(f"_c{n + 1}", self._convected[place]) for n, place in enumerate(self.solved)]
         roots = self._rates_of_roots()
         own = parts(self.frame.setting)
-        return self.computed(
+        return self.list_computed(
             [*entries, *self.velocities(), *positions, *roots, *moved, *convected, *own]
         )

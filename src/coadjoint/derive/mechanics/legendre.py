@@ -94,7 +94,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
         own = tuple(tuple(mass[i][j] for j in block) for i in block)
         rest = [known[i] for i in block]
         if len(block) <= LARGEST_BLOCK:
-            velocities |= _written_out(setting, own, rest, block)
+            velocities |= _invert_block(setting, own, rest, block)
         else:
             _check_pivots(setting, own, block)
             solves.append(Solve(own, rest, block, [names[i] for i in block]))
@@ -137,7 +137,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return tuple(name for block in coupled for name in solver_names(block))
 
 
-def _written_out(
+def _invert_block(
     setting: Setting, matrix: Matrix, known: list[Element], block: tuple[int, ...]
 ) -> dict[str, Element]:
     """Velocities of one block from ``mass * xi = known``, by name."""

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from coadjoint.derive.interpret import Quantity, entries, interpret
-from coadjoint.derive.setting import Setting, once, shaped
+from coadjoint.derive.setting import Setting, once, shape
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.spec import Formula, Spec
@@ -84,7 +84,7 @@ def _values(setting: Setting) -> dict[str, Quantity]:
     """Reactions and parts by their names, and what a spec declares."""
     known = {each.name: each for each in setting.spec.definitions}
     return {**setting.values, **setting.reactions} | {
-        name: shaped(setting.elements(components), known[name].shape or ())
+        name: shape(setting.elements(components), known[name].shape or ())
         for name, components in part_names(setting.spec).items()
     }
 

@@ -29,7 +29,7 @@ from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import Matrix, combine, diagonal
 from coadjoint.exact.linear import Span
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 
 ROUTE = "manakov"
 #: The spectral parameter; no spec can declare a keyword of Python.
@@ -156,7 +156,7 @@ def _inertia(setting: Setting, planes: Sequence[tuple[Plane, Element]]) -> dict[
         moving = {each for entry in row for each in field.reach(entry)} - {*setting.parameters}
         coupled = [names[j] for j, entry in enumerate(row) if j != place and entry != 0]
         if first != 0 or moving or coupled or row[place] == 0:
-            found = listed(coupled or sorted(moving) or [name])
+            found = list_names(coupled or sorted(moving) or [name])
             raise refusal(
                 setting,
                 ROUTE,

@@ -74,6 +74,11 @@ def _residuals(found: Distribution) -> list[Element]:
     field, motion = found.setting.field, Kinematics(found)
     eta = found.setting.elements(found.independent)
     return [
-        field.sum([*(motion.named(a) * x for a, x in zip(row, eta, strict=True)), motion.named(b)])
+        field.sum(
+            [
+                *(motion.name_of_entry(a) * x for a, x in zip(row, eta, strict=True)),
+                motion.name_of_entry(b),
+            ]
+        )
         for *row, b in kept_rows(found)
     ]

@@ -39,7 +39,7 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     if attitude.form == "quaternion":
         places = turning_places(setting.algebra)
         assert places is not None, "quaternions turn along the rotations"
-        turned = _turned(setting, Quaternion(*g), [mu[place] for place in places])
+        turned = _turn(setting, Quaternion(*g), [mu[place] for place in places])
         along = dict(zip(places, turned, strict=True))
         return tuple(along.get(place, m) for place, m in enumerate(mu))
     matrix = _whole(setting, g)
@@ -61,7 +61,7 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
     return tuple(found)
 
 
-def _turned(setting: Setting, q: Quaternion, mu: Sequence[Element]) -> tuple[Element, ...]:
+def _turn(setting: Setting, q: Quaternion, mu: Sequence[Element]) -> tuple[Element, ...]:
     """``q mu q*``, or ``q* mu q``, which differ from the inverse by the length of q alone."""
     outer, inner = (q, q.conjugate) if setting.sign == 1 else (q.conjugate, q)
     return setting.field.vector((outer * Quaternion.pure(mu) * inner).vector)

@@ -173,7 +173,7 @@ class _Elimination:
         row = self._row(j)
         taken = self.field.sum(self._w[j, k] * self._z[k] for k in before if k in self._z)
         y = self.decided.value(self.solve.known[j] - taken)
-        whole = self._cancelled(y, place)
+        whole = self._cancel(y, place)
         if whole is None and not _is_product(self.field, y):
             y = self._define(forward_name(place), y)
         share = 1 / pivot
@@ -195,7 +195,7 @@ class _Elimination:
         values = ((i, self.decided.value(self._rest(j, i))) for i in after)
         return {i: value for i, value in values if value != 0}
 
-    def _cancelled(self, y: Element, place: int) -> Element | None:
+    def _cancel(self, y: Element, place: int) -> Element | None:
         """``y/d`` where that leaves no quotient, as of a mass that forces are multiples of."""
         found = y / dict(self.lines)[pivot_name(place)]
         return None if any(each.divisors for each in self.field.quotients(found)) else found
@@ -322,7 +322,7 @@ class _Defects:
         if name in self.definitions or not self.solve.symmetric:
             return self._value(name)
         own = factor_name(self.solve.block[i], self.solve.block[j])
-        return self._reduced(own, self._l(i, j) * self._d[j])
+        return self._reduce(own, self._l(i, j) * self._d[j])
 
     def entries(self) -> list[Element]:
         """All defects, row by row."""
@@ -349,9 +349,9 @@ class _Defects:
             found.append((own, before + y - self.solve.known[i]))
             total = field.sum(self._u(i, k) * x[k] for k in size[i:])
             found.append((self.solve.names[i], total - z[i]))
-        return [self._decided(last, defect) for last, defect in found]
+        return [self._decide(last, defect) for last, defect in found]
 
-    def _reduced(self, last: str, element: Element) -> Element:
+    def _reduce(self, last: str, element: Element) -> Element:
         """An element with one name and the reciprocals replaced by their definitions."""
         if last in self._same:
             element = self.field.substitute(element, {last: self._same[last]})
@@ -360,9 +360,9 @@ class _Defects:
         put = self.field.substitute(self.field.substitute(element, own), self._ones)
         return self.field.substitute(put, self._same)
 
-    def _decided(self, last: str, defect: Element) -> Element:
+    def _decide(self, last: str, defect: Element) -> Element:
         """Zero where the last definition shows it, or all of them do."""
-        value = self._reduced(last, defect)
+        value = self._reduce(last, defect)
         return self.field.zero if self.field.is_zero(value) else self._known.value(value)
 
     @cached_property

@@ -21,7 +21,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from coadjoint.derive.charts import in_chart
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import (
     conjugates,
@@ -67,7 +67,7 @@ def derive(setting: Setting) -> Equations:
     named = {p: field[v] for p, v in velocities.items()}
     rates = in_state_order(setting, _hamilton(setting, pairs, slopes, named, _magnetic(setting)))
     tensor = poisson_structure(setting).tensor
-    exact = Exact((*solved, *written), rates, h, emitted(setting, h), tensor, solves)
+    exact = Exact((*solved, *written), rates, h, list_emitted(setting, h), tensor, solves)
     return Equations(setting, "canonical", exact, _steps(setting.state, h, slopes, rates))
 
 

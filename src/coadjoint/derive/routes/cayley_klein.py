@@ -50,13 +50,13 @@ HALF = Fraction(1, 2)
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """``q0 .. q3``, and what is fixed in space: ``Gamma_space1``; none where q is declared."""
-    if _declared(spec) is not None:
+    if _declared_quaternion(spec) is not None:
         return ()
     fixed = [f"{v.name}_space{n + 1}" for v in spec.having_role("advected") for n in range(3)]
     return fresh(spec, ["q0", "q1", "q2", "q3", *fixed])
 
 
-def _declared(spec: Spec) -> Variable | None:
+def _declared_quaternion(spec: Spec) -> Variable | None:
     """The quaternion of the declared state, if it has one."""
     return next((v for v in spec.having_role("advected") if v.form == "quaternion"), None)
 
@@ -101,7 +101,7 @@ def derive(setting: Setting) -> Equations:
     body = _body(setting)
     transform = legendre(setting)
     momentum_rate = _momentum_rate(body, _slopes(body, lagrangian))
-    if _declared(setting.spec) is not None:
+    if _declared_quaternion(setting.spec) is not None:
         rates = setting.in_state_order(momentum_rate, _advection(body))
         exact = emission(setting, rates)
         return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, setting.state))
@@ -136,7 +136,7 @@ def check_rotations(setting: Setting) -> None:
 def _body(setting: Setting) -> _Body:
     """The attitude and what it sees, in the declared state or in symbols of this route."""
     omega = Quaternion.pure(setting.elements(setting.velocities))
-    declared = _declared(setting.spec)
+    declared = _declared_quaternion(setting.spec)
     vectors = [each for each in setting.advected if each.form != "quaternion"]
     if declared is not None:
         q = Quaternion(*setting.elements(declared.components))
@@ -179,7 +179,7 @@ def _slopes(body: _Body, lagrangian: Element) -> Quaternion:
                 pairs = zip(variable.components, change, strict=True)
                 total += [dl_da[name] * x for name, x in pairs]
         found.append(field.sum(field.zero + x for x in total))
-    declared = _declared(setting.spec)
+    declared = _declared_quaternion(setting.spec)
     if declared is not None:  # l may know the attitude itself
         own = Quaternion(*field.gradient(lagrangian, declared.components))
         found = [
@@ -210,7 +210,7 @@ def _advection(body: _Body) -> dict[str, tuple[Element, ...]]:
         )
         for name, a in body.seen.items()
     }
-    declared = _declared(body.setting.spec)
+    declared = _declared_quaternion(body.setting.spec)
     assert declared is not None, "the chart has no advected quantities"
     return found | {declared.name: field.vector(body.q_rate.components)}
 

@@ -77,7 +77,7 @@ def _pairs(setting: Setting) -> list[_Pair]:
     own = _own(setting.spec)
     if own is not None:
         q, p = (tuple(islice(names, own.dimension)) for _ in "QP")
-        pairs.append((q, p, own.over(setting.taken, setting.algebra)))
+        pairs.append((q, p, own.over(setting.take_constant, setting.algebra)))
     return pairs
 
 

@@ -23,7 +23,7 @@ from functools import reduce
 from operator import add
 
 from coadjoint.algebra import LieAlgebra, complexification, same_constants
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.records import Exact, Step, partial, rate, symbol
 from coadjoint.derive.refusals import refusal
@@ -47,15 +47,15 @@ def derive(setting: Setting) -> Equations:
     h = _at_real(setting, setting.hamiltonian, real)
     L = _momenta(setting, real)
     slopes = setting.field.gradient(h, setting.momenta[: real.dimension])
-    zeta = tuple(_continued(setting, slope, L) for slope in slopes)
-    moved = tuple(_paired(L, real.bracket(zeta, eta)) for eta in identity(real.dimension))
+    zeta = tuple(_continue(setting, slope, L) for slope in slopes)
+    moved = tuple(_pair(L, real.bracket(zeta, eta)) for eta in identity(real.dimension))
     parts = (*(z.re for z in moved), *(z.im for z in moved))
     rates = setting.in_state_order([setting.sign * part for part in parts], {})
-    energy = setting.field.zero + _continued(setting, h, L).re
+    energy = setting.field.zero + _continue(setting, h, L).re
     halves = (*(z.re for z in zeta), *(-z.im for z in zeta))
     pairs = zip(setting.velocities, setting.field.vector(halves), strict=bool(setting.velocities))
     tensor = poisson_structure(setting).tensor
-    exact = Exact(tuple(pairs), rates, energy, emitted(setting, energy), tensor)
+    exact = Exact(tuple(pairs), rates, energy, list_emitted(setting, energy), tensor)
     return Equations(setting, ROUTE, exact, _steps(setting, h, zeta, rates))
 
 
@@ -114,7 +114,7 @@ def _momenta(setting: Setting, real: LieAlgebra) -> tuple[Complex, ...]:
     return tuple(Complex(x, y) for x, y in pairs)
 
 
-def _continued(setting: Setting, function: Element, L: tuple[Complex, ...]) -> Complex:
+def _continue(setting: Setting, function: Element, L: tuple[Complex, ...]) -> Complex:
     """A function of x at the complex momenta."""
     field = setting.field
     values = {name: Complex(field[name], field.zero) for name in field.names}
@@ -126,7 +126,7 @@ def _no_call(function: str, argument: Complex) -> Complex:
     raise AssertionError(f"{function}({argument}) in a rational Hamiltonian")
 
 
-def _paired(L: Sequence[Complex], zeta: Sequence[Complex | int]) -> Complex:
+def _pair(L: Sequence[Complex], zeta: Sequence[Complex | int]) -> Complex:
     """``<L, zeta>``, linear over the complex numbers."""
     return reduce(add, (a * b for a, b in zip(L, zeta, strict=True)), Complex(0))
 

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics, in_state_order, mechanics
 from coadjoint.derive.mechanics.driving import explicit_rate
@@ -60,7 +60,7 @@ def _in_velocities(known: Mechanics) -> Equations:
     named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
     rates = in_state_order(setting, named)
     tensor = poisson_structure(setting).tensor
-    exact = Exact((), rates, known.energy, emitted(setting, known.energy), tensor)
+    exact = Exact((), rates, known.energy, list_emitted(setting, known.energy), tensor)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates))
 
 
@@ -73,7 +73,7 @@ def _in_momenta(known: Mechanics) -> Equations:
     named |= {p: slope * weight for p, slope, weight in pairs}
     rates = in_state_order(setting, named)
     tensor = poisson_structure(setting).tensor
-    h, values = transform.energy, emitted(setting, transform.energy)
+    h, values = transform.energy, list_emitted(setting, transform.energy)
     exact = Exact(transform.definitions, rates, h, values, tensor, transform.solves)
     return Equations(setting, "euler-lagrange", exact, _steps(known, rates, transform))
 

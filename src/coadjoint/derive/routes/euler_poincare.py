@@ -19,7 +19,7 @@ from __future__ import annotations
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission, velocities_step
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, partial, rate, signed, symbol
+from coadjoint.derive.records import Step, partial, rate, sign_text, symbol
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
@@ -63,8 +63,8 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     back = "-" if setting.sign == 1 else ""
-    turned = signed(setting.sign, "ad*_xi mu + dl/da <> a")
-    turned_latex = signed(
+    turned = sign_text(setting.sign, "ad*_xi mu + dl/da <> a")
+    turned_latex = sign_text(
         setting.sign, r"\mathrm{ad}^*_\xi \mu + (\partial l / \partial a) \diamond a"
     )
     momenta = (partial("l", velocity) for velocity in setting.velocities)

@@ -42,13 +42,13 @@ def derive(setting: Setting) -> Equations:
     constrained = setting.field.substitute(setting.lagrangian, found.solved)
     momenta = setting.field.gradient(constrained, found.independent)
     mass = tuple(setting.field.gradient(p, found.independent) for p in momenta)
-    known = _known(motion, constrained, momenta)
+    known = _right_side(motion, constrained, momenta)
     exact = emission(motion, motion.kinematics, mass, known, ())
     steps = _steps(motion, constrained, momenta, mass, known)
     return Equations(setting, "hamel", exact, steps, distribution=found)
 
 
-def _known(motion: ConstrainedMotion, constrained: Element, momenta: Row) -> Row:
+def _right_side(motion: ConstrainedMotion, constrained: Element, momenta: Row) -> Row:
     """``D_k l_c + <p, [xi, D_k]> + B_k f - dp_c/dz dz/dt``."""
     found, frame = motion.distribution, motion.frame
     field = frame.setting.field

@@ -33,7 +33,7 @@ from coadjoint.derive.records import (
     Step,
     partial,
     rate,
-    signed,
+    sign_text,
     symbol,
 )
 from coadjoint.derive.refusals import refusal
@@ -61,7 +61,7 @@ def derive(setting: Setting) -> Equations:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it, with slopes
             that are the same at all times.
     """
-    lagrangian, names = setting.lagrangian, _advected(setting)
+    lagrangian, names = setting.lagrangian, _advected_names(setting)
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)
     velocities, momenta = _cyclic(setting)
@@ -95,7 +95,7 @@ def derive(setting: Setting) -> Equations:
     return replace(found, steps=_steps(found, whole, solved, level))
 
 
-def _advected(setting: Setting) -> tuple[str, ...]:
+def _advected_names(setting: Setting) -> tuple[str, ...]:
     """Names of all that is advected, component by component."""
     return tuple(name for variable in setting.advected for name in variable.components)
 
@@ -166,8 +166,8 @@ def _steps(
     setting, energy = found.setting, found.exact.energy
     assert energy is not None, "this route has one"
     back = "-" if setting.sign == 1 else ""
-    work = signed(setting.sign, "<mu, [xi, eta]> - p . rho(eta) a")
-    work_latex = signed(setting.sign, r"\langle\mu, [\xi, \eta]\rangle - p \cdot \rho(\eta) a")
+    work = sign_text(setting.sign, "<mu, [xi, eta]> - p . rho(eta) a")
+    work_latex = sign_text(setting.sign, r"\langle\mu, [\xi, \eta]\rangle - p \cdot \rho(\eta) a")
     momenta = setting.field.gradient(whole, setting.velocities)
     return (
         Step(

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.legendre import hamiltonian
@@ -56,7 +56,7 @@ def equations_of_pair(
     definitions = () if h is None else velocities_of(setting, h, solves)
     rates = rates_of(setting, pair, route)
     tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    exact = Exact(definitions, rates, h, emitted(setting, h), tensor, solves)
+    exact = Exact(definitions, rates, h, list_emitted(setting, h), tensor, solves)
     steps = (*search, *_steps(setting, pair, definitions, rates))
     return replace(Equations(setting, route, exact, steps), pair=pair)
 

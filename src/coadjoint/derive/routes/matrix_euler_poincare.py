@@ -23,13 +23,13 @@ from coadjoint.algebra.matrices import SparseMatrix
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emission, velocities_step
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, partial, rate, signed
+from coadjoint.derive.records import Step, partial, rate, sign_text
 from coadjoint.derive.refusals import refusal
-from coadjoint.derive.setting import Setting, weighted
+from coadjoint.derive.setting import Setting, weigh
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, add, commutator, product, scale, transpose
 from coadjoint.exact.linear import Span
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.model import Variable, unpacked
 
 ROUTE = "matrix-euler-poincare"
@@ -68,7 +68,7 @@ def _check_matrices(setting: Setting) -> None:
 def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     """Right-hand sides in state, velocities and parameters, in the order of the state."""
     field, sign = setting.field, setting.sign
-    xi = weighted(setting.elements(setting.velocities), setting.algebra.matrices)
+    xi = weigh(setting.elements(setting.velocities), setting.algebra.matrices)
     M = _momentum(setting)
     # tr(M^T (xi e - e xi)) = tr((M^T xi - xi M^T) e)
     torque = commutator(transpose(M), xi)
@@ -79,7 +79,7 @@ def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
         slopes = field.gradient(lagrangian, variable.components)
         speed, push = move(xi, a, _slope_matrix(setting, variable, slopes))
         torque = add(torque, push)
-        advected[variable.name] = [sign * x for x in _kept(variable, speed)]
+        advected[variable.name] = [sign * x for x in _kept_entries(variable, speed)]
     along = [sign * _trace_with(field, torque, e) for e in setting.algebra.matrices]
     return setting.in_state_order(along, advected)
 
@@ -96,7 +96,7 @@ def _momentum(setting: Setting) -> Matrix:
         inverse = span.coordinates({place: 1})
         assert inverse is not None, "the matrices of a basis are independent"
         weights.append(setting.field.sum(mu[n] * value for n, value in inverse.items()))
-    M: Matrix = weighted(weights, setting.algebra.matrices)
+    M: Matrix = weigh(weights, setting.algebra.matrices)
     return M
 
 
@@ -148,7 +148,7 @@ def _advection(setting: Setting, variable: Variable) -> Advection:
             ROUTE,
             f"{variable.name} is advected by the representation {action.name!r}",
             action.name,
-            f"products with the matrices of {setting.algebra.name}: {listed(_ADVECTIONS)}",
+            f"products with the matrices of {setting.algebra.name}: {list_names(_ADVECTIONS)}",
         )
     return _ADVECTIONS[action.name]
 
@@ -172,7 +172,7 @@ def _slope_matrix(setting: Setting, variable: Variable, slopes: Sequence[Element
     )
 
 
-def _kept(variable: Variable, a: Matrix) -> list[Element]:
+def _kept_entries(variable: Variable, a: Matrix) -> list[Element]:
     """The components of a matrix, in the order of the variable."""
     symmetric = variable.representation is not None and variable.representation.name == "symmetric"
     return [x for i, row in enumerate(a) for j, x in enumerate(row) if j >= i or not symmetric]
@@ -184,8 +184,8 @@ def _steps(
     """The derivation as a person would write it down."""
     momenta = (partial("l", velocity) for velocity in setting.velocities)
     sign = "" if setting.sign == 1 else "-"
-    turned = signed(setting.sign, "tr(M^T (xi e - e xi)) + tr((dl/da)^T delta a)")
-    turned_latex = signed(
+    turned = sign_text(setting.sign, "tr(M^T (xi e - e xi)) + tr((dl/da)^T delta a)")
+    turned_latex = sign_text(
         setting.sign,
         r"\mathrm{tr}(M^T (\xi e - e \xi)) "
         r"+ \mathrm{tr}((\partial l/\partial a)^T \delta a)",

@@ -23,7 +23,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
@@ -61,7 +61,7 @@ def derive(setting: Setting) -> Equations:
     slopes = dict(zip(names, gradients[-1], strict=True))
     definitions = tuple((xi, slopes[momentum]) for momentum, xi in velocities)
     tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, h, emitted(setting, h), tensor)
+    exact = Exact(definitions, rates, h, list_emitted(setting, h), tensor)
     steps = _steps(setting, [*functions, h], rates, gradients, multiplier)
     return Equations(setting, "nambu", exact, steps)
 

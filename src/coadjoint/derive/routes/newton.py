@@ -13,7 +13,7 @@ Read next: `coadjoint.prove.galilean`.
 
 from __future__ import annotations
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import declared_energy, in_state_order
@@ -37,7 +37,7 @@ def derive(setting: Setting) -> Equations:
     rates = in_state_order(setting, named)
     energy = declared_energy(setting)
     tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    exact = Exact((), rates, energy, emitted(setting, energy), tensor)
+    exact = Exact((), rates, energy, list_emitted(setting, energy), tensor)
     return Equations(setting, "newton", exact, _steps(setting, rates))
 
 

@@ -52,11 +52,11 @@ class MassPoints:
     first: Vector
     second: Matrix
 
-    def weighed(self, f: Callable[[Vector], Vector]) -> Vector:
+    def weigh(self, f: Callable[[Vector], Vector]) -> Vector:
         """``sum m f(X)`` for a linear f."""
         return _total(scale(c, f(axis)) for c, axis in zip(self.first, AXES, strict=True))
 
-    def squared(self, f: Callable[[Vector, Vector], Vector]) -> Vector:
+    def weigh_squares(self, f: Callable[[Vector, Vector], Vector]) -> Vector:
         """``sum m f(X, X)`` for a bilinear f."""
         return _total(
             scale(self.second[i][j], f(AXES[i], AXES[j])) for i in range(3) for j in range(3)
@@ -157,8 +157,8 @@ def _kinetic_energy(setting: Setting, points: MassPoints) -> Element:
     """``sum m |V + Omega x X|^2 / 2``."""
     omega, v = _velocities(setting)
     moving = points.mass * dot(v, v) / 2
-    both = dot(v, points.weighed(lambda x: cross(omega, x)))
-    turning = points.squared(lambda x, y: (dot(cross(omega, x), cross(omega, y)),))
+    both = dot(v, points.weigh(lambda x: cross(omega, x)))
+    turning = points.weigh_squares(lambda x, y: (dot(cross(omega, x), cross(omega, y)),))
     energy: Element = moving + both + turning[0] / 2
     return energy
 
@@ -198,12 +198,12 @@ def _rates(setting: Setting, points: MassPoints, forces: Vector) -> tuple[Elemen
     omega, v = _velocities(setting)
     torque, force = forces[:3], forces[3:]
     turning = add(
-        points.weighed(lambda x: cross(x, cross(omega, v))),
-        points.squared(lambda x, y: cross(x, cross(omega, cross(omega, y)))),
+        points.weigh(lambda x: cross(x, cross(omega, v))),
+        points.weigh_squares(lambda x, y: cross(x, cross(omega, cross(omega, y)))),
     )
     rates = subtract(torque, turning)
     if force:
-        inner = points.weighed(lambda x: cross(omega, cross(omega, x)))
+        inner = points.weigh(lambda x: cross(omega, cross(omega, x)))
         rates += subtract(force, add(scale(points.mass, cross(omega, v)), inner))
     advected = {
         variable.name: scale(

@@ -61,8 +61,8 @@ def derive(setting: Setting) -> Equations:
     whole.check_quadratic()
     mass = whole.mass
     forces, named = _forces(motion, lagrangian, mass)
-    reduced = _projected(motion, mass)
-    known = _known(motion, forces)
+    reduced = _project_mass(motion, mass)
+    known = _project_forces(motion, forces)
     definitions = [*motion.kinematics, *named]
     reactions = motion.reactions(mass, forces)
     exact = emission(motion, definitions, reduced, known, reactions)
@@ -90,16 +90,16 @@ def _forces(
     for n, (inertial, slope, declared, row, p) in enumerate(parts):
         convected = field.sum(m * c for m, c in zip(row, motion.c, strict=True))
         force = motion.without_reactions(declared)
-        value = inertial + slope + force - convected - motion.moved(p)
+        value = inertial + slope + force - convected - motion.differentiate(p)
         if n in motion.solved:
-            lines = motion.computed([(f"_k{n + 1}", value)])
+            lines = motion.list_computed([(f"_k{n + 1}", value)])
             named += lines
             value = field[lines[0][0]] if lines else field.zero
         forces.append(value + (declared - force))
     return tuple(forces), named
 
 
-def _projected(motion: ConstrainedMotion, mass: Matrix) -> Matrix:
+def _project_mass(motion: ConstrainedMotion, mass: Matrix) -> Matrix:
     """``B^T M B``."""
     field, columns = motion.frame.setting.field, list(zip(*motion.B, strict=True))
     turned = [
@@ -112,7 +112,7 @@ def _projected(motion: ConstrainedMotion, mass: Matrix) -> Matrix:
     )
 
 
-def _known(motion: ConstrainedMotion, forces: Row) -> Row:
+def _project_forces(motion: ConstrainedMotion, forces: Row) -> Row:
     """``B^T`` times the forces."""
     field = motion.frame.setting.field
     return tuple(

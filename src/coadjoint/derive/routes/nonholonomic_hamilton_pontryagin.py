@@ -55,10 +55,10 @@ def derive(setting: Setting) -> Equations:
     """
     mechanics(setting).check_quadratic()
     found = distribution(setting)
-    forces, moved = _varied(setting)
+    forces, moved = _vary(setting)
     momentum = _momentum_equations(found, forces, moved)
     constraint = [_rate(found, each.residual, moved) for each in found.equations]
-    given, left = _eliminated(found, momentum, constraint)
+    given, left = _eliminate(found, momentum, constraint)
     field = setting.field
     names = [rate_name(name) for name in found.independent]
     mass = tuple(field.gradient(line, names) for line in left)
@@ -70,7 +70,7 @@ def derive(setting: Setting) -> Equations:
     return Equations(setting, ROUTE, exact, steps, distribution=found)
 
 
-def _varied(setting: Setting) -> tuple[Row, dict[str, Element]]:
+def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
     """F along each velocity by the variation of the motion, and ``dz/dt`` by that of momenta."""
     known, own = mechanics(setting), len(symbols(setting.spec)) // 2
     velocities = setting.elements(known.frame.velocities)
@@ -104,7 +104,7 @@ def _momentum_equations(
     are told from the reactions that forces name.
     """
     setting, field, names = found.setting, found.setting.field, found.frame.velocities
-    kept = _kept(found)
+    kept = _kept_reactions(found)
     multipliers = [kept.get(e.reaction, field[e.reaction]) for e in found.equations]
     lines = {}
     for name, momentum, force, outer, column in zip(
@@ -120,7 +120,7 @@ def _momentum_equations(
     return lines
 
 
-def _eliminated(
+def _eliminate(
     found: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
 ) -> tuple[dict[str, Element], list[Element]]:
     """Rates and multipliers that follow, and the momentum equations that are left.
@@ -131,20 +131,20 @@ def _eliminated(
     field = found.setting.field
     giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
     lines = {rate_name(equation.solves): line for equation, line in giving}
-    rates = _solved(found, lines)
+    rates = _solve_affine(found, lines)
     left = {name: field.substitute(line, rates) for name, line in momentum.items()}
-    multipliers = _solved(found, {each.reaction: left[each.solves] for each, _ in giving})
+    multipliers = _solve_affine(found, {each.reaction: left[each.solves] for each, _ in giving})
     rows = [field.substitute(left[name], multipliers) for name in found.independent]
-    return {**rates, **_kept(found), **multipliers}, rows
+    return {**rates, **_kept_reactions(found), **multipliers}, rows
 
 
-def _kept(found: Distribution) -> dict[str, Element]:
+def _kept_reactions(found: Distribution) -> dict[str, Element]:
     """The reactions of the constraints that are kept, by the names that the kernel solves for."""
     field = found.setting.field
     return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(found.kept)}
 
 
-def _solved(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
+def _solve_affine(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
     """The unknowns of affine equations, one of which belongs to each of them."""
     field, known = found.setting.field, dict[str, Element]()
     for name, whole in lines.items():

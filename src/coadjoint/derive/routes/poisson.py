@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from coadjoint.derive.emitted import emitted
+from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.records import Exact, Step, bracket, partial, rate, symbol
@@ -59,7 +59,7 @@ def hamiltonian_equations(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
         for row in tensor
     )
-    exact = Exact(definitions, rates, h, emitted(setting, h), tensor, solves)
+    exact = Exact(definitions, rates, h, list_emitted(setting, h), tensor, solves)
     brackets = tuple(
         (bracket(a, b), tensor[i][j])
         for (i, a), (j, b) in combinations(enumerate(setting.state), 2)

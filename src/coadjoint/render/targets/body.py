@@ -27,7 +27,7 @@ class Body:
     outputs: list[tuple[int, Node]] = field(default_factory=list)
 
 
-def joined(left: Node, sign: str, right: Node) -> Node:
+def join(left: Node, sign: str, right: Node) -> Node:
     """Two operands under their operator."""
     match sign:
         case "+":

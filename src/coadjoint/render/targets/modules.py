@@ -39,9 +39,11 @@ class KernelModule:
             exec(compile(content, self.path, "exec"), module.__dict__)  # noqa: S102 (it is a module)
             found = module.ID
         except Exception as error:
-            raise self.broken(f"cannot be loaded: {type(error).__name__}: {error}") from error
+            raise self.explain_broken(
+                f"cannot be loaded: {type(error).__name__}: {error}"
+            ) from error
         if found != system.id:
-            raise self.broken(
+            raise self.explain_broken(
                 f"carries the id {found!r}, its system {system.id!r}; expected one id",
                 found=found,
                 expected=system.id,
@@ -57,10 +59,10 @@ class KernelModule:
         """
         found: Callable[..., Any] | None = getattr(self._module, name, None)
         if found is None:
-            raise self.broken(f"has no function {name}")
+            raise self.explain_broken(f"has no function {name}")
         return found
 
-    def broken(self, problem: str, **parts: Any) -> OutputError:
+    def explain_broken(self, problem: str, **parts: Any) -> OutputError:
         """What is wrong with the file."""
         path = str(self.path)
         return OutputError(f"{path} {problem}. Run `coadjoint regenerate`.", path=path, **parts)

@@ -15,13 +15,13 @@ from math import isfinite
 
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
-from coadjoint.render.targets.body import Body, failure, joined
+from coadjoint.render.targets.body import Body, failure, join
 
 Functions = dict[str, ast.FunctionDef]
 
 
 @lru_cache(maxsize=4)  # every function of a file is read from the same text
-def _parsed(text: str) -> ast.Module:
+def _parse(text: str) -> ast.Module:
     """The tree of a text."""
     return ast.parse(text)
 
@@ -51,7 +51,7 @@ class Reader:
             allowed: Whether another statement may stand between them.
         """
         try:
-            module = _parsed(text)
+            module = _parse(text)
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             raise failure(f"{self.file} is not Python: {error}", self.name) from error
         functions: Functions = {}
@@ -108,7 +108,7 @@ class Reader:
             case ast.BinOp(left=left, op=operator, right=right):
                 sign = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}.get(type(operator))
                 if sign:
-                    return joined(self.node(left), sign, self.node(right))
+                    return join(self.node(left), sign, self.node(right))
             case ast.Call(function, [argument], []):
                 called = self._called(function)
                 if called in FUNCTIONS:

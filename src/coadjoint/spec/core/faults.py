@@ -68,7 +68,7 @@ def find_near(name: str, known: Iterable[str]) -> list[str]:
     return alike or get_close_matches(name, names)
 
 
-def listed(names: Iterable[str], most: int = 12) -> str:
+def list_names(names: Iterable[str], most: int = 12) -> str:
     """Names for a message, in the given order and not too many.
 
     >>> listed(["a", "b"])

@@ -20,7 +20,7 @@ def no_titles(schema: dict[str, Any]) -> None:
         part.pop("title", None)
 
 
-def named(pattern: str = NAME_PATTERN) -> dict[str, Any]:
+def name_pattern(pattern: str = NAME_PATTERN) -> dict[str, Any]:
     """What a JSON Schema says about the keys of a table of names."""
     return {"propertyNames": {"pattern": pattern}}
 

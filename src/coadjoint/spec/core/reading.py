@@ -17,7 +17,7 @@ from pydantic import Field
 
 from coadjoint.errors import CoadjointError, LimitError
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import (
     DRIVING,
     Declared,
@@ -28,7 +28,7 @@ from coadjoint.spec.core.formulas import (
     read_formula,
 )
 from coadjoint.spec.core.names import refusal
-from coadjoint.spec.core.parts import named
+from coadjoint.spec.core.parts import name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import NAME_PATTERN
@@ -128,7 +128,7 @@ class Table(Generic[Record]):
         kind: Any = dict[str, self.part]  # type: ignore[name-defined]
         about: dict[str, Any] = {
             "description": self.description,
-            "json_schema_extra": named(self.pattern),
+            "json_schema_extra": name_pattern(self.pattern),
         }
         if self.least:
             return Annotated[kind, Field(min_length=self.least)] | None, Field(None, **about)
@@ -243,7 +243,7 @@ class Reading:
             key,
             f"there is no {what} {name!a}",
             name,
-            f"one of {listed(names)}" if names else otherwise,
+            f"one of {list_names(names)}" if names else otherwise,
             did_you_mean(name, names),
         )
 

@@ -11,7 +11,7 @@ import re
 from dataclasses import replace
 
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.formulas import Formula, Scope, read_formula
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import words
@@ -63,13 +63,13 @@ def _no_relation(
 ) -> CoadjointError:
     """Why a text is no relation."""
     wanted = found[1] if len(found) > 1 else found[0] if found else None
-    problem = "there are two signs" if len(found) > 1 else f"there is no {listed(signs)}"
+    problem = "there are two signs" if len(found) > 1 else f"there is no {list_names(signs)}"
     example = "Y == cross(Omega, s)" if signs == EQUATION else "1 - Gamma3^2 > 0"
     return source.fault(
         key,
         problem,
         found=wanted.group() if wanted else text,
-        expected=f"two expressions with {listed(signs)} between them",
+        expected=f"two expressions with {list_names(signs)} between them",
         hint=f"Write for instance {example!r}.",
         at=source.within(key, *(wanted.span() if wanted else (0, len(text)))),
     )

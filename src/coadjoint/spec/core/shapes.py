@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, listed
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, list_names
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
@@ -213,7 +213,7 @@ def _declared(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
         f"{name!r} is not declared",
         name,
         "a variable or parameter of this spec",
-        did_you_mean(name, scope, f"Declared are {listed(scope)}." if scope else ""),
+        did_you_mean(name, scope, f"Declared are {list_names(scope)}." if scope else ""),
     )
 
 

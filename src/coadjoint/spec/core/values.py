@@ -16,7 +16,7 @@ from coadjoint.errors import CoadjointError
 from coadjoint.limits import STATE_COMPONENTS, TITLE_CHARACTERS, UNIT_CHARACTERS
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.decimals import NUMBER_SCHEMA, is_number_text, read_number
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
 
@@ -169,7 +169,7 @@ def _shape_text(value: object) -> str:
         return "a number"
     inner = {len(row) if isinstance(row, list) else 1 for row in value}
     return f"a list of {len(value)}" + (
-        f" lists of {listed(map(str, inner))}" if inner != {1} else ""
+        f" lists of {list_names(map(str, inner))}" if inner != {1} else ""
     )
 
 

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from coadjoint.spec.core.parts import Part, TextPart, named
+from coadjoint.spec.core.parts import Part, TextPart, name_pattern
 from coadjoint.spec.core.values import (
     BRACKET_PATTERN,
     Entry,
@@ -41,10 +41,10 @@ class _Algebra(Part):
     brackets: dict[str, str] | None = Field(
         None,
         description="brackets such as '[e1, e2]' = 'e3', each pair once; the others are 0",
-        json_schema_extra=named(BRACKET_PATTERN),
+        json_schema_extra=name_pattern(BRACKET_PATTERN),
     )
     matrices: dict[str, Matrix] | None = Field(
-        None, description="a matrix for each name of the basis", json_schema_extra=named()
+        None, description="a matrix for each name of the basis", json_schema_extra=name_pattern()
     )
     bracket: str | None = Field(
         None,
@@ -68,7 +68,7 @@ class _Algebra(Part):
         None, description="the span of some vectors of an algebra"
     )
     blocks: dict[str, Names] | None = Field(
-        None, description="named parts of the basis", json_schema_extra=named()
+        None, description="named parts of the basis", json_schema_extra=name_pattern()
     )
 
     @model_validator(mode="after")
@@ -110,7 +110,7 @@ class ActionPart(TextPart):
     matrices: dict[str, Matrix] | None = Field(
         None,
         description="a matrix for each name of the basis; those left out act as zero",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
 
     @model_validator(mode="after")
@@ -127,7 +127,7 @@ class SemidirectPart(Part):
     representations: dict[str, ActionPart] | None = Field(
         None,
         description="how it acts on spaces, by the lead of their names, as p of p1 p2 p3",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
     ideal: OperandPart | None = Field(None, description="the algebra that it acts on")
     action: ActionPart | None = Field(None, description="how it acts on the ideal: derivations")
@@ -148,7 +148,7 @@ class ExtensionPart(Part):
     center: str = Field("Z", description="name of the new vector of the basis")
     cocycle: dict[str, Entry] = Field(
         description="values such as '[K1, P1]' = 1, each pair once; the others are 0",
-        json_schema_extra=named(BRACKET_PATTERN),
+        json_schema_extra=name_pattern(BRACKET_PATTERN),
     )
 
 
@@ -166,7 +166,7 @@ class SubalgebraPart(Part):
     basis: dict[str, str] = Field(
         min_length=1,
         description="vectors by name, such as X1 = 'E12 + E34'",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
 
 

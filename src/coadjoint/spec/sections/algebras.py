@@ -31,7 +31,7 @@ from coadjoint.algebra import (
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Quantity
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
@@ -221,7 +221,7 @@ class _Algebras:
                     key,
                     f"the matrix of {name!r} is missing",
                     found=name,
-                    expected=f"a matrix for each of {listed(basis)}",
+                    expected=f"a matrix for each of {list_names(basis)}",
                     hint=f"Write {name} = [[...], [...]] among the matrices.",
                 )
         chosen = [matrices[name] for name in basis]

@@ -15,9 +15,9 @@ from pydantic import Field
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import Shape, component_names
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.formulas import Formula, Scope, read_fitting
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.sections.variables import VARIABLES, state_of
@@ -32,14 +32,15 @@ class ChartPart(Part):
     """The same motion in other variables."""
 
     variables: Annotated[dict[str, list[_Count]], Field(min_length=1)] = Field(
-        description="shapes by name: [] of a scalar, [3] of a vector", json_schema_extra=named()
+        description="shapes by name: [] of a scalar, [3] of a vector",
+        json_schema_extra=name_pattern(),
     )
     map: Annotated[dict[str, str], Field(min_length=1)] = Field(
-        description="each variable of the state in terms of these", json_schema_extra=named()
+        description="each variable of the state in terms of these", json_schema_extra=name_pattern()
     )
     where: list[str] = Field([], description="functions of these variables that are 0 throughout")
     rates: dict[str, str] = Field(
-        {}, description="the time derivative of each", json_schema_extra=named()
+        {}, description="the time derivative of each", json_schema_extra=name_pattern()
     )
     hamiltonian: str = Field("", description="h of positions and momenta, in place of rates")
     lagrangian: str = Field("", description="l of positions and velocities, in place of rates")
@@ -117,9 +118,9 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
     if len(given) != 1:
         raise reading.at_key(
             key,
-            f"the chart has {listed(given) or 'no motion'}",
-            listed(given),
-            f"exactly one of {listed(_MOTIONS)}",
+            f"the chart has {list_names(given) or 'no motion'}",
+            list_names(given),
+            f"exactly one of {list_names(_MOTIONS)}",
             "Write rates = { r = ... } for every variable.",
         )
     (kind,) = given
@@ -180,7 +181,7 @@ def _check_pairs(reading: Reading, key: KeyPath, part: ChartPart, own: Mapping[s
             (*key, "pairs") if part.pairs else key,
             f"{wrong[0]!r} is in no pair of one shape, or in two",
             wrong[0],
-            f"each of {listed(own)} in one pair",
+            f"each of {list_names(own)} in one pair",
         )
     missing = [name for name in own if name not in paired]
     if missing:
@@ -189,7 +190,9 @@ def _check_pairs(reading: Reading, key: KeyPath, part: ChartPart, own: Mapping[s
 
 def _incomplete(reading: Reading, key: KeyPath, missing: list[str]) -> CoadjointError:
     """Something is said of some variables and not of others."""
-    return reading.at_key(key, f"{listed(missing)} is missing", listed(missing), "every variable")
+    return reading.at_key(
+        key, f"{list_names(missing)} is missing", list_names(missing), "every variable"
+    )
 
 
 CHARTS = Table[tuple[DeclaredChart, ...]](

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pydantic import Field
 
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import ROLES, Formula, Scope, misfit
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
@@ -94,7 +94,7 @@ def _no_velocity(
         problem = f"{name!r} is {ROLES[own.role]}"
         near = [v for v, each in velocities.items() if (each.block, each.of) == (own.block, own.of)]
         hint = f"Write {(near or list(velocities))[0]} in its place." if velocities else ""
-    expected = f"one of {listed(velocities)}" if velocities else "a declared velocity"
+    expected = f"one of {list_names(velocities)}" if velocities else "a declared velocity"
     return reading.at_key(key, problem, name, expected, hint or f"Remove {name}.")
 
 
@@ -116,7 +116,7 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
             "Rayleigh's function names no velocity",
             found=part.R,
             expected="a function of velocities, whose force is -dR/dxi",
-            hint=f"Name {listed(each.name for each in velocities)} in it, or remove [dissipation]."
+            hint=f"Name {list_names(v.name for v in velocities)} in it, or remove [dissipation]."
             if velocities
             else "Write what acts along a momentum in [forces].",
         )

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from coadjoint.limits import PARAMETER_COMPONENTS
 from coadjoint.spec.core.components import Components, Shape
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
@@ -88,7 +88,7 @@ def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> No
             ("inputs", name, "rate"),
             f"{rate!a} is not another input with the shape of {name!r}",
             found=rate,
-            expected=f"one of {listed(alike)}" if alike else "another input of its shape",
+            expected=f"one of {list_names(alike)}" if alike else "another input of its shape",
             hint=did_you_mean(rate, alike) or "Declare it in [inputs].",
         )
     chain = [name]

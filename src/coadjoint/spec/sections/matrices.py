@@ -18,7 +18,7 @@ from coadjoint.algebra.representation import Representation
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import MATRIX_ENTRIES, STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
@@ -50,7 +50,7 @@ def places_of(
                 (*key, place),
                 f"{name!a} is not in the basis",
                 found=name,
-                expected=f"names of the basis: {listed(basis)}",
+                expected=f"names of the basis: {list_names(basis)}",
                 hint=did_you_mean(name, basis),
             )
     return tuple(basis.index(name) for name in names)
@@ -70,7 +70,7 @@ def block_places(
             raise source.fault(
                 key,
                 "a name of the basis stands twice",
-                found=listed(block),
+                found=list_names(block),
                 expected="each name once",
             )
         return places
@@ -83,7 +83,7 @@ def block_places(
         key,
         f"{algebra.name} has no block {block!a}",
         found=block,
-        expected=f"one of {listed(known)}",
+        expected=f"one of {list_names(known)}",
         hint=did_you_mean(block, known),
     )
 
@@ -140,7 +140,7 @@ def read_matrices(
                 (*key, name),
                 f"{name!a} is not in the basis",
                 found=name,
-                expected=f"names of the basis: {listed(basis)}",
+                expected=f"names of the basis: {list_names(basis)}",
                 hint=did_you_mean(name, basis),
                 at=source.positions.key((*key, name)),
             )
@@ -148,8 +148,8 @@ def read_matrices(
         if not size or lengths != [size] * size:
             raise source.fault(
                 (*key, name),
-                f"the matrix of {name!r} has rows of {listed(map(str, lengths))} numbers",
-                found=listed(map(str, lengths)),
+                f"the matrix of {name!r} has rows of {list_names(map(str, lengths))} numbers",
+                found=list_names(map(str, lengths)),
                 expected=f"{size or 1} rows of {size or 1} numbers, like the first matrix",
             )
     found = {name: _sparse(source, (*key, name), rows, scalars) for name, rows in tables.items()}
@@ -203,7 +203,7 @@ def representation_of(
             key,
             f"there is no representation {name!a}",
             found=name,
-            expected=f"one of {listed(known)}",
+            expected=f"one of {list_names(known)}",
             hint=did_you_mean(name, known, f"Declare it under [representations.{name}]."),
         )
     if name in declared:

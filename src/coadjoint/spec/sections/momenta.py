@@ -14,7 +14,7 @@ from pydantic import Field
 
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.values import Prose, Unit
 from coadjoint.spec.sections.forces import read_along
@@ -27,7 +27,7 @@ class SectionPart(Part):
     section: Annotated[dict[str, str], Field(min_length=1)] = Field(
         description="components of the section, as Omega = 's', by the names of the velocities "
         "that no constraint gives; those left out are zero",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
     unit: Unit = Field("1", description="unit of the momentum; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")

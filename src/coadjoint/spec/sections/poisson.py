@@ -15,9 +15,9 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from coadjoint.spec.core.components import unpacked
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.values import POISSON_PATTERN
@@ -35,7 +35,7 @@ class PoissonPart(Part):
     brackets: dict[str, str] | None = Field(
         None,
         description="brackets such as '{X1, X2}' = '4*X3', each pair once; the others are 0",
-        json_schema_extra=named(POISSON_PATTERN),
+        json_schema_extra=name_pattern(POISSON_PATTERN),
     )
     canonical: list[Annotated[list[str], Field(min_length=2, max_length=2)]] | None = Field(
         None, description="pairs of a position and its momentum, as [['q', 'p']]"
@@ -43,7 +43,7 @@ class PoissonPart(Part):
     magnetic: dict[str, str] | None = Field(
         None,
         description="brackets of canonical momenta, such as '{p1, p2}' = 'B*q3'",
-        json_schema_extra=named(POISSON_PATTERN),
+        json_schema_extra=name_pattern(POISSON_PATTERN),
     )
 
     @model_validator(mode="after")
@@ -166,12 +166,12 @@ class _Bracket:
         found = _KEY.fullmatch(text)
         unknown = [name for name in found.groups() if name not in names] if found else [text]
         if found is None or unknown:
-            example = listed(names[:2]) if len(names) > 1 else "X1, X2"
+            example = list_names(names[:2]) if len(names) > 1 else "X1, X2"
             raise self.source.fault(
                 key,
                 f"{text!a} is not a bracket of these components",
                 found=unknown[0],
-                expected=f"a key such as '{{{example}}}' with components among {listed(names)}",
+                expected=f"a key such as '{{{example}}}' with components among {list_names(names)}",
                 hint=did_you_mean(unknown[0], names),
                 at=self.source.positions.key(key),
             )
@@ -192,7 +192,7 @@ class _Bracket:
                 raise self.source.fault(
                     key,
                     " and ".join(found),
-                    found=listed(pair),
+                    found=list_names(pair),
                     expected="a position and a momentum of one shape and form",
                 )
             paired += (*q, *p)
@@ -206,7 +206,7 @@ class _Bracket:
                 key,
                 f"there is no coordinate {name!a}",
                 found=name,
-                expected=f"coordinates or their components: {listed(self.places)}",
+                expected=f"coordinates or their components: {list_names(self.places)}",
                 hint=did_you_mean(name, self.places),
             )
         return self.places[name]

@@ -12,9 +12,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Declared, Formula, make_scope, read_fitting
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.sections.variables import VARIABLES, Variable
@@ -25,7 +25,7 @@ class ReductionPart(Part):
 
     section: Annotated[dict[str, str], Field(min_length=1)] = Field(
         description="what variables are there, as y = 'cross(x, K*x)'; they are no state any more",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
     where: list[str] = Field([], description="functions of all variables that vanish there")
 
@@ -59,7 +59,7 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
         raise reading.source.fault(
             ("reduction", "section"),
             "no variable is left",
-            found=listed(part.section),
+            found=list_names(part.section),
             expected="a section over at least one variable",
         )
     roles = tuple(dict.fromkeys(variable.role for variable in variables))
@@ -123,7 +123,7 @@ def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]
             ("reduction", "section", name),
             f"{name!r} {kind}",
             name,
-            f"one of {listed(n for n, v in known.items() if not v.form)}",
+            f"one of {list_names(n for n, v in known.items() if not v.form)}",
             did_you_mean(name, known),
         )
 

@@ -15,9 +15,9 @@ from pydantic import Field
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.representation import Representation, two_sided
-from coadjoint.spec.core.faults import listed
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.names import NAME
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
@@ -37,7 +37,7 @@ class RepresentationPart(Part):
     matrices: Annotated[dict[str, Matrix], Field(min_length=1)] | None = Field(
         None,
         description="a matrix for each name of the basis; those left out act as zero",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
     left: Block | None = Field(
         None, description="the block whose matrices L act as A -> L A on matrices A, row by row"
@@ -116,7 +116,7 @@ def _own_matrices(
     places = block_places(source, key, block, algebra)
     used = {n for i in places if algebra.matrices for at in algebra.matrices[i] for n in at}
     if not used:
-        named = listed(algebra.basis[i] for i in places)
+        named = list_names(algebra.basis[i] for i in places)
         raise source.fault(
             key,
             f"{algebra.name} has no matrices for {named}",

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
@@ -76,7 +76,7 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
             (*key, "normal"),
             f"there is no advected vector {part.normal!a}",
             found=part.normal,
-            expected=f"one of {listed(normals)}",
+            expected=f"one of {list_names(normals)}",
             hint=did_you_mean(part.normal, normals),
         )
     arm = reading.formula((*key, "arm"), part.arm, scope, any_shape=True)
@@ -104,7 +104,7 @@ def _find_body(reading: Reading, key: KeyPath) -> tuple[str, str]:
         raise reading.source.fault(
             key,
             "there is no velocity of the block rotation and none of translation",
-            found=listed(velocities.values()),
+            found=list_names(velocities.values()),
             expected='the algebra "se(3)" with a velocity over each of these blocks',
         )
     if invariance != "left":
@@ -129,7 +129,7 @@ def _check_free(reading: Reading, key: KeyPath) -> None:
             key,
             f"{name!r} is declared in [{owners[name]}], and it is what [rolling] calls {what}",
             found=name,
-            expected=f"other names than {listed(sorted(wanted))} for what is declared",
+            expected=f"other names than {list_names(sorted(wanted))} for what is declared",
             hint="The attitude and the point of contact are followed without being declared: "
             "remove it."
             if owners[name] == "reconstruction"

@@ -17,10 +17,10 @@ from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.matrices import size
 from coadjoint.spec.core.components import Shape, component_names, matrix_size
 from coadjoint.spec.core.degrees import degree_in
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, listed
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.names import NAME
-from coadjoint.spec.core.parts import Accept, Part, named
+from coadjoint.spec.core.parts import Accept, Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.values import Names, Prose, Unit
@@ -47,7 +47,7 @@ class SymmetryPart(Part):
         None,
         description="how variables move, linear in the element: of positions alone, whose momenta "
         "then follow, or of the whole state, where what is left out stands still",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
     linear: Names | None = Field(
         None, description="variables on whose stacked components the algebra's matrices act"
@@ -149,7 +149,7 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
             key,
             f"{name!a} is not a variable of the state",
             found=name,
-            expected=f"one of {listed(state)}",
+            expected=f"one of {list_names(state)}",
             hint=did_you_mean(name, state),
         )
     return state[name]
@@ -255,7 +255,7 @@ class _Actions:
         if count != rows:
             raise self.source.fault(
                 (*key, "linear"),
-                f"{listed(names)} have {count} components, and the matrices of {algebra.name} "
+                f"{list_names(names)} have {count} components, and the matrices of {algebra.name} "
                 f"have {rows} rows",
                 found=count,
                 expected=f"variables with {rows} components together",

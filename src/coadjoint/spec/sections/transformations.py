@@ -13,9 +13,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula, read_fitting
-from coadjoint.spec.core.parts import Accept, ClaimPart, Part, named
+from coadjoint.spec.core.parts import Accept, ClaimPart, Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.sections.symmetries import read_move, shapes_in_claims
@@ -26,13 +26,13 @@ class TransformationPart(Part):
     """A map of the state that takes the motion to itself, or to its reverse."""
 
     map: Annotated[dict[str, str], Field(min_length=1)] = Field(
-        description="what variables become; those left out stay", json_schema_extra=named()
+        description="what variables become; those left out stay", json_schema_extra=name_pattern()
     )
     reverses_time: bool = Field(False, description="whether it takes the motion to its reverse")
     exchanges: dict[str, ClaimPart] = Field(
         {},
         description="what observables and momentum maps become, as J_L = 'J_R'",
-        json_schema_extra=named(),
+        json_schema_extra=name_pattern(),
     )
     accept: Accept = None
 
@@ -90,7 +90,7 @@ def _read_exchange(reading: Reading, name: str, observable: str, text: str) -> F
             key,
             f"{observable!a} is neither an observable nor a momentum map",
             observable,
-            f"one of {listed(named)}",
+            f"one of {list_names(named)}",
             did_you_mean(observable, named),
         )
     scope = reading.scope("an observable", state_roles(reading), named)

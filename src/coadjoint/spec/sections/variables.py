@@ -23,9 +23,9 @@ from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
-from coadjoint.spec.core.faults import did_you_mean, listed
+from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.names import derived_names
-from coadjoint.spec.core.parts import Part, named
+from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
@@ -253,7 +253,7 @@ def _as_partner(
             (*key, "role"),
             f"the {part.role} {key[-1]!r} belongs to no coordinate",
             found=part.role,
-            expected=f"of = one of {listed(coordinates)}" if coordinates else "a coordinate",
+            expected=f"of = one of {list_names(coordinates)}" if coordinates else "a coordinate",
             hint=_advise_partner(part.role, parts, coordinates),
         )
     if part.of not in coordinates:
@@ -261,7 +261,9 @@ def _as_partner(
             (*key, "of"),
             f"there is no coordinate {part.of!a}",
             found=part.of,
-            expected=f"one of {listed(coordinates)}" if coordinates else "a declared coordinate",
+            expected=f"one of {list_names(coordinates)}"
+            if coordinates
+            else "a declared coordinate",
             hint=did_you_mean(part.of, coordinates),
         )
     rivals = [n for n, each in parts.items() if (each.role, each.of) == (part.role, part.of)]
@@ -354,7 +356,7 @@ def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple
             sign = 1 if a < b else -1
             found[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
     if size > 2 and found != dict(so_indefinite(size, 0).constants):
-        names = listed(algebra.basis[b] for b in block)
+        names = list_names(algebra.basis[b] for b in block)
         raise source.fault(
             key,
             f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
@@ -380,7 +382,7 @@ def _representation(
             key,
             f"the advected quantity {key[-1]!r} has no representation",
             found=str(key[-1]),
-            expected=f"representation = one of {listed((*KNOWN, *declared))}",
+            expected=f"representation = one of {list_names((*KNOWN, *declared))}",
             hint=f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".',
         )
     inner = (*key, "representation")
@@ -431,7 +433,7 @@ VARIABLES = Table[tuple[Variable, ...]](
     many=True,
     field=(
         dict[str, VariablePart],
-        Field(min_length=1, description="the variables by name", json_schema_extra=named()),
+        Field(min_length=1, description="the variables by name", json_schema_extra=name_pattern()),
     ),
     quantities=True,
     names=_name_all,

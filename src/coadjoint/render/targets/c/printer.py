@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from coadjoint.lower.program import Node
-from coadjoint.render.printers import WIDTH, Printer, indented
+from coadjoint.render.printers import WIDTH, Printer, indent
 
 C: Final = Printer("")
 
@@ -36,9 +36,9 @@ def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str
     line = f"{to} = {c_text(node)};"
     if column + len(line) + len(note) <= WIDTH:
         return line + note
-    inner = C.broken(node, WIDTH - column - 4 - 1)
+    inner = C.break_lines(node, WIDTH - column - 4 - 1)
     inner[-1] += ";"
-    return indented([f"{to} ={note}", *("    " + text for text in inner)], column)
+    return indent([f"{to} ={note}", *("    " + text for text in inner)], column)
 
 
 FILTERS: Final = {"c_assignment": c_assignment}

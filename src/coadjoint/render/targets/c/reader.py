@@ -13,7 +13,7 @@ from math import isfinite
 
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Program, Symbol
-from coadjoint.render.targets.body import Body, failure, joined
+from coadjoint.render.targets.body import Body, failure, join
 
 _TOKEN = re.compile(
     r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/()\[\]])",
@@ -151,22 +151,22 @@ class _Reader:
     def sum(self) -> Node:
         node = self.product()
         while self.tokens[self.at][1] in ("+", "-"):
-            node = joined(node, self.take(), self.product())
+            node = join(node, self.take(), self.product())
         return node
 
     def product(self) -> Node:
-        node = self.signed()
+        node = self.read_sign()
         while self.tokens[self.at][1] in ("*", "/"):
-            node = joined(node, self.take(), self.signed())
+            node = join(node, self.take(), self.read_sign())
         return node
 
-    def signed(self) -> Node:
+    def read_sign(self) -> Node:
         if self.tokens[self.at][1] != "-":
             return self.atom()
         self.take()
         if self.tokens[self.at][1] == "-":
             raise self.refusal()  # a decrement
-        return Negate(self.signed())
+        return Negate(self.read_sign())
 
     def atom(self) -> Node:
         kind, text = self.tokens[self.at]

@@ -56,7 +56,7 @@ class NumpyKernel(KernelModule):
             raise
         except Exception as error:
             problem = f"does not run: {function}: {type(error).__name__}: {error}"
-            raise self.broken(problem) from error
+            raise self.explain_broken(problem) from error
         if values.shape != shape:
-            raise self.broken(f"does not run: {function} has the shape {values.shape}")
+            raise self.explain_broken(f"does not run: {function} has the shape {values.shape}")
         return values

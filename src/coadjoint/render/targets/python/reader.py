@@ -20,7 +20,7 @@ ROWS = "return [out[first:first + size] for first in range(0, len(out), size)]"
 
 def read(text: str, program: Program, system: str) -> list[Body]:
     """The one branch of the function of a Program; other forms than our template's fail."""
-    reader = Reader("kernel_python.py", program.name, _called)
+    reader = Reader("kernel_python.py", program.name, _called_name)
     functions = reader.functions(text, _is_allowed)
     if program.name not in functions:
         raise reader.refusal(f"there is no function {program.name!r}")
@@ -40,7 +40,7 @@ def read(text: str, program: Program, system: str) -> list[Body]:
     return [body]
 
 
-def _called(function: ast.expr) -> str | None:
+def _called_name(function: ast.expr) -> str | None:
     """``sqrt`` of ``sqrt``."""
     return function.id if isinstance(function, ast.Name) else None
 
