@@ -83,8 +83,8 @@ def structure_of(equations: Equations) -> PoissonStructure:
     """The emitted bracket, velocities put in."""
     tensor = equations.exact.poisson_tensor
     assert tensor is not None, "only what has a bracket is asked for it"
-    close = tuple(tuple(map(equations.close, row)) for row in tensor)
-    return PoissonStructure(equations.setting.field, equations.setting.state, close)
+    closed = tuple(tuple(map(equations.close, row)) for row in tensor)
+    return PoissonStructure(equations.setting.field, equations.setting.state, closed)
 
 
 def positions(setting: Setting) -> tuple[str, ...]:

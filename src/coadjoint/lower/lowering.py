@@ -388,7 +388,7 @@ def _shorter(equations: Equations, element: Element) -> Element:
     """
     field, members = equations.setting.field, equations.moving
     try:
-        close = equations.close(element)
+        closed = equations.close(element)
     except OverflowError:  # functions of other arguments, for which the field has no room
         return element
 
@@ -400,6 +400,6 @@ def _shorter(equations: Equations, element: Element) -> Element:
         }
         return len(products)
 
-    divisors = (divisor for written in field.quotients(close) for divisor, _ in written.divisors)
+    divisors = (divisor for written in field.quotients(closed) for divisor, _ in written.divisors)
     moving = any(field.reach(divisor) & members for divisor in divisors)
-    return close if terms(close) < terms(element) and not moving else element
+    return closed if terms(closed) < terms(element) and not moving else element

@@ -172,9 +172,9 @@ def in_velocities(equations: Equations, elements: Iterable[Element]) -> list[Ele
     A velocity that keeps its name is no independent symbol beside its momentum. The momentum is
     replaced by ``dl/dxi``, and velocities and the rest of the state are independent again.
     """
-    close = [equations.close(element) for element in elements]
+    closed = [equations.close(element) for element in elements]
     if not equations.kept:
-        return close
+        return closed
     pairs = zip(equations.setting.velocities, LegendreMap(equations).momenta.items(), strict=True)
     momenta = {mu: slope for xi, (mu, slope) in pairs if xi in equations.kept}
-    return [equations.setting.field.substitute(element, momenta) for element in close]
+    return [equations.setting.field.substitute(element, momenta) for element in closed]

@@ -74,9 +74,9 @@ def gradient(equations: Equations, function: Element) -> list[Element]:
     Raises:
         DerivationError: It is not.
     """
-    field, close = equations.setting.field, equations.close(function)
+    field, closed = equations.setting.field, equations.close(function)
     solved = kept_velocities(equations)
-    inner = in_velocities(equations, field.gradient(close, solved))
+    inner = in_velocities(equations, field.gradient(closed, solved))
     named = [xi for xi, slope in zip(solved, inner, strict=True) if not field.is_zero(slope)]
     if named:
         path = equations.spec.path
@@ -86,4 +86,4 @@ def gradient(equations: Equations, function: Element) -> list[Element]:
             path=str(path),
             found=named[0],
         )
-    return in_velocities(equations, field.gradient(close, equations.setting.state))
+    return in_velocities(equations, field.gradient(closed, equations.setting.state))

@@ -67,10 +67,10 @@ def momentum_law(equations: Equations, section: Section) -> Element:
 def _statement(motion: Motion, section: Section, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     spec = motion.equations.spec
-    close = motion.field.normal(motion.equations.close(law)).combined()
-    if motion.where.contains(close):
+    closed = motion.field.normal(motion.equations.close(law)).combined()
+    if motion.where.contains(closed):
         return f"{section.name} is conserved, by its momentum equation"
-    text = element_text(motion.field, close)
+    text = element_text(motion.field, closed)
     if len(text) > SHOWN:
         text = "Sigma l + <dl/dxi, [xi, Sigma]>"
         text += " + <f, Sigma>" * bool(spec.forces or spec.dissipation)
