@@ -265,7 +265,10 @@ MUTANTS = (
         "candidates",
         "polynomials: rewrite not unproved -> True",
         "_counted: rewrite bounded and _1 -> _1",
-        "_related: rewrite moved.keys() <= place.keys() -> moved.keys() & place.keys()",
+    ),
+    *of(
+        "polynomial_families",
+        "count_relations: rewrite moved.keys() <= place.keys() -> moved.keys() & place.keys()",
     ),
     *of(
         "ideals",

@@ -53,7 +53,7 @@ JUDGES = {
     "src/coadjoint/prove/functions": ("tests/prove/test_samples.py",),
     "src/coadjoint/prove/samples": ("tests/prove/test_samples.py",),
     "src/coadjoint/prove/candidates": ("tests/prove/test_candidates.py",),
-    "src/coadjoint/prove/families": ("tests/prove/test_candidates.py",),
+    "src/coadjoint/prove/polynomial_families": ("tests/prove/test_candidates.py",),
     "src/coadjoint/prove/densities": ("tests/prove/test_measures.py",),
     "src/coadjoint/prove/ideals": WHERE,
     "src/coadjoint/prove/zero": WHERE,
@@ -66,6 +66,7 @@ JUDGES = {
     "src/coadjoint/spec/core/definitions": ("tests/spec/test_definitions.py",),
     "src/coadjoint/lower": ("tests/lower",),
     "src/coadjoint/render": KERNELS,
+    "templates": KERNELS,
 }
 COPIED = ("src", "templates", "derivations", "tests", "pyproject.toml")
 #: pytest's exit statuses for a failed test and for a tree that cannot even be imported.

@@ -21,8 +21,9 @@ values, with numbers for these numbers.
 What is not made of known integrals is written out with the numbers that the parameters have by
 default, lowest degrees first, and kept if it is proved by its rate there. So Jellett's and Routh's
 integrals of a ball of revolution are found (Routh 1884; Holm 2011, section 12.2.1).
-Comes in: a motion and its known integrals. Goes out: the others, and how many there are.
-Read next: `coadjoint.prove.polynomial_families`, then `coadjoint.prove.counts`, which says so.
+Comes in: a motion. Goes out: what is known and found, as claims and findings.
+Read next: `coadjoint.prove.polynomial_families`; `coadjoint.prove.measures`, which asks for a
+volume instead.
 """
 
 from __future__ import annotations

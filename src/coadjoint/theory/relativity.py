@@ -100,6 +100,7 @@ class Classification:
 def classify(system: Particles, forces: Forces, potential: Element | int = 0) -> Classification:
     """Symmetries and conserved quantities of a force law, decided by normal forms.
 
+    >>> from coadjoint.groups.galilean import particles
     >>> system = particles(2, parameters=["k"])
     >>> spring = pair_forces(system, lambda r, v: scale(-system.field["k"], r))
     >>> sorted(classify(system, spring).symmetries)
