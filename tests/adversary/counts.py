@@ -79,6 +79,8 @@ def judge_count(motion, entry, claims, source):
         return None
     statement = entry["statement"]
     space = _SPACE.fullmatch(statement)
+    if space is not None and not isinstance(motion, Constrained):
+        return "uncounted", []  # the judge knows the integrals of constrained motions alone
     if space is not None:
         faults = _integrals(motion, statement, space, source)
         return ("unjudged", []) if faults is None else ("integrals", faults)
@@ -170,8 +172,6 @@ def _integrals(motion, statement, space, source):
     allowed = _stated_space(space["text"])
     if allowed is None:
         return [f"the judge does not know this kind of statement: {statement}"]
-    if not isinstance(motion, Constrained):
-        return None
     try:
         parts = [_names(motion, space[part]) for part in ("velocities", "positions")]
         sets = _relations(motion, space["where"])
