@@ -100,3 +100,18 @@ def test_a_search_that_ends_early_keeps_no_claim_from_its_proof(name, monkeypatc
     ended = [each for each in certificate.findings if "not searched further" in each.statement]
     assert ended
     assert all("10 operations" in each.method for each in ended)
+
+
+def test_a_search_without_room_for_its_functions_ends():
+    """The field holds a few functions; one more ends the search, with a finding."""
+    field = Field(["x"], slots=2)
+
+    def examine():
+        yield "first", "integrals", lambda: FOUND
+        _ = [field.call("exp", field["x"] ** n) for n in range(1, 100)]
+        yield "second", "integrals", lambda: FOUND
+
+    *reached, (statement, kind, end) = within_budget(field, "integrals", "integrals", examine())
+    assert [text for text, _, _ in reached] == ["first"]
+    assert (statement, kind) == ("integrals: not searched further", "integrals")
+    assert end().method == searches.CROWDED

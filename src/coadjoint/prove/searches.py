@@ -18,6 +18,8 @@ from coadjoint.prove.zero import Decision, Discovery, Examined, UndecidedError, 
 
 #: The method of a search that ended early.
 ENDED = "the search ended after {work} operations of exact arithmetic"
+#: The method of a search that needed more elementary functions than the field holds.
+CROWDED = "the search needs more elementary functions than the field holds"
 
 
 def within_budget(
@@ -40,9 +42,16 @@ def within_budget(
                 if not isinstance(result, Decision | Discovery):
                     result = decide_zero(result, field)
                 found.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
-    except (BudgetSpent, UndecidedError) as error:
-        spent = isinstance(error, BudgetSpent)
-        method = ENDED.format(work=work) if spent else f"undecided: {error}"
-        end = Discovery(method, "no statement beyond those above")
+    except (BudgetSpent, UndecidedError, OverflowError) as error:
+        end = Discovery(_why_ended(error, work), "no statement beyond those above")
         found.append((f"{subject}: not searched further", kind, lambda: end))
     yield from found
+
+
+def _why_ended(error: Exception, work: int) -> str:
+    """The method of a search that could not go on."""
+    if isinstance(error, BudgetSpent):
+        return ENDED.format(work=work)
+    if isinstance(error, OverflowError):  # numbers for parameters make new functions of old ones
+        return CROWDED
+    return f"undecided: {error}"
