@@ -47,6 +47,14 @@ ZERO, CLEAR = 1e-9, 1e-6
 SPARE = 6
 
 
+#: Rates beyond this beside others of size 1 leave too few digits for a rank.
+LONGEST = 1e12
+
+
+#: Rates below this, beside others of size 1, are zero but for rounding.
+ROUNDED = 1e-14
+
+
 class NoGapError(ArithmeticError):
     """Singular values do not tell the rank."""
 
@@ -188,6 +196,9 @@ def _integrals(motion, statement, space, source):
     values, rates = _tables(motion, monomials, parts, sets, source, at_defaults)
     if len(values) < len(monomials) + SPARE:
         return None
+    if max((abs(x) for row in rates for x in row), default=0) > LONGEST:
+        return None
+    rates = [[x if abs(x) > ROUNDED else 0.0 for x in row] for row in rates]
     try:
         dimension = rank_of(values) - rank_of(rates)
     except NoGapError:

@@ -87,7 +87,7 @@ def test_a_claim_without_real_points_may_be_undecided():
     """p^2 + 1 = 0 and sqrt(-p^2 - 1) have no real points; the claim about p is still checked."""
     faults, counts = faults_of(PARTICLE)
     assert faults == []
-    assert counts == {"undecided": 2, "proved": 1, "count": 1, "uncounted": 1, "unjudged": 0}
+    assert counts == {"undecided": 2, "proved": 1, "count": 1, "integrals": 1}
 
 
 def test_a_claim_with_real_points_must_be_decided(monkeypatch):

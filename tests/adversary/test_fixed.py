@@ -25,6 +25,14 @@ from tests.adversary.fixed import (
 from tests.adversary.judge import judge
 from tests.adversary.run import record_of
 
+#: Cases with too few points inside a domain, or with numbers of too different sizes, for a rank of
+#: numbers to count the integrals.
+UNCOUNTED = (
+    "the same with a domain",
+    "a bracket that is defined far away alone",
+    "a prime as a factor",
+)
+
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_fixed_case_has_the_verdict_that_is_true(case):
@@ -40,7 +48,9 @@ def test_a_fixed_case_has_the_verdict_that_is_true(case):
         assert not any(piece in text for text in texts), texts
     report = judge(case.text, record)
     assert not report.faults, "\n".join(report.faults)
-    assert not report.unjudged, report.unjudged
+    counts = case.name in UNCOUNTED
+    assert [each for each in report.unjudged if not (counts and "integrals" in each)] == []
+    assert bool(report.unjudged) == counts
 
 
 def test_fixed_cases_contain_true_and_false_claims():

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.exact.linear import PRIME
-from coadjoint.prove import Verdict, counts, prove
+from coadjoint.prove import Verdict, candidates, prove
 from coadjoint.prove.candidates import (
     CandidateSearch,
     Known,
@@ -80,7 +80,7 @@ def only_energy(motion):
 
 def test_integrals_that_no_spec_claims_are_found_and_proved(monkeypatch):
     """Of the ball, M.Gamma = I Omega . Gamma, written out with I = (1, 2, 3); and one with M.M."""
-    monkeypatch.setattr(counts, "known_integrals", only_energy)
+    monkeypatch.setattr(candidates, "known_integrals", only_energy)
     first, second, last = about("chaplygin_ball_centred", SILENT["chaplygin_ball_centred"])
     assert {decision.verdict for _, decision in (first, second, last)} == {Verdict.PROVED}
     statement = "Omega1*Gamma1 + 2*Omega2*Gamma2 + 3*Omega3*Gamma3 is conserved"

@@ -113,11 +113,11 @@ SHIPPED = {
         BOTH,
     ),
     "body_of_revolution": (TURNING, "I1 I3 m g A C l", BOTH),
-    "rattleback": (TURNING, "I1 I2 I3 skew m g axes1 axes2 axes3", BOTH),
+    "rattleback": (TURNING, "I1 I2 I3 skew m g axes1 axes2 axes3", CONSTRAINED),
     "tippe_top": (
         "Omega1 Omega2 Omega3 Y1 Y2 Y3 Gamma1 Gamma2 Gamma3",
         "I1 I3 m r g e viscous coulomb slow",
-        BOTH,
+        CONSTRAINED,
     ),
     "kepler": (ONE_POINT, "mu", ("poisson", "canonical", "euler-lagrange", "newton", "alignment")),
     "monopole_kepler": (ONE_POINT, "mu lam", ("poisson", "canonical", "newton", "alignment")),

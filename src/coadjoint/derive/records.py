@@ -52,7 +52,7 @@ def symbol(name: str) -> Left:
 def sign_text(sign: int, text: str) -> str:
     """A sum, or minus it in brackets.
 
-    >>> signed(1, "a + b"), signed(-1, "a + b")
+    >>> sign_text(1, "a + b"), sign_text(-1, "a + b")
     ('a + b', '-(a + b)')
     """
     return text if sign == 1 else f"-({text})"

@@ -181,9 +181,9 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
 def _solve_parities(parities: Sequence[Parity], state: Sequence[str]) -> list[str] | None:
     """Names whose signs turn, by elimination modulo 2; None where there are none.
 
-    >>> _solved([(frozenset("ab"), 1), (frozenset("a"), 0)], "ab")
+    >>> _solve_parities([(frozenset("ab"), 1), (frozenset("a"), 0)], "ab")
     ['b']
-    >>> _solved([(frozenset("a"), 1), (frozenset("a"), 0)], "a") is None
+    >>> _solve_parities([(frozenset("a"), 1), (frozenset("a"), 0)], "a") is None
     True
     """
     pivots: dict[str, Parity] = {}

@@ -117,7 +117,7 @@ def latex_escaped(text: str) -> str:
 def wrap(text: str, indent: int = 0) -> list[str]:
     r"""A paragraph in lines of the text format, whatever its own line breaks.
 
-    >>> wrapped("one\ntwo")
+    >>> wrap("one\ntwo")
     ['one two']
     """
     return textwrap.wrap(
@@ -134,7 +134,7 @@ def align(lines: Sequence[Mapping[str, str]]) -> list[str]:
 
     Many short lines stand in several such columns, to be read down.
 
-    >>> aligned([{"text": "a = 1"}, {"text": "long = 2"}])
+    >>> align([{"text": "a = 1"}, {"text": "long = 2"}])
     ['a    = 1', 'long = 2']
     """
     rows = _columns([line["text"].split(" = ", 1) for line in lines], " = ")
@@ -161,7 +161,7 @@ def abreast(lines: Sequence[Mapping[str, str]]) -> int:
 def tabulate(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
     """A table with a line under its heads.
 
-    >>> tabulated([[{"text": t} for t in row] for row in (("", "H", "X"), ("H", ".", "2*X"))])
+    >>> tabulate([[{"text": t} for t in row] for row in (("", "H", "X"), ("H", ".", "2*X"))])
     ['   |   H   X', '---+--------', ' H |   . 2*X']
     """
     first = max(len(row[0]["text"]) for row in rows)
@@ -177,7 +177,7 @@ def tabulate(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
 def describe(words: Sequence[Sequence[str]]) -> list[str]:
     """Names with what is said of them in a second column, long texts continued.
 
-    >>> described([("rank", "2"), ("Killing form", "3 minus")])
+    >>> describe([("rank", "2"), ("Killing form", "3 minus")])
     ['rank          2', 'Killing form  3 minus']
     """
     return _columns(words, "  ")

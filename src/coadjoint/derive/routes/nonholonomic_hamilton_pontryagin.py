@@ -27,6 +27,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics import kinematics
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
@@ -43,7 +44,12 @@ ROUTE = "nonholonomic-hamilton-pontryagin"
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
-    """Coordinates about the moving point; the other names are those of the route before it."""
+    """Coordinates about the moving point, and the names that the kernel solves for."""
+    return (*_coordinates(spec), *kinematics.symbols(spec))
+
+
+def _coordinates(spec: Spec) -> tuple[str, ...]:
+    """Coordinates about the moving point, and their rates."""
     return hamilton_pontryagin.symbols(spec) if spec.algebra is not None else ()
 
 
@@ -72,7 +78,7 @@ def derive(setting: Setting) -> Equations:
 
 def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
     """F along each velocity by the variation of the motion, and ``dz/dt`` by that of momenta."""
-    known, own = mechanics(setting), len(symbols(setting.spec)) // 2
+    known, own = mechanics(setting), len(_coordinates(setting.spec)) // 2
     velocities = setting.elements(known.frame.velocities)
     forces: Row = ()
     moved = dict(zip(setting.positions, velocities[own:], strict=True))

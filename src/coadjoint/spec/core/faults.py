@@ -71,7 +71,7 @@ def find_near(name: str, known: Iterable[str]) -> list[str]:
 def list_names(names: Iterable[str], most: int = 12) -> str:
     """Names for a message, in the given order and not too many.
 
-    >>> listed(["a", "b"])
+    >>> list_names(["a", "b"])
     'a, b'
     """
     found = list(names)
