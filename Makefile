@@ -47,4 +47,4 @@ docs: regenerate  ## redraw docs/pictures; write schema and derivations to build
 clean:  ## remove what was built; .venv, and whatever git ignores below it, go too
 	rm -rf build dist $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
-	rm -rf src/*.egg-info
+	rm -rf *.egg-info src/*.egg-info
