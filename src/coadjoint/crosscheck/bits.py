@@ -32,7 +32,7 @@ def equal_bits(subject: Subject, count: int) -> dict[str, dict[str, int]]:
     Args:
         subject: The system; what calls functions beyond sqrt is not compared, since their last
             bits belong to the libraries (`against_oracle` holds them to the threshold).
-        count: How many points for each function, odd batches and special values beside them; of a
+        count: How many points for each function, besides odd batches and special values; of a
             slow target the first members of each batch.
 
     Returns:
