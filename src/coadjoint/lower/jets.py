@@ -21,7 +21,7 @@ Read next: `coadjoint.render.solvers`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -34,7 +34,6 @@ from coadjoint.lower.program import (
     Negate,
     Node,
     Number,
-    Output,
     Program,
     Statement,
     Symbol,
@@ -88,13 +87,18 @@ class Jets:
     rates: tuple[tuple[Node, Node], ...]
 
     @property
+    def moving(self) -> frozenset[str]:
+        """Names of all that has coefficients."""
+        return frozenset((*self.state, *self.driving, *(cell.name for cell in self.cells)))
+
+    @property
     def kept(self) -> frozenset[str]:
-        """Names of cells whose coefficients of all orders some recurrence reads."""
-        found = {cell.name for cell in self.cells if cell.tail is None and not _is_product(cell)}
+        """Names of cells of which some recurrence reads all orders."""
+        found = set[str]()
         for cell in self.cells:
             if cell.tail is None:
-                found |= {*_names(cell.value), *filter(None, [cell.partner])}
-        return frozenset(found).difference(statement.name for statement in self.fixed)
+                found |= _reads_all_orders(cell)
+        return frozenset(found).intersection(cell.name for cell in self.cells)
 
     @property
     def products(self) -> int:
@@ -102,8 +106,16 @@ class Jets:
         return sum(cell.tail is None for cell in self.cells)
 
 
-def _is_product(cell: Cell) -> bool:
-    return isinstance(cell.value, Multiply)
+def _reads_all_orders(cell: Cell) -> set[str]:
+    """The names of which the recurrence of a cell reads coefficients of all orders."""
+    match cell.value:
+        case Multiply():
+            return set(_names(cell.value))
+        case Divide(right=right):
+            return {cell.name, *_names(right)}
+        case Call(function="sqrt"):
+            return {cell.name}
+    return {cell.name, *_names(cell.value), *filter(None, [cell.partner])}
 
 
 def _names(node: Node) -> Iterator[str]:

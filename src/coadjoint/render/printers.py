@@ -65,9 +65,11 @@ class Printer:
 
     Attributes:
         function_prefix: What stands before the name of an elementary function.
+        function_suffix: What stands behind it.
     """
 
     function_prefix: str
+    function_suffix: str = ""
 
     def text(self, node: Node) -> str:
         """``node`` on one line."""
@@ -77,11 +79,14 @@ class Printer:
             case Symbol(name=name):
                 return name
             case Call(function=function, argument=argument):
-                return f"{self.function_prefix}{function}({self.text(argument)})"
+                return f"{self._name(function)}({self.text(argument)})"
             case Negate(operand=operand):
                 return "-" + self._operand(operand, ATOM)  # so never "--x", a decrement in C
             case Add() | Multiply() | Divide():
                 return self._chain_text(node)
+
+    def _name(self, function: str) -> str:
+        return f"{self.function_prefix}{function}{self.function_suffix}"
 
     def _chain_text(self, node: Compound) -> str:
         (_, first), *rest = _chain(node)
@@ -107,7 +112,7 @@ class Printer:
             return self._bracket(lead + "(", node, width)
         match node:
             case Call(function=function, argument=argument):
-                return self._bracket(f"{lead}{self.function_prefix}{function}(", argument, width)
+                return self._bracket(f"{lead}{self._name(function)}(", argument, width)
             case Negate(operand=operand):
                 return self._break_operand(operand, ATOM, width, lead + "-")
             case Add() | Multiply() | Divide():

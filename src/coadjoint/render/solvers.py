@@ -1,0 +1,279 @@
+"""Render, solvers: the recurrences of a system arranged for the templates of its solvers.
+
+Comes in: the Program of the rates. Goes out: a `SolverText`, plain records that templates loop
+over. Names of coefficients are written with their order, ``Pi1[_k]``; C and NumPy read them alike.
+Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.taylor`, its twin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import groupby
+
+from coadjoint.lower.jets import ONE, Cell, Jets, make_jets
+from coadjoint.lower.program import (
+    ZERO,
+    Add,
+    Call,
+    Divide,
+    Multiply,
+    Negate,
+    Node,
+    Number,
+    Program,
+    Symbol,
+    walk,
+)
+
+#: Sums that one loop runs over: as many as vector registers hold with their factors.
+SUMS = 12
+#: The factor m of the sums of logarithms, exponentials, sines and cosines.
+_WEIGHT = Symbol("_orders[_m]")
+
+
+@dataclass(frozen=True)
+class Line:
+    """``name = value``.
+
+    Attributes:
+        name: What is assigned: a name of its own, or an entry of an array.
+        value: What is computed.
+    """
+
+    name: str
+    value: Node
+
+    @property
+    def is_new(self) -> bool:
+        """Whether the name is one of its own, which C declares."""
+        return "[" not in self.name
+
+
+@dataclass(frozen=True)
+class Stage:
+    """What is computed at an order k > 0 in one loop, and after it.
+
+    Attributes:
+        starts: Sums with their terms of m = 0, or zero.
+        last: The last m of the loop, ``"_k"`` or ``"_k - 1"``.
+        terms: Sums with what is added for each m.
+        lines: What follows from them.
+    """
+
+    starts: tuple[Line, ...]
+    last: str
+    terms: tuple[Line, ...]
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True)
+class SolverText:
+    """The recurrences of a system as templates print them.
+
+    Attributes:
+        fixed: What depends on parameters alone.
+        kept: Names of arrays of coefficients, those of the state and of what drives it left out.
+        first: Order 0 of all, and order 1 of the state.
+        stages: Each order k > 0.
+        rates: Coefficients of the state at the order k + 1.
+        functions: Elementary functions that are called, sqrt left out.
+        products: How many sums there are.
+        reads: Names that the recurrences read.
+        fixed_reads: Names that ``fixed`` reads.
+    """
+
+    fixed: tuple[Line, ...]
+    kept: tuple[str, ...]
+    first: tuple[Line, ...]
+    stages: tuple[Stage, ...]
+    rates: tuple[Line, ...]
+    functions: tuple[str, ...]
+    products: int
+    reads: frozenset[str]
+    fixed_reads: frozenset[str]
+
+
+def arrange(rhs: Program) -> SolverText:
+    """The recurrences of the rates of a system as its templates print them."""
+    jets = make_jets(rhs)
+    arrays = jets.kept.union(jets.state, jets.driving)
+    first = list(_first(jets, arrays))
+    stages = tuple(_stages(jets, arrays))
+    rates = tuple(
+        Line(f"{name}[_k + 1]", Multiply(Symbol("_parts[_k + 1]"), _at(tail, "_k", arrays)))
+        for name, (_, tail) in zip(jets.state, jets.rates, strict=True)
+    )
+    lines = [*first, *rates]
+    lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
+    calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
+    calls |= {n.function for v in rhs.values() for n in walk(v) if isinstance(n, Call)}
+    fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
+    return SolverText(
+        fixed=fixed,
+        kept=tuple(cell.name for cell in jets.cells if cell.name in jets.kept),
+        first=tuple(first),
+        stages=stages,
+        rates=rates,
+        functions=tuple(sorted(calls - {"sqrt"})),
+        products=jets.products,
+        reads=_reads(lines),
+        fixed_reads=_reads(fixed),
+    )
+
+
+@dataclass(frozen=True)
+class FunctionText:
+    """A Program as lines, what depends on parameters alone left out.
+
+    Attributes:
+        lines: Statements, then rows of the result.
+        reads: Names that they read.
+    """
+
+    lines: tuple[Line, ...]
+    reads: frozenset[str]
+
+
+def arrange_function(program: Program, out: str) -> FunctionText:
+    """The lines of a Program for each member.
+
+    Args:
+        program: What to arrange.
+        out: Name of the array of the result.
+    """
+    lines = [Line(statement.name, statement.value) for statement in program.at_level("member")]
+    lines += [Line(f"{out}[{row}]", each.value) for row, each in enumerate(program.outputs)]
+    return FunctionText(tuple(lines), _reads(lines))
+
+
+def _reads(lines: Iterable[Line]) -> frozenset[str]:
+    """The names that lines read, without their orders."""
+    nodes = (node for line in lines for node in walk(line.value))
+    return frozenset(node.name.split("[")[0] for node in nodes if isinstance(node, Symbol))
+
+
+def _at(node: Node, order: str, arrays: frozenset[str]) -> Node:
+    """A node with the coefficients of one order in the place of names."""
+    match node:
+        case Symbol(name=name):
+            return Symbol(f"{name}[{order}]") if name in arrays else node
+        case Negate(operand=operand):
+            return Negate(_at(operand, order, arrays))
+        case Call(function=function, argument=argument):
+            return Call(function, _at(argument, order, arrays))
+        case Add(left=left, right=right) | Multiply(left=left, right=right):
+            return type(node)(_at(left, order, arrays), _at(right, order, arrays))
+        case Divide(left=left, right=right):
+            return Divide(_at(left, order, arrays), _at(right, order, arrays))
+    return node
+
+
+def _first(jets: Jets, arrays: frozenset[str]) -> Iterator[Line]:
+    """Order 0 of all cells, and the rates."""
+    for cell in jets.cells:
+        yield _line(cell.name, "0", _at(cell.value, "0", arrays), arrays)
+        divisor = _divisor(cell)
+        if divisor is not None:
+            yield Line(f"{cell.name}_r", Divide(ONE, _at(divisor, "0", arrays)))
+    for name, (whole, _) in zip(jets.state, jets.rates, strict=True):
+        yield Line(f"{name}[1]", _at(whole, "0", arrays))
+
+
+def _divisor(cell: Cell) -> Node | None:
+    """What all later orders of a cell are divided by; None for no such thing."""
+    match cell.value:
+        case Divide(right=right) if cell.tail is None:
+            return right
+        case Call(function="sqrt"):
+            return Multiply(Number(Fraction(2)), Symbol(cell.name))
+        case Call(function="log", argument=argument):
+            return argument
+    return None
+
+
+def _line(name: str, order: str, value: Node, arrays: frozenset[str]) -> Line:
+    """An entry of an array where all orders are kept, else a name."""
+    return Line(f"{name}[{order}]" if name in arrays else name, value)
+
+
+def _stages(jets: Jets, arrays: frozenset[str]) -> Iterator[Stage]:
+    """The loops of an order k > 0, one upon the other."""
+    for _, group in groupby(jets.cells, key=lambda cell: cell.depth):
+        cells = list(group)
+        sums = [cell for cell in cells if cell.tail is None]
+        short = [cell for cell in sums if _is_short(cell)]
+        whole = [cell for cell in sums if not _is_short(cell)]
+        loops = [*_pieces(whole), *_pieces(short)]
+        combined = [
+            _line(cell.name, "_k", _at(cell.tail, "_k", arrays), arrays)
+            for cell in cells
+            if cell.tail is not None
+        ]
+        for place, loop in enumerate(loops):
+            rest = combined if place + 1 == len(loops) else []
+            yield _stage(loop, rest, jets, arrays)
+        if not loops:
+            yield Stage((), "_k", (), tuple(combined))
+
+
+def _is_short(cell: Cell) -> bool:
+    """Whether a sum ends before its own last coefficient."""
+    return isinstance(cell.value, Call) and cell.value.function in ("sqrt", "log")
+
+
+def _pieces(cells: Sequence[Cell]) -> Iterator[Sequence[Cell]]:
+    return (cells[start : start + SUMS] for start in range(0, len(cells), SUMS))
+
+
+def _stage(
+    cells: Sequence[Cell], rest: Iterable[Line], jets: Jets, arrays: frozenset[str]
+) -> Stage:
+    """One loop over the sums of some cells, and what follows."""
+    starts, terms, lines = [], [], []
+    for cell in cells:
+        total = f"{cell.name}_s"
+        start, term, result = _recurrence(cell, Symbol(total), jets, arrays)
+        starts.append(Line(total, start))
+        terms.append(Line(total, Add(Symbol(total), term)))
+        lines.append(_line(cell.name, "_k", result, arrays))
+    last = "_k - 1" if _is_short(cells[0]) else "_k"
+    return Stage(tuple(starts), last, tuple(terms), (*lines, *rest))
+
+
+def _recurrence(
+    cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]
+) -> tuple[Node, Node, Node]:
+    """How the sum of a cell begins, what is added for each m, and the coefficient it gives."""
+    name, reciprocal, part = cell.name, Symbol(f"{cell.name}_r"), Symbol("_parts[_k]")
+
+    def sum_over(left: str, right: str, *weight: Symbol) -> tuple[Node, Node]:
+        term: Node = Symbol(f"{right}[_k - _m]")
+        for factor in (Symbol(f"{left}[_m]"), *weight):
+            term = Multiply(factor, term)
+        return ZERO, term
+
+    match cell.value:
+        case Multiply(left=Symbol(name=a), right=Symbol(name=b)):
+            _, term = sum_over(a, b)
+            return Multiply(Symbol(f"{a}[0]"), Symbol(f"{b}[_k]")), term, total
+        case Divide(left=above, right=Symbol(name=b)):
+            moves = isinstance(above, Symbol) and above.name in jets.moving
+            rest = Add(_at(above, "_k", arrays), Negate(total)) if moves else Negate(total)
+            return *sum_over(b, name), Multiply(rest, reciprocal)
+        case Call(function="sqrt", argument=argument):
+            rest = Add(_at(argument, "_k", arrays), Negate(total))
+            return *sum_over(name, name), Multiply(rest, reciprocal)
+        case Call(function="exp", argument=Symbol(name=a)):
+            return *sum_over(a, name, _WEIGHT), Multiply(part, total)
+        case Call(function="log", argument=Symbol(name=a)):
+            rest = Add(Symbol(f"{a}[_k]"), Negate(Multiply(part, total)))
+            return *sum_over(name, a, _WEIGHT), Multiply(rest, reciprocal)
+        case Call(function=function, argument=Symbol(name=a)):
+            result = Multiply(part, total)
+            return (
+                *sum_over(a, cell.partner, _WEIGHT),
+                Negate(result) if function == "cos" else result,
+            )
+    raise AssertionError(cell)
