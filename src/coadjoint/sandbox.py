@@ -28,13 +28,7 @@ from threading import Lock, Timer
 from typing import IO, Any
 
 from coadjoint.budget import VARIABLE
-from coadjoint.errors import (
-    CoadjointError,
-    InternalError,
-    ResourceError,
-    from_record,
-    system_error,
-)
+from coadjoint.errors import CoadjointError, InternalError, ResourceError, from_record, system_error
 from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
 
 #: Called with stage, number of stages done, number of stages.

@@ -70,12 +70,7 @@ Keys of --format json:
 @click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
 @seconds_option
 def command(
-    algebra: str,
-    form: str,
-    degree: int,
-    generators: int,
-    output: Path | None,
-    seconds: int | None,
+    algebra: str, form: str, degree: int, generators: int, output: Path | None, seconds: int | None
 ) -> None:
     """Show brackets, invariants and Casimirs of a Lie algebra, proved.
 

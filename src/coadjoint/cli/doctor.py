@@ -30,16 +30,7 @@ from coadjoint.errors import CoadjointError, CompilerError, OutputError
 from coadjoint.limits import WORKER_BYTES, WORKER_SECONDS
 from coadjoint.resources import systems_folder
 
-PACKAGES: Final = (
-    "sympy",
-    "numpy",
-    "scipy",
-    "mpmath",
-    "jinja2",
-    "pydantic",
-    "click",
-    "rich",
-)
+PACKAGES: Final = ("sympy", "numpy", "scipy", "mpmath", "jinja2", "pydantic", "click", "rich")
 #: Packages of each optional extra.
 EXTRAS: Final = {"plot": ("matplotlib",), "data": ("xarray", "h5netcdf", "h5py"), "c": ("ziglang",)}
 

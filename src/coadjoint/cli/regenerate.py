@@ -78,12 +78,7 @@ def command(
         with progress_bars() as progress:
             if check:
                 outcome = engine.check(
-                    paths,
-                    target,
-                    jobs=jobs,
-                    complete=complete,
-                    seconds=seconds,
-                    progress=progress,
+                    paths, target, jobs=jobs, complete=complete, seconds=seconds, progress=progress
                 )
             else:
                 outcome = engine.regenerate(

@@ -170,11 +170,7 @@ def read_file(path: str) -> bytes:
     check_bytes(path, len(data))
     if not data.strip():
         raise file_fault(
-            path,
-            "the file is empty",
-            "a spec",
-            "Write one with: coadjoint new NAME.",
-            found="",
+            path, "the file is empty", "a spec", "Write one with: coadjoint new NAME.", found=""
         )
     return data
 

@@ -33,11 +33,9 @@ class Head(Part):
     license: License = Field(
         "", description="SPDX expression of the licence of this file and of what is generated"
     )
-    routes: Annotated[
-        list[RouteName],
-        Field(min_length=1),
-        AfterValidator(is_unique),
-    ] = Field(description="routes to derive by; the first is emitted, the others proved equal")
+    routes: Annotated[list[RouteName], Field(min_length=1), AfterValidator(is_unique)] = Field(
+        description="routes to derive by; the first is emitted, the others proved equal"
+    )
 
 
 def compose(tables: Iterable[Table[Any]]) -> type[Head]:

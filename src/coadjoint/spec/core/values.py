@@ -99,10 +99,7 @@ _NUMBER_OR_LISTS: dict[str, Any] = {
         {
             "type": "array",
             "items": {
-                "anyOf": [
-                    *NUMBER_SCHEMA["anyOf"],
-                    {"type": "array", "items": NUMBER_SCHEMA},
-                ]
+                "anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "array", "items": NUMBER_SCHEMA}]
             },
         },
     ]

@@ -221,10 +221,7 @@ def _read_variable(
 
 
 def _is_state(
-    name: str,
-    part: VariablePart,
-    parts: Mapping[str, VariablePart],
-    solved: Collection[str] | None,
+    name: str, part: VariablePart, parts: Mapping[str, VariablePart], solved: Collection[str] | None
 ) -> bool:
     """Whether a variable is part of the state; see `quantities.state_of`."""
     if solved is not None:
