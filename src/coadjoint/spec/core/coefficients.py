@@ -23,7 +23,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, walk, walk_up
+from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, fold, walk
 
 if TYPE_CHECKING:
     from coadjoint.exact import Field
@@ -186,16 +186,17 @@ class _Reading:
         scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
         shape_of(tree, scope)
         self.scalars.check_terms(tree, check_size(tree, scope))
-        found: dict[int, _Linear] = {}
-        for node in walk_up(tree):
-            result = self._value(node, found)
-            found[id(node)] = {place: value for place, value in result.items() if value != 0}
-        total = found[id(tree)]
+        total = fold(tree, self._value)
         if self.places and None in total:
             raise self._refusal(tree)
         return total
 
-    def _value(self, node: Node, found: Mapping[int, _Linear]) -> _Linear:
+    def _value(self, node: Node, below: list[_Linear]) -> _Linear:
+        """The coefficients of a node that are not 0, by those of its children."""
+        value = self._sum(node, below)
+        return {place: each for place, each in value.items() if each != 0}
+
+    def _sum(self, node: Node, below: list[_Linear]) -> _Linear:
         match node:
             case Number(value=value):
                 return {None: value}
@@ -205,13 +206,13 @@ class _Reading:
                 return self._scalar(node, name)
             case Index(name=name, indices=indices):
                 return self._scalar(node, name, indices)
-            case Negate(operand=operand):
-                return _multiply(found[id(operand)], Fraction(-1))
-            case Power(base=base, exponent=exponent) if exponent >= 0:
-                self._check_constant(node, found[id(base)])
-                return {None: found[id(base)].get(None, Fraction(0)) ** exponent}
-            case Binary(operator=operator, left=left, right=right):
-                return self._join(node, operator, found[id(left)], found[id(right)])
+            case Negate():
+                return _multiply(below[0], Fraction(-1))
+            case Power(exponent=exponent) if exponent >= 0:
+                self._check_constant(node, below[0])
+                return {None: below[0].get(None, Fraction(0)) ** exponent}
+            case Binary(operator=operator):
+                return self._join(node, operator, *below)
         raise self._refusal(node)
 
     def _single(self, node: Node, name: str) -> str:

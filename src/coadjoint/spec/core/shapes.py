@@ -23,8 +23,7 @@ from coadjoint.spec.core.tree import (
     Node,
     Number,
     Power,
-    children,
-    walk_up,
+    evaluate_nodes,
 )
 
 #: The functions that are adjoined to the field, by their own names.
@@ -177,10 +176,7 @@ def shape_of(tree: Node, scope: Mapping[str, Shape]) -> Shape:
 
 def shapes(tree: Node, scope: Mapping[str, Shape]) -> dict[int, Shape]:
     """The shape of every node of a tree, by ``id``."""
-    found: dict[int, Shape] = {}
-    for node in walk_up(tree):
-        found[id(node)] = _shape(node, [found[id(child)] for child in children(node)], scope)
-    return found
+    return evaluate_nodes(tree, lambda node, below: _shape(node, below, scope))
 
 
 def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:

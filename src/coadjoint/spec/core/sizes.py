@@ -27,7 +27,7 @@ from coadjoint.spec.core.tree import (
     Number,
     Power,
     children,
-    walk_up,
+    fold,
 )
 
 
@@ -66,13 +66,14 @@ def check_size(tree: Node, scope: Mapping[str, Shape]) -> int:
     >>> check_size(read_expression("(x + 1)^32"), {"x": ()})
     33
     """
-    shape, size = shapes(tree, scope), dict[int, Size]()
-    for node in walk_up(tree):
-        below = children(node)
-        found = _size(node, [size[id(c)] for c in below], [shape[id(c)] for c in below])
-        _check(node, found)
-        size[id(node)] = found
-    return size[id(tree)].terms
+    shape = shapes(tree, scope)
+
+    def measure(node: Node, below: list[Size]) -> Size:
+        size = _size(node, below, [shape[id(child)] for child in children(node)])
+        _check(node, size)
+        return size
+
+    return fold(tree, measure).terms
 
 
 def _check(node: Node, size: Size) -> None:

@@ -37,8 +37,8 @@ from coadjoint.spec.core.tree import (
     Node,
     Number,
     Power,
-    children,
-    walk_up,
+    fold,
+    walk,
 )
 
 #: What the two matrices are called.
@@ -77,7 +77,7 @@ def read_bracket(
 
 def _check_free(tree: Node, scalars: Scalars) -> None:
     """X and Y are the matrices, so no parameter may have these names."""
-    for node in walk_up(tree):
+    for node in walk(tree):
         if isinstance(node, Name) and node.name in PAIR and node.name in scalars.shapes:
             raise fault_at(
                 node,
@@ -95,11 +95,7 @@ class _Evaluation:
         self.scalars = scalars
 
     def value(self, tree: Node, pair: Mapping[str, SparseMatrix]) -> Matrix:
-        found: dict[int, Any] = {}
-        for node in walk_up(tree):
-            below = [found[id(child)] for child in children(node)]
-            found[id(node)] = self._of(node, below, pair)
-        result: Matrix = found[id(tree)]
+        result: Matrix = fold(tree, lambda node, below: self._of(node, below, pair))
         return {place: value for place, value in result.items() if value != 0}
 
     def _of(self, node: Node, below: list[Any], pair: Mapping[str, SparseMatrix]) -> Any:
