@@ -120,8 +120,8 @@ def examination_record(request: Mapping[str, Any]) -> dict[str, Any]:
 
     word, most, degree = request["algebra"], request["generators"], request["degree"]
     report_progress("examine", 0, 1)
-    found = examine(_algebra(word, most, degree), degree)
-    return found.as_record() if request["form"] == "json" else asdict(found.document())
+    examination = examine(_algebra(word, most, degree), degree)
+    return examination.as_record() if request["form"] == "json" else asdict(examination.document())
 
 
 def _algebra(word: str, most: int, degree: int) -> LieAlgebra:

@@ -101,7 +101,7 @@ def _print(report: Mapping[str, Any]) -> None:
                     f"{figures['k']:.2f}",
                     f"{figures['ulp']:.3g}",
                     str(figures["points"]),
-                    _with_numpy(report, function, target),
+                    _compare_with_numpy(report, function, target),
                 )
             )
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
@@ -111,7 +111,7 @@ def _print(report: Mapping[str, Any]) -> None:
     say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
 
 
-def _with_numpy(report: Mapping[str, Any], function: str, target: str) -> str:
+def _compare_with_numpy(report: Mapping[str, Any], function: str, target: str) -> str:
     """Where a target and NumPy agree: bit for bit, or within k with functions beyond sqrt."""
     equal = report["equal"].get(function, {}).get(target, 0)
     together = report["together"].get(function, {}).get(target, 0)

@@ -15,7 +15,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, Protocol
 
 from coadjoint.limits import PARAMETRIC_TERMS
-from coadjoint.spec.core.components import Shape, unpacked
+from coadjoint.spec.core.components import Shape, unpack
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.formulas import ROLES, Quantity
@@ -116,7 +116,6 @@ class Scalars:
                 tree.start,
                 tree.end,
                 found=str(self._terms),
-                expected=f"at most {PARAMETRIC_TERMS} (PARAMETRIC_TERMS)",
                 hint="Put numbers for some of the parameters.",
                 limit="PARAMETRIC_TERMS",
             )
@@ -135,7 +134,7 @@ def _entries(parameter: Constant) -> dict[tuple[int, ...], tuple[str, int]]:
     places = list(product(*(range(1, length + 1) for length in shape)))
     kept: Sequence[int] = range(1, len(names) + 1)
     if parameter.form:
-        kept = [entry for row in unpacked(kept, parameter.form) for entry in row]
+        kept = [entry for row in unpack(kept, parameter.form) for entry in row]
     return {
         place: (names[abs(n) - 1], (n > 0) - (n < 0)) for place, n in zip(places, kept, strict=True)
     }

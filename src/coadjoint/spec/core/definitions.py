@@ -86,7 +86,7 @@ def expand(
         """A node with its number of parts."""
         nonlocal total
         count = 1 + sum(count for _, count in below)
-        definition = definitions.get(_called(node))
+        definition = definitions.get(_name_called(node))
         if definition is None:
             return rebuild(node, [part for part, _ in below]), count
         expanded = _expand_call(node, definition, below)
@@ -102,17 +102,11 @@ def expand(
 
 
 def _too_large(node: Node, definition: Definition, limit: str, what: str) -> ExpressionError:
-    return ExpressionError(
-        f"with {definition.name} expanded, {what} too many parts",
-        node.start,
-        node.end,
-        found=definition.name,
-        expected=f"at most {getattr(limits, limit)} ({limit})",
-        limit=limit,
-    )
+    problem = f"with {definition.name} expanded, {what} too many parts"
+    return ExpressionError(problem, node.start, node.end, found=definition.name, limit=limit)
 
 
-def _called(node: Node) -> str:
+def _name_called(node: Node) -> str:
     """What a node may be a definition of; empty for operators."""
     match node:
         case Name(name=name) | Index(name=name) | Call(function=name):
@@ -139,7 +133,7 @@ def _expand_call(
         nonlocal count
         fresh = rebuild(part, below)
         fresh = replace(fresh, start=node.start, end=node.end, within=definition.name)
-        argument = values.get(_called(part)) if isinstance(part, (Name, Index)) else None
+        argument = values.get(_name_called(part)) if isinstance(part, (Name, Index)) else None
         count += 1 if argument is None else argument[1] + isinstance(part, Index)
         return fresh if argument is None else _component(fresh, argument[0])
 

@@ -93,15 +93,15 @@ def _size(node: Node, below: list[Size], shape: list[Shape]) -> Size:
         case Number(value=value):
             return _constant(value)
         case Negate():
-            return _negative(below[0])
+            return _negate(below[0])
         case Power(exponent=exponent):
             return _power(node, below[0], exponent, shape[0])
         case Binary(operator="*"):
-            return _product(below[0], below[1], _summed(below, shape))
+            return _product(below[0], below[1], _count_products(below, shape))
         case Binary(operator="/"):
             return _quotient(node, *below)
         case Binary(operator=operator):
-            return _sum(below[0], _negative(below[1]) if operator == "-" else below[1])
+            return _sum(below[0], _negate(below[1]) if operator == "-" else below[1])
         case Component():
             return replace(below[0], diagonal=False, constant=None)
         case Call(function=function) if function in ELEMENTARY:
@@ -116,7 +116,7 @@ def _constant(value: Fraction) -> Size:
     return Size(bits=bits, constant=value, fixed=True)
 
 
-def _negative(a: Size) -> Size:
+def _negate(a: Size) -> Size:
     return a if a.constant is None else _constant(-a.constant)
 
 
@@ -145,7 +145,7 @@ def _product(a: Size, b: Size, summed: int = 1) -> Size:
     )
 
 
-def _summed(below: list[Size], shape: list[Shape]) -> int:
+def _count_products(below: list[Size], shape: list[Shape]) -> int:
     """How many products of components a component of a product adds up."""
     left, right = shape
     return left[1] if left and right and not any(part.diagonal for part in below) else 1
@@ -206,7 +206,7 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
         case "cross":
             return _product(a, below[1], 2)
         case "commutator":
-            products = _product(a, below[1], _summed(below, shape))
+            products = _product(a, below[1], _count_products(below, shape))
             return _sum(products, products)
         case "trace":
             return Size(n * a.terms, a.degree, a.bits + n.bit_length())
@@ -246,8 +246,7 @@ def _determinant(a: Size, n: int) -> Size:
 
 
 def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:
-    expected = f"at most {getattr(limits, limit)} ({limit})"
-    return fault_at(node, problem, found=problem, expected=expected, limit=limit)
+    return fault_at(node, problem, found=problem, limit=limit)
 
 
 def _no_value(node: Node, problem: str, expected: str) -> ExpressionError:

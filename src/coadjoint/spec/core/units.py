@@ -38,7 +38,7 @@ def parse_unit(text: str) -> Unit | None:
         if factor[1]:
             exponent = Fraction(factor[2] or 1) * (-1 if divided else 1)
             exponents[factor[1]] = exponents.get(factor[1], Fraction(0)) + exponent
-    return _nonzero(exponents)
+    return _drop_zeros(exponents)
 
 
 def unit_text(unit: Unit | None) -> str:
@@ -124,15 +124,17 @@ def _combine(operator: str, left: Unit | None, right: Unit | None) -> Unit | Non
     sign = 1 if operator == "*" else -1
     names = left.keys() | right.keys()
     zero = Fraction(0)
-    return _nonzero({name: left.get(name, zero) + sign * right.get(name, zero) for name in names})
+    return _drop_zeros(
+        {name: left.get(name, zero) + sign * right.get(name, zero) for name in names}
+    )
 
 
 def _raise_to(unit: Unit | None, exponent: Fraction) -> Unit | None:
     """A unit to a power."""
-    return None if unit is None else _nonzero({name: e * exponent for name, e in unit.items()})
+    return None if unit is None else _drop_zeros({name: e * exponent for name, e in unit.items()})
 
 
-def _nonzero(unit: Mapping[str, Fraction]) -> Unit:
+def _drop_zeros(unit: Mapping[str, Fraction]) -> Unit:
     return {name: exponent for name, exponent in unit.items() if exponent}
 
 

@@ -171,7 +171,11 @@ def _shape_text(value: object) -> str:
 
 
 #: What says how many components the entries of a table have.
-_SIZED = {"variables": "block, representation or shape", "parameters": "shape"}
+_SIZED = {
+    "variables": "block, representation or shape",
+    "parameters": "shape",
+    "symmetries": "algebra",
+}
 
 
 def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:

@@ -96,8 +96,8 @@ def _check_alone(reading: Reading, variables: Sequence[Variable]) -> None:
         **{(table,): getattr(file, table) for table in tables},
         ("variables", *velocities[:1]): velocities,
     }
-    for key, found in alien.items():
-        if found:
+    for key, given in alien.items():
+        if given:
             name = str(key[-1])
             raise reading.source.fault(
                 key,
