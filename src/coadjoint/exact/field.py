@@ -57,7 +57,7 @@ class Field(Rationals):
         self.relations: dict[frozenset[str], object] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
-        """Take it that conditions hold, besides those that do."""
+        """Assume further conditions."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
 
@@ -112,15 +112,15 @@ class Field(Rationals):
         """
         from coadjoint.exact.relations import vanish_by_relations  # which needs fields
 
-        if not self.adjoined or self.function_free(element):
+        if not self.adjoined or self.is_function_free(element):
             return element
         called = self.functions_in(element)
         for known in reversed(self.adjoined.values()):
             square = self._square_of(known)
             if square is not None:
-                element = self.reduce_squares(element.combined(), known.generator, square)
-        short = element.combined()
-        if self.function_free(short):
+                element = self.reduce_squares(element.combine(), known.generator, square)
+        short = element.combine()
+        if self.is_function_free(short):
             return short
         hidden = vanish_by_relations(self, short, called | self.functions_in(short))
         return self.zero if hidden else short
@@ -164,7 +164,7 @@ class Field(Rationals):
             return False
         return self.is_zero(divisor)
 
-    def function_free(self, element: Element) -> bool:
+    def is_function_free(self, element: Element) -> bool:
         """Whether no adjoined function occurs, so that the normal form decides both ways."""
         return not any(name in self.adjoined for name in self.names_in(element))
 
@@ -289,7 +289,7 @@ class Field(Rationals):
             names |= self.reach(self.adjoined[generator].argument)
         return names
 
-    def in_sines(self, p: PolyElement) -> PolyElement:
+    def write_in_sines(self, p: PolyElement) -> PolyElement:
         """A polynomial with even powers of cosines written by sines: ``1 - cos^2`` as ``sin^2``."""
         element = self._element(p)
         for name, known in self.adjoined.items():

@@ -31,7 +31,7 @@ FACTORED = 400
 
 def numerator(element: Element) -> PolyElement:
     """The numerator of a nonzero element."""
-    (quotient,) = element.combined().parts
+    (quotient,) = element.combine().parts
     return quotient.numer
 
 
@@ -80,7 +80,7 @@ def _relations_in(
             if present[own] > 0 or present[other] > 0:
                 yield gens[own] ** 2 + gens[other] ** 2 - 1
         if known.function == "sqrt" and present[own] > 0 and known.argument != 0:
-            (argument,) = known.argument.combined().parts
+            (argument,) = known.argument.combine().parts
             if not argument.powers:
                 yield gens[own] ** 2 - argument.numer
 

@@ -249,7 +249,7 @@ class SpanModulo:
         pivots: The rows by their pivots, pivot entries 1; a row has none of the pivots before it.
 
     >>> plane = SpanModulo(7)
-    >>> plane.independent([{0: 1, 1: 2}, {0: 2, 1: 4}, {0: 1}])
+    >>> plane.add_independent([{0: 1, 1: 2}, {0: 2, 1: 4}, {0: 1}])
     [0, 2]
     """
 
@@ -263,14 +263,14 @@ class SpanModulo:
         self.pivots: dict[int, Row] = {}
         self._order: list[int] = []
         self._age: dict[int, int] = {}
-        self.independent(rows)
+        self.add_independent(rows)
 
     @property
     def rank(self) -> int:
         """Dimension of the span."""
         return len(self.pivots)
 
-    def independent(self, rows: Iterable[Mapping[int, int]]) -> list[int]:
+    def add_independent(self, rows: Iterable[Mapping[int, int]]) -> list[int]:
         """Places of the rows that do not depend on those before them; each of these is added."""
         return [place for place, row in enumerate(rows) if self.add(row)]
 

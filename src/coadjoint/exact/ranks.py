@@ -106,7 +106,7 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
     if not is_exact(field, _entries(rows)):
         return max(islice(_enclose(field, rows), POINTS), key=len)
     spans = ((SpanModulo(prime), numbers) for prime, numbers in _sample(field, rows))
-    chosen = (span.independent(numbers) for span, numbers in islice(spans, POINTS))
+    chosen = (span.add_independent(numbers) for span, numbers in islice(spans, POINTS))
     return max(chosen, key=len)
 
 
@@ -116,7 +116,7 @@ def is_exact(field: Field, elements: Iterable[Element]) -> bool:
     A square root modulo a prime has no sign: that of x^2 may be -x there, which it is nowhere for
     positive x.
     """
-    return not field.adjoined or all(map(field.function_free, elements))
+    return not field.adjoined or all(map(field.is_function_free, elements))
 
 
 def _entries(rows: Sequence[Mapping[int, Element]]) -> Iterator[Element]:
@@ -181,7 +181,7 @@ def _enclose(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
             result = True
             yield certain_rows(values)
     if not result:
-        entry = next(e for e in _entries(rows) if not field.function_free(e))
+        entry = next(e for e in _entries(rows) if not field.is_function_free(e))
         text = element_text(field, entry)
         shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
         raise AlgebraError(

@@ -200,7 +200,7 @@ class Rationals:
 
     def numerators(self, elements: Iterable[Element]) -> tuple[list[PolyElement], Element]:
         """Numerators over a common denominator, and its reciprocal."""
-        quotients = [each.combined().parts for each in elements]
+        quotients = [each.combine().parts for each in elements]
         common: dict[int, int] = {}
         for quotient, *_ in filter(None, quotients):
             for number, exponent in quotient.powers.items():

@@ -50,7 +50,7 @@ def rational_root(value: Fraction) -> Fraction | None:
 
 def _root(field: Field, argument: Element) -> Element | None:
     """The square root of a square whose root has a declared sign."""
-    whole = field.normal(argument).combined()
+    whole = field.normal(argument).combine()
     if whole == 0:
         return whole
     top, bottom = field.fraction(whole)

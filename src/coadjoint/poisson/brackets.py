@@ -45,7 +45,7 @@ def lie_poisson(
     return _from_constants(algebra, field, names, field.vector(field[x] for x in names), sign)
 
 
-def frozen(
+def freeze_bracket(
     algebra: LieAlgebra,
     field: Field,
     names: Sequence[str],
@@ -112,7 +112,7 @@ def magnetic(
         field: Where the coordinates are symbols.
         pairs: Each coordinate with its momentum.
         two_form: B by pairs of momenta, each pair once; a function of the coordinates q alone.
-        weights: w, 1 by default; entries of symmetric matrices beside the diagonal have 1/2, since
+        weights: w, 1 by default; off-diagonal entries of symmetric matrices have 1/2, since
             ``tr(P dS/dt)`` counts them twice.
 
     Raises:
@@ -209,7 +209,7 @@ def nambu_tensor(
     return antisymmetric(field, n, entries)
 
 
-def declared(
+def declare_bracket(
     field: Field, names: Sequence[str], brackets: Mapping[tuple[int, int], Element], name: str = ""
 ) -> PoissonStructure:
     """A structure from its brackets ``{(i, j): {x_i, x_j}}``, each pair once, others zero.
@@ -218,7 +218,7 @@ def declared(
         AlgebraError: A pair is given twice or with itself, or the Jacobi identity fails.
 
     >>> field = Field(["q", "p"])
-    >>> declared(field, field.names, {(1, 0): -field.one}).bracket(field["q"], field["p"])
+    >>> declare_bracket(field, field.names, {(1, 0): -field.one}).bracket(field["q"], field["p"])
     1
     """
     entries: dict[tuple[int, int], Element] = {}

@@ -182,7 +182,7 @@ def search_summands(
     return CasimirSearch(structure, tuple(result))
 
 
-def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
+def select_independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
     """Those functions whose gradients are independent of all before them at a generic point."""
     slopes = [structure.gradient(function) for function in functions]
     return [functions[place] for place in independent_rows(structure.field, slopes)]
@@ -226,7 +226,7 @@ def _search(
         AlgebraError: An entry of the tensor is not a polynomial over the rationals.
     """
     bracket = PolynomialBracket(structure)
-    reached = _affordable(structure.dimension, degree)
+    reached = _reduce_degree(structure.dimension, degree)
     found, ways, searched = list[Polynomial](), list[str](), list[str]()
 
     def search_polynomials() -> None:
@@ -258,12 +258,12 @@ def _search(
     if len(found) < expected and bracket.scalings:
         count = len(generators)
         rational = quotients(structure, bracket, reached)
-        generators = independent(structure, [*generators, *rational])
+        generators = select_independent(structure, [*generators, *rational])
         ways += ["quotients of semi-invariants"] * (len(generators) > count)
         searched.append(f"products of powers of semi-invariants of degree <= {reached}")
     skipped = "" if reached == degree else _explain_skipped(structure.dimension, degree, reached)
     if known:  # long functions; these are independent of each other by now
-        generators = independent(structure, [*known, *generators])[len(known) :]
+        generators = select_independent(structure, [*known, *generators])[len(known) :]
     return SummandSearch(
         structure,
         len(known),
@@ -276,7 +276,7 @@ def _search(
     )
 
 
-def _affordable(dimension: int, degree: int) -> int:
+def _reduce_degree(dimension: int, degree: int) -> int:
     """The largest degree up to the one that is asked for with at most `MONOMIALS` monomials."""
     while degree > 1 and _monomials(dimension, degree) > MONOMIALS:
         degree -= 1

@@ -142,10 +142,10 @@ class PoissonStructure:
     def is_casimir(self, f: Element) -> bool:
         """Whether f commutes with every function: ``J grad f = 0``, by normal form."""
         slopes = self.gradient(f)
-        return all(self.field.is_zero(self._along(i, slopes)) for i in self._asked)
+        return all(self.field.is_zero(self._along(i, slopes)) for i in self._tested_places)
 
     @cached_property
-    def _asked(self) -> Sequence[int]:
+    def _tested_places(self) -> Sequence[int]:
         """Coordinates that generate the others where Jacobi is proved by constants; else all."""
         try:
             algebra = self.lie_algebra()

@@ -52,7 +52,7 @@ def undetermined_nambu(dimension: int = 3, functions: Sequence[str] = ()) -> Poi
 
 @dataclass(frozen=True)
 class Mixing:
-    """The motion of ``(alpha c + beta h, gamma c + delta h)`` beside that of ``(c, h)``.
+    """The motion of ``(alpha c + beta h, gamma c + delta h)`` and that of ``(c, h)``.
 
     Attributes:
         field: Holds the derivatives of c and h and the four coefficients as symbols.
