@@ -417,3 +417,18 @@ class Element:
 
     def __repr__(self) -> str:
         return str(self._sympy_())
+
+
+def numerator(element: Element) -> PolyElement:
+    """The numerator of a nonzero element."""
+    (quotient,) = element.combine().parts
+    return quotient.numer
+
+
+def split_by_powers(p: PolyElement, place: int) -> dict[int, PolyElement]:
+    """The coefficients of the powers of a generator, in the order in which they occur."""
+    result: dict[int, dict[tuple[int, ...], Any]] = {}
+    for exponents, value in p.terms():
+        rest = (*exponents[:place], 0, *exponents[place + 1 :])
+        result.setdefault(exponents[place], {})[rest] = value
+    return {power: p.ring.from_dict(terms) for power, terms in result.items()}

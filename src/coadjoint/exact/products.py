@@ -13,9 +13,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import mul
 
-from sympy.polys.rings import PolyElement
-
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import (
     Factor,
     Powers,
@@ -247,11 +245,6 @@ class Products:
                 for f, e in vector.items()
             ),
         )
-
-
-def numerator(element: Element) -> PolyElement:
-    """The numerator of a nonzero quotient; a generator as a factor."""
-    return element.parts[0].numer
 
 
 def product(ring: Field, powers: Iterable[tuple[Element, int]]) -> Element:

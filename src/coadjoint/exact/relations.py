@@ -26,13 +26,12 @@ from math import prod
 
 from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import Factor, factors_of
-from coadjoint.exact.field import Field
+from coadjoint.exact.field import Adjoined, Field
 from coadjoint.exact.lattices import Lattice
-from coadjoint.exact.products import Products, numerator, product
+from coadjoint.exact.products import Products, product
 from coadjoint.exact.witness import witness_nonzero
-from coadjoint.exact.written import Adjoined
 
 #: Terms of a sine of a sum; one with more keeps a generator of its own.
 EXPANDED = 64
@@ -117,7 +116,7 @@ class Relations:
     def _image(self, element: Element) -> Element:
         """An element in the new ring, as one quotient."""
         values = {name: self.ring[name] for name in self.field.names} | self._images
-        result = self.field.rewritten(element, values, self.ring.number)
+        result = self.field.evaluate(element, values, self.ring.number)
         return self.products.normalize(result)
 
     def _of_polynomial(self, p: PolyElement) -> Element:

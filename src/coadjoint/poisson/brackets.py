@@ -60,7 +60,7 @@ def freeze_bracket(
     """
     _check_count(f"frozen bracket of {algebra.name}", names, algebra.dimension)
     _check_count(f"frozen bracket of {algebra.name}", point, algebra.dimension)
-    structure = _from_constants(algebra, field, names, field.vector(_exact(point)), sign)
+    structure = _from_constants(algebra, field, names, field.vector(point), sign)
     extra = {pair: field.zero + value for pair, value in (cocycle or {}).items()}
     entries = {pair: structure.tensor[pair[0]][pair[1]] + value for pair, value in extra.items()}
     kept = {(i, j): structure.tensor[i][j] for i, j in combinations(range(len(names)), 2)}
@@ -123,7 +123,7 @@ def magnetic(
     """
     coordinates, momenta = [q for q, _ in pairs], [p for _, p in pairs]
     names, n = (*coordinates, *momenta), len(pairs)
-    scale = field.vector(_exact(weights or (1,) * n))
+    scale = field.vector(weights or (1,) * n)
     entries = {(a, n + a): scale[a] for a in range(n)}
     for (first, second), value in two_form.items():
         a, b = places(momenta, (first, second))
@@ -246,8 +246,3 @@ def _check_count(
             found=len(found),
             expected=expected,
         )
-
-
-def _exact(values: Sequence[Number]) -> list[Element | int]:
-    """Numbers as they come; a field takes them in."""
-    return list(values)  # type: ignore[arg-type]

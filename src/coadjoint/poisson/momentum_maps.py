@@ -26,8 +26,12 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.linear import Span
-from coadjoint.groups.lifts import cotangent_lift
-from coadjoint.groups.vector_fields import VectorField, exterior_derivative, lie_derivative
+from coadjoint.groups.vector_fields import (
+    VectorField,
+    cotangent_lift,
+    exterior_derivative,
+    lie_derivative,
+)
 from coadjoint.poisson.structure import PoissonStructure
 
 #: A position, its momentum and ``{q, p}``, which is 1 but for entries of symmetric matrices.

@@ -26,9 +26,9 @@ from typing import Any
 from sympy import factorint
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.field import Adjoined
 from coadjoint.exact.lattices import coordinates, lattice_basis
 from coadjoint.exact.residues import Residue, residue, square_root
-from coadjoint.exact.written import Adjoined
 
 #: Numbers under square roots up to which prime factors are looked for.
 LARGEST = 10**18

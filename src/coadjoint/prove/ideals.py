@@ -28,7 +28,8 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.exact.irreducible import FACTORED, all_factors, numerator
+from coadjoint.exact.element import numerator
+from coadjoint.exact.irreducible import FACTORED, all_factors
 from coadjoint.exact.signs import Signs, is_factor
 from coadjoint.prove.points import Branch, Points, Values
 

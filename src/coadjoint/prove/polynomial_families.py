@@ -22,8 +22,8 @@ from operator import add, mul
 from coadjoint.exact import Element
 from coadjoint.exact.ansatz import Exponents, Solution, monomials
 from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
+from coadjoint.exact.rationals import Written
 from coadjoint.exact.residues import residue
-from coadjoint.exact.written import Written
 from coadjoint.prove.densities import Measure
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import Point, Samples, Slopes, leading
