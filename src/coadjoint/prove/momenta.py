@@ -67,7 +67,7 @@ def momentum_law(equations: Equations, section: Section) -> Element:
 def _statement(motion: Motion, section: Section, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     spec = motion.equations.spec
-    closed = motion.field.normal(motion.equations.close(law)).combined()
+    closed = motion.field.normal(motion.equations.close(law)).combine()
     if motion.where.contains(closed):
         return f"{section.name} is conserved, by its momentum equation"
     text = element_text(motion.field, closed)
