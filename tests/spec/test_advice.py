@@ -190,6 +190,14 @@ ADVICE = [
         write('[dissipation]\nR = "dot(Pi, Pi)"', '[forces]\nPi = "-Pi"'),
     ),
     (
+        PARTICLE,
+        before_claims(
+            '[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\ngenerators = { x = "s" }\ntime = "s"'
+        ),
+        "Remove time: the balance of the energy is proved of every motion.",
+        write('\ntime = "s"', ""),
+    ),
+    (
         MASSLESS,
         write(END, '[forces]\nv = "-v"\n[claims]'),
         'Write v = { role = "coordinate" } in [variables], and in [forces] what is added to its',
