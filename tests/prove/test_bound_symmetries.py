@@ -100,7 +100,7 @@ def test_the_momenta_of_the_particle_by_hand():
 
 
 def test_a_conserved_momentum_is_no_symmetry():
-    """The momentum m v of the particle is conserved, and to move y changes the constraint w = y u."""
+    """The particle keeps m v, and to move y changes the constraint w = y u."""
     found = examined(PARTICLE + MOVED, ('x = "a[1]"', 'y = "a[1]"'))
     assert found["J1 is conserved, by its momentum equation"] is Verdict.PROVED
     assert refuted(found) == {
