@@ -79,6 +79,11 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     return MomentumMap(algebra, structure, tuple(generators), values, sign)
 
 
+def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:
+    """The components that each basis vector of the algebra moves, as declared."""
+    return [_moves(setting, symmetry, element) for element in _elements(setting, symmetry)]
+
+
 def structure_of(equations: Equations) -> PoissonStructure:
     """The emitted bracket, velocities put in."""
     tensor = equations.exact.poisson_tensor
@@ -217,7 +222,7 @@ def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
     if moves.keys() <= covector.keys():
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())
     formula = next(iter(symmetry.generators.values()), None)
-    if not has_structure(setting):
+    if setting.spec.constraints or not has_structure(setting):
         problem = "the motion has no bracket in which something could generate it"
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
@@ -250,8 +255,9 @@ def _covector(setting: Setting) -> dict[str, Element]:
     pairs = _pairs(setting)
     if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
         return {q: field[p] / weight for q, p, weight in pairs}
-    slopes = mechanics(setting).momenta
-    return dict(zip(setting.positions, slopes, strict=True))
+    slopes = mechanics(setting).momenta  # those of coordinates are the last of a frame
+    own = len(slopes) - len(setting.positions)
+    return dict(zip(setting.positions, slopes[own:], strict=True))
 
 
 def _generator(
