@@ -32,7 +32,7 @@ folder_options = (
     click.option(
         "--output",
         type=click.Path(path_type=Path),
-        help="Generated folder. Default: `generated` beside the folder of specs.",
+        help="Generated folder. Default: `generated` next to the folder of specs.",
     ),
 )
 
@@ -46,7 +46,11 @@ def add_folder_options(function: Any) -> Any:
 
 @click.command("regenerate")
 @click.argument("names", nargs=-1, metavar="[SYSTEM]...")
-@click.option("--check", is_flag=True, help="Write nothing; compare with a fresh run, 1 on drift.")
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Write nothing; compare with a fresh run. Exit status 1 if files differ.",
+)
 @click.option(
     "--jobs",
     type=click.IntRange(1),

@@ -17,6 +17,7 @@ from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics import external
+from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.records import Exact, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
@@ -88,14 +89,13 @@ def _check_regular(restriction: Restriction, energy: Element) -> None:
         try:
             field.substitute(value, restriction.section)
         except ZeroDivisionError as error:
-            raise refusal(
-                restriction.setting,
-                restriction.whole.route,
-                f"{what} has a pole everywhere on the section",
-                what,
-                "a section on which the motion of the whole system is defined",
-                "Correct [reduction], or the Hamiltonian.",
-            ) from error
+            formula = restriction.setting.spec.hamiltonian
+            assert formula is not None, "the reader asks for a Hamiltonian"
+            message = (
+                f"{what} has a pole everywhere on the section; expected a section on which the "
+                "motion of the whole system is defined. Correct [reduction], or the Hamiltonian."
+            )
+            raise fault(restriction.setting, formula, message, what) from error
 
 
 def whole_equations(setting: Setting, route: str) -> Equations:
