@@ -2,7 +2,7 @@
 
 Comes in: vectors as dictionaries of their nonzero entries. Goes out: coordinates, bases, ranks, all
 exact. `Span` works with any exact values (integers, fractions, elements of a function field);
-`nullspace` and `rank` are for large systems over the rationals. SciPy has no exact solver, SymPy
+`nullspace` is for large systems over the rationals. SciPy has no exact solver, SymPy
 must stay out of everything that the spec reader imports.
 Read next: `coadjoint.algebra.invariants`.
 """
@@ -165,18 +165,6 @@ def nullspace(
         "expected coefficients that fit. Scale the equations.",
         found=len(equations),
     )
-
-
-def rank(rows: Iterable[Mapping[int, Fraction | int]]) -> int:
-    """The rank over the rationals.
-
-    >>> rank([{0: 1, 1: 2}, {0: 2, 1: 4}, {5: 1}])
-    2
-    """
-    kept = [dict(row) for row in rows]
-    number = {column: n for n, column in enumerate(sorted({c for row in kept for c in row}))}
-    numbered = [{number[c]: value for c, value in row.items()} for row in kept]
-    return len(number) - len(nullspace(numbered, len(number)))
 
 
 def primes() -> Iterator[int]:
