@@ -1,4 +1,4 @@
-"""Irreducible factors of polynomials, in a time that does not rest on luck.
+"""Irreducible factors of polynomials, in a time that does not depend on random choices.
 
 SymPy lifts factors from random points, and takes minutes where these are badly chosen; polynomials
 of mechanics are linear or quadratic in some symbol, and then their factors follow from coefficients
@@ -164,7 +164,7 @@ def _place_of(factor: PolyElement) -> tuple[Any, ...]:
 
 
 def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
-    r"""The irreducible factors of a polynomial, in a time that does not rest on luck.
+    r"""The irreducible factors of a polynomial, in a time that does not depend on random choices.
 
     One that is linear in a symbol has no factors but those of all its coefficients. Of a quadratic
     one the discriminant is a square if it has others: ``4 A p = (2 A x + B - D) (2 A x + B + D)``.

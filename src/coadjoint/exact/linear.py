@@ -174,7 +174,7 @@ def primes() -> Iterator[int]:
     >>> [2**61 - prime for prime in islice(primes(), 3)]
     [1, 45, 229]
     """
-    from sympy import isprime  # which whoever reads a spec does without
+    from sympy import isprime  # reading a spec does not load SymPy
 
     yield from filter(isprime, range(PRIME, 0, -4))
 
