@@ -259,8 +259,7 @@ class Element:
         if isinstance(other, Element):
             return other
         if isinstance(other, int | Fraction):
-            exact = Fraction(other)
-            ground = QQ(exact.numerator, exact.denominator)
+            ground = QQ(other.numerator, other.denominator)
             return Element(self.factors, [(self.factors.ring.ground_new(ground), {})])
         return None
 

@@ -19,7 +19,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.element import Element, numerator, remove_factor, split_by_powers
-from coadjoint.exact.factors import exact, rational_root
+from coadjoint.exact.factors import rational_root, to_fraction
 from coadjoint.exact.field import Field
 
 #: Symbols that are eliminated at a time by the relations of functions, to find factors.
@@ -205,7 +205,7 @@ def _square_root(polynomial: PolyElement) -> PolyElement | None:
     if not polynomial:
         return polynomial
     number, parts = polynomial.sqf_list()
-    whole = rational_root(exact(number))
+    whole = rational_root(to_fraction(number))
     if whole is None or any(power % 2 for _, power in parts):
         return None
     root = polynomial.ring.one * polynomial.ring.domain(whole.numerator, whole.denominator)

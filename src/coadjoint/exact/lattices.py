@@ -13,7 +13,7 @@ from fractions import Fraction
 from math import lcm
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.factors import exact
+from coadjoint.exact.factors import to_fraction
 from coadjoint.exact.field import Field
 from coadjoint.exact.linear import Span
 
@@ -82,7 +82,7 @@ class Lattice:
     def __init__(self, field: Field, arguments: Sequence[Element], *, halved: bool = False) -> None:
         tops, below = field.numerators(map(field.normal, arguments))
         monomials = sorted({monomial for p in tops for monomial in p}, reverse=True)
-        self.vectors = [tuple(exact(p.get(m, 0)) for m in monomials) for p in tops]
+        self.vectors = [tuple(to_fraction(p.get(m, 0)) for m in monomials) for p in tops]
         wanted = [tuple(x / 2 for x in v) for v in self.vectors] if halved else self.vectors
         result = lattice_basis(wanted) if wanted else []
         places = range(len(result))
