@@ -42,7 +42,7 @@ def factors_of(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
     return content, [*gens, *((f.monic(), e) for f, e in result if not f.is_ground)]
 
 
-def exact(number: Any) -> Fraction:
+def to_fraction(number: Any) -> Fraction:
     """A rational number of SymPy's domains as one of Python."""
     return Fraction(int(number.numerator), int(number.denominator))
 

@@ -132,8 +132,6 @@ class Field(Rationals):
         With functions the element is one quotient: a common denominator brings new squares. It is
         0 also where other relations of the functions show that (`coadjoint.exact.relations`).
         """
-        from coadjoint.exact.relations import vanish_by_relations  # which needs fields
-
         if not self.adjoined or self.is_function_free(element):
             return element
         called = self.functions_in(element)
@@ -144,6 +142,8 @@ class Field(Rationals):
         short = element.combine()
         if self.is_function_free(short):
             return short
+        from coadjoint.exact.relations import vanish_by_relations  # which needs fields
+
         hidden = vanish_by_relations(self, short, called | self.functions_in(short))
         return self.zero if hidden else short
 

@@ -1,4 +1,4 @@
-"""Irreducible factors of polynomials, in a time that does not rest on luck.
+"""Irreducible factors of polynomials, in a time that does not depend on random choices.
 
 SymPy lifts factors from random points, and takes minutes where these are badly chosen; polynomials
 of mechanics are linear or quadratic in some symbol, and then their factors follow from coefficients
@@ -19,7 +19,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.element import Element, numerator, remove_factor, split_by_powers
-from coadjoint.exact.factors import exact, rational_root
+from coadjoint.exact.factors import rational_root, to_fraction
 from coadjoint.exact.field import Field
 
 #: Symbols that are eliminated at a time by the relations of functions, to find factors.
@@ -164,7 +164,7 @@ def _place_of(factor: PolyElement) -> tuple[Any, ...]:
 
 
 def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
-    r"""The irreducible factors of a polynomial, in a time that does not rest on luck.
+    r"""The irreducible factors of a polynomial, in a time that does not depend on random choices.
 
     One that is linear in a symbol has no factors but those of all its coefficients. Of a quadratic
     one the discriminant is a square if it has others: ``4 A p = (2 A x + B - D) (2 A x + B + D)``.
@@ -205,7 +205,7 @@ def _square_root(polynomial: PolyElement) -> PolyElement | None:
     if not polynomial:
         return polynomial
     number, parts = polynomial.sqf_list()
-    whole = rational_root(exact(number))
+    whole = rational_root(to_fraction(number))
     if whole is None or any(power % 2 for _, power in parts):
         return None
     root = polynomial.ring.one * polynomial.ring.domain(whole.numerator, whole.denominator)

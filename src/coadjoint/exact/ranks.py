@@ -11,8 +11,8 @@ every point of the connected set around it on which the entries are analytic.
 
 From above nothing is certain. Rational minors of degree d that are not zero vanish at a random
 point with a chance below d/p, about 1e-15, and not at both of two points with two primes; values of
-functions bound no such chance. Who needs the rank itself has to bound it from above by other means,
-as Casimirs do the rank of a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
+functions bound no such chance. A caller that needs the rank itself bounds it from above by other
+means, as Casimirs do for a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
 primes are the same in every run.
 """
 
@@ -74,7 +74,8 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
     if not most:
         return 0
     exact = is_exact(field, _entries(rows))
-    ranks = _ranks_modulo(field, rows) if exact else map(len, _enclose(field, rows))
+    modular = (rank_modulo(numbers, prime) for prime, numbers in _sample(field, rows))
+    ranks = modular if exact else map(len, _enclose(field, rows))
     for rank in islice(ranks, POINTS):
         largest = max(largest, rank)
         if largest == most:
@@ -142,10 +143,6 @@ def _most(rows: Sequence[Mapping[int, Element]]) -> int:
 # -- modulo primes --------------------------------------------------------------------------------
 
 
-def _ranks_modulo(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[int]:
-    return (rank_modulo(numbers, prime) for prime, numbers in _sample(field, rows))
-
-
 def _sample(
     field: Field, rows: Sequence[Mapping[int, Element]]
 ) -> Iterator[tuple[int, list[dict[int, int]]]]:
@@ -183,7 +180,7 @@ def _enclose(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
         text = element_text(field, entry)
         shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
         raise AlgebraError(
-            f"no point was found where {shown} and what stands with it are real; expected formulas "
+            f"no point was found where {shown} and the other entries are real; expected formulas "
             "that are defined together somewhere. State in [domain] where they are.",
             found=text,
         )
@@ -209,7 +206,7 @@ def certain_rows(
 ) -> list[int]:
     """Places of rows that are independent of those before, by bounds that exclude zero.
 
-    The elimination is one of exact numbers that nobody knows better than their bounds: a pivot is
+    This eliminates exact numbers of which only bounds are known: a pivot is certainly
     not zero, so that every row that has one raises the rank.
     """
     pivots: list[tuple[int, dict[int, Enclosure]]] = []
@@ -221,8 +218,8 @@ def certain_rows(
                 factor = rest.pop(column) / pivot[column]
                 for other, value in pivot.items():
                     if other != column:
-                        taken = minus * factor * value
-                        rest[other] = rest[other] + taken if other in rest else taken
+                        change = minus * factor * value
+                        rest[other] = rest[other] + change if other in rest else change
         chosen = choose(place, rest)
         if chosen is not None:
             pivots.append((chosen, rest))

@@ -8,7 +8,6 @@ Read next: `coadjoint.exact.field`, which gives the free generators a meaning.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -23,6 +22,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.factors import to_fraction
 
 Value = TypeVar("Value")
 
@@ -49,6 +49,11 @@ class Rationals:
     Args:
         names: The symbols, in the order that fixes the normal form.
         slots: How many generators stand behind them, for functions of symbols.
+
+    Attributes:
+        generators: The symbols and the slots for functions, in the order of the ring.
+        zero: The element 0.
+        one: The element 1.
     """
 
     def __init__(self, names: Sequence[str], slots: int = 0) -> None:
@@ -57,12 +62,16 @@ class Rationals:
         self._free = [f"_f{n + 1}" for n in range(slots)]
         self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
         self._factors = Factors(self._ring, len(self._free))
-        self._names = (*names, *self._free)
-        self._position = {name: n for n, name in enumerate(self._names)}
+        #: A block in which arithmetic ends after so much work: see `Factors.budget`.
+        self.budget = self._factors.budget
+        self.generators = (*names, *self._free)
+        self._position = {name: n for n, name in enumerate(self.generators)}
         self._generators = {
             name: self.from_polynomial(generator)
-            for name, generator in zip(self._names, self._ring.gens, strict=True)
+            for name, generator in zip(self.generators, self._ring.gens, strict=True)
         }
+        self.zero = self.from_polynomial(self._ring.zero)
+        self.one = self.from_polynomial(self._ring.one)
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
 
     def __getitem__(self, name: str) -> Element:
@@ -71,16 +80,6 @@ class Rationals:
     def from_polynomial(self, p: PolyElement) -> Element:
         """A polynomial of the ring as an element."""
         return Element(self._factors, [(p, {})])
-
-    @property
-    def zero(self) -> Element:
-        """The element 0."""
-        return self.from_polynomial(self._ring.zero)
-
-    @property
-    def one(self) -> Element:
-        """The element 1."""
-        return self.from_polynomial(self._ring.one)
 
     def number(self, value: Fraction | int) -> Element:
         """A rational number as an element."""
@@ -124,7 +123,7 @@ class Rationals:
         places = [self._position[names[n]] for n in used]
         result = {}
         for exponents, number in terms.items():
-            powers = [0] * len(self._names)
+            powers = [0] * len(self.generators)
             for place, n in zip(places, used, strict=True):
                 powers[place] = exponents[n]
             result[tuple(powers)] = number
@@ -184,19 +183,14 @@ class Rationals:
         if p not in self._remembered:
             self._remembered[p] = tuple(
                 Monomial(
-                    Fraction(int(coefficient.numerator), int(coefficient.denominator)),
-                    tuple((self._names[place], e) for place, e in enumerate(exponents) if e),
+                    to_fraction(coefficient),
+                    tuple((self.generators[place], e) for place, e in enumerate(exponents) if e),
                 )
                 for exponents, coefficient in p.terms()
             )
         return self._remembered[p]
 
     # -- parts, for signs and relations -------------------------------------------------
-
-    @property
-    def generators(self) -> tuple[str, ...]:
-        """The symbols and the slots for functions, in the order of the ring."""
-        return self._names
 
     def fraction(self, element: Element) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
         """Numerator and factors of the denominator, with exponents, of a nonzero quotient."""
@@ -225,21 +219,20 @@ class Rationals:
         quotient, *others = element.parts
         if others or quotient.powers or not quotient.numer.is_ground:
             return None
-        value = quotient.numer.LC
-        return Fraction(int(value.numerator), int(value.denominator))
+        return to_fraction(quotient.numer.LC)
 
     def quotients(self, element: Element) -> list[Written]:
         """The quotients whose sum the element is, in the order of the field."""
         return [
             Written(
                 self._written(quotient.numer),
-                tuple((self._factor(n), exponent) for n, exponent in quotient.powers.items()),
+                tuple(
+                    (self.from_polynomial(self._factors.known[n]), exponent)
+                    for n, exponent in quotient.powers.items()
+                ),
             )
             for quotient in element.parts
         ]
-
-    def _factor(self, number: int) -> Element:
-        return self.from_polynomial(self._factors.known[number])
 
     def terms(self, element: Element) -> tuple[Element, ...]:
         """The addends of the numerators, each over the whole denominator of its quotient."""
@@ -260,7 +253,3 @@ class Rationals:
             key = tuple(sorted(term.parts[0].powers.items()))
             groups.setdefault(key, []).append(term)
         return [self.sum(terms) for terms in groups.values()] or [element]
-
-    def budget(self, work: int) -> AbstractContextManager[None]:
-        """A block in which arithmetic ends after so much work: see `Factors.budget`."""
-        return self._factors.budget(work)

@@ -76,7 +76,7 @@ def _jacobi(first: Equations) -> Decision:
     """Jacobi identity of the emitted tensor: of its constants where it is affine in the state."""
     structure = bracket_of(first)
     with suppress(AlgebraError):  # the identity fails; the defects below show where
-        if structure.lie_algebra() is not None:
+        if structure.lie_algebra is not None:
             return Decision(Verdict.PROVED, CONSTANTS)
     defects = list(structure.jacobi_defects().values())
     if defects:
