@@ -312,7 +312,7 @@ MUTANTS = (
     ),
     *of(
         "spec/core/definitions",
-        "_expand_call: rewrite argument[1] + isinstance(part, Index) -> 1",
+        "place: rewrite argument[1] + isinstance(part, Index) -> 1",
         "_component: rewrite replace(_1, name=_2) -> whole",
         "_expand_call: rewrite len(given) != len(definition.arguments) -> not given",
         "_check_arguments: rewrite arguments[:place] -> []",

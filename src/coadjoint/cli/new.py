@@ -42,7 +42,7 @@ I = {{ shape = [3], positive = true, default = [1, 2, 3], unit = "kg m^2", doc =
 [lagrangian] # quadratic in the velocities
 l = "dot(Omega, diag(I)*Omega)/2"
 
-[observables] # scalars of your own, emitted beside energy, Casimirs and velocities
+[observables] # scalars of your own, emitted with energy, Casimirs and velocities
 spin = {{ expression = "norm(Omega)", unit = "1/s" }}
 
 [claims] # proved at every regeneration; a false one is refuted with a counter-example

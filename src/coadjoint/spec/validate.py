@@ -179,7 +179,7 @@ def _advise_routes(document: Mapping[str, Any]) -> str:
 
 
 def _drop_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
-    """Faults without the missing keys that a misspelt key beside them was meant to be."""
+    """Faults without the missing keys that a misspelt key next to them was meant to be."""
     meant = set()
     for detail in details:
         *table, key = detail["loc"]

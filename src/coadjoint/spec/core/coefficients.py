@@ -18,7 +18,7 @@ from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.core.components import Shape, unpack
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.formulas import ROLES, Quantity
+from coadjoint.spec.core.formulas import ROLES, HasComponents
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
@@ -39,7 +39,7 @@ _COMBINATION = (
 _POLYNOMIAL = "a polynomial of parameters", "numbers and parameters with + - * and powers"
 
 
-class Constant(Quantity, Protocol):
+class Constant(HasComponents, Protocol):
     """A parameter, as far as coefficients know it."""
 
     @property
@@ -60,7 +60,7 @@ class Scalars:
     """
 
     def __init__(
-        self, parameters: Sequence[Constant] = (), driving: Sequence[Quantity] = ()
+        self, parameters: Sequence[Constant] = (), driving: Sequence[HasComponents] = ()
     ) -> None:
         self._driving = {
             name: each.role for each in driving for name in (each.name, *each.components)

@@ -180,7 +180,7 @@ def define(
     Args:
         source: The text of the spec.
         texts: Expressions by the keys of [definitions].
-        shapes: Shapes of all that they may name beside each other.
+        shapes: Shapes of all that they may name, apart from each other.
 
     Raises:
         SpecError: An expression is none, or a name in it is unknown.

@@ -66,7 +66,7 @@ def read_expression(text: str, defined: Collection[str] = ()) -> Node:
 
     Args:
         text: What stands in the spec.
-        defined: Functions that it may call beside those of the language.
+        defined: Functions that it may call in addition to those of the language.
 
     Raises:
         ExpressionError: A syntax error, with what was probably meant, or a limit passed.

@@ -22,7 +22,7 @@ from coadjoint.spec.core.source import Source, write_key
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
-class Quantity(Protocol):
+class HasComponents(Protocol):
     """What has components: a variable, a parameter, an input or the time."""
 
     @property
@@ -67,7 +67,7 @@ class Formula:
 
 
 #: What a spec declares and a formula may use.
-Declared = Quantity | Definition
+Declared = HasComponents | Definition
 #: What the variables of each role are called together.
 PLURALS = {
     "velocity": "velocities",

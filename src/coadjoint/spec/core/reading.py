@@ -23,7 +23,7 @@ from coadjoint.spec.core.formulas import (
     DRIVING,
     Declared,
     Formula,
-    Quantity,
+    HasComponents,
     Scope,
     make_scope,
     read_formula,
@@ -249,7 +249,7 @@ class Reading:
         )
 
     def check_count(
-        self, what: str, table: str, quantities: Iterable[Quantity], limit: str
+        self, what: str, table: str, quantities: Iterable[HasComponents], limit: str
     ) -> None:
         """Refuse too many components.
 

@@ -32,7 +32,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import Quantity
+from coadjoint.spec.core.formulas import HasComponents
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
@@ -88,7 +88,7 @@ def read_structure(reading: Reading, part: AlgebraPart) -> Structure:
 
 def scalars_of(reading: Reading) -> Scalars:
     """The parameters that constants may depend on, and what they may not name."""
-    driving: list[Quantity] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
+    driving: list[HasComponents] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
     return Scalars(PARAMETERS.of(reading), driving)
 
 
@@ -148,7 +148,7 @@ class _Algebras:
     def _add_blocks(
         self, algebra: LieAlgebra, declared: Mapping[str, list[str]], key: KeyPath
     ) -> LieAlgebra:
-        """The algebra with the declared blocks beside its own."""
+        """The algebra with the declared blocks in addition to its own."""
         if not declared:
             return algebra
         blocks = {

@@ -45,7 +45,7 @@ class ChartPart(Part):
     hamiltonian: str = Field("", description="h of positions and momenta, in place of rates")
     lagrangian: str = Field("", description="l of positions and velocities, in place of rates")
     pairs: list[_Pair] = Field(
-        [], description="positions with their momenta or velocities, beside h or l"
+        [], description="positions with their momenta or velocities, with h or l"
     )
 
 
@@ -73,7 +73,7 @@ class DeclaredChart:
         where: Functions that are zero throughout.
         kind: ``rates``, ``hamiltonian`` or ``lagrangian``: how the motion is given.
         motion: The rates by variable, or h or l by its kind.
-        pairs: Positions with their momenta or velocities, beside h or l.
+        pairs: Positions with their momenta or velocities, with h or l.
     """
 
     name: str
@@ -127,9 +127,9 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
     if kind == "rates" and part.pairs:
         raise reading.at_key(
             (*key, "pairs"),
-            "the pairs say nothing beside rates",
+            "there are pairs with rates",
             "pairs",
-            "pairs beside a Hamiltonian or a Lagrangian",
+            "pairs only with a Hamiltonian or a Lagrangian",
             "Remove pairs.",
         )
     if kind == "rates":

@@ -66,7 +66,7 @@ class Poisson:
         entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
             the declared brackets, or the magnetic terms of a canonical one.
         pairs: ``(i, j)`` of a position and its momentum of a canonical bracket, else empty.
-        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices beside
+        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices off
             the diagonal, since there the pairing is ``tr(P dS/dt)``, which counts it twice.
     """
 

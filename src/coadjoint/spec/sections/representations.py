@@ -142,7 +142,7 @@ REPRESENTATIONS = Table[dict[str, Representation]](
 
 
 class ClebschPart(Part):
-    """A canonical pair of the route clebsch, beside those of the advected quantities."""
+    """A canonical pair of the route clebsch, in addition to those of the advected quantities."""
 
     representation: str = Field(description="how the algebra acts on it, such as 'adjoint'")
 

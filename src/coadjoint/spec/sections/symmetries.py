@@ -76,7 +76,7 @@ class SymmetryPart(Part):
 
 @dataclass(frozen=True)
 class Symmetry:
-    """An infinitesimal action, whose momentum map is emitted beside the dynamics.
+    """An infinitesimal action, whose momentum map is emitted with the dynamics.
 
     Attributes:
         name: Of the momentum map.
@@ -301,5 +301,5 @@ def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[s
 
 
 def shapes_in_claims(reading: Reading) -> Mapping[str, Shape]:
-    """What claims about symmetries may name beside the state."""
+    """What claims about symmetries may name in addition to the state."""
     return emitted_shapes([*OBSERVABLES.of(reading), *SYMMETRIES.of(reading)])

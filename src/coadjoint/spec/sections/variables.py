@@ -414,7 +414,7 @@ def motion_roles(reading: Reading) -> tuple[str, ...]:
 
 
 def position_roles(reading: Reading) -> tuple[str, ...]:
-    """Roles of the positions: what a Lagrangian is a function of beside the velocities."""
+    """Roles of the positions: what a Lagrangian is a function of, apart from the velocities."""
     roles = motion_roles(reading)
     default = "coordinate" if ALGEBRA.of(reading).algebra is None else "advected"
     return tuple(each for each in roles if each not in ("velocity", "momentum")) or (default,)
