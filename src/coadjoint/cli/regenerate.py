@@ -143,11 +143,8 @@ def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
             near = get_close_matches(name, by_name, n=1)
             hint = f" Did you mean {near[0]!r}?" if near else ""
             known = ", ".join(by_name)
-            raise SpecError(
-                f"{folder}: no spec is called {name!r}; expected one of {known}.{hint}",
-                path=str(folder),
-                found=name,
-            )
+            message = f"{folder}: no spec is called {name!r}; expected one of {known}.{hint}"
+            raise SpecError(message, path=str(folder), found=name)
     return [by_name[name] for name in dict.fromkeys(names or by_name)]
 
 

@@ -65,11 +65,9 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
         return read_spec_text(data.decode("utf-8"), path)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
+        problem = f"the byte 0x{data[error.start]:02x} is not UTF-8"
         raise file_fault(
-            f"{os.fspath(path)}:{line}",
-            f"the byte 0x{data[error.start]:02x} is not UTF-8",
-            "a text in UTF-8",
-            found=data[error.start],
+            f"{os.fspath(path)}:{line}", problem, "a text in UTF-8", found=data[error.start]
         ) from None
 
 
@@ -210,13 +208,8 @@ def check_bytes(path: str, size: int) -> None:
         LimitError: It is.
     """
     if size > SPEC_BYTES:
-        raise file_fault(
-            path,
-            f"the file has {size} bytes",
-            f"at most {SPEC_BYTES} (SPEC_BYTES)",
-            found=size,
-            kind=LimitError,
-        )
+        expected = f"at most {SPEC_BYTES} (SPEC_BYTES)"
+        raise file_fault(path, f"the file has {size} bytes", expected, found=size, kind=LimitError)
 
 
 def file_fault(

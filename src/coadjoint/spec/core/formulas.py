@@ -187,13 +187,10 @@ def _check_roles(tree: Node, scope: Scope) -> None:
     """Refuse a declared name that this kind of formula may not use, saying why."""
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
-            raise fault_at(
-                node,
-                f"{node.name!r} is {ROLES[scope.outside[node.name]]}",
-                found=node.name,
-                expected=f"{scope.kind} in terms of {scope.takes}",
-                hint=did_you_mean(node.name, scope.shapes),
-            )
+            problem = f"{node.name!r} is {ROLES[scope.outside[node.name]]}"
+            expected = f"{scope.kind} in terms of {scope.takes}"
+            hint = did_you_mean(node.name, scope.shapes)
+            raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
 
 
 def read_fitting(

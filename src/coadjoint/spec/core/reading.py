@@ -240,12 +240,10 @@ class Reading:
     ) -> CoadjointError:
         """An error for a name at a key that nothing has."""
         names = list(known)
+        problem = f"there is no {what} {name!a}"
+        hint = did_you_mean(name, names)
         return self.at_key(
-            key,
-            f"there is no {what} {name!a}",
-            name,
-            f"one of {list_names(names)}" if names else otherwise,
-            did_you_mean(name, names),
+            key, problem, name, f"one of {list_names(names)}" if names else otherwise, hint
         )
 
     def check_count(

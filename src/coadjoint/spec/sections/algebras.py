@@ -217,13 +217,10 @@ class _Algebras:
         matrices, size = read_matrices(self.source, key, tables, basis, self.scalars)
         for name in basis:
             if name not in matrices:
-                raise self.source.fault(
-                    key,
-                    f"the matrix of {name!r} is missing",
-                    found=name,
-                    expected=f"a matrix for each of {list_names(basis)}",
-                    hint=f"Write {name} = [[...], [...]] among the matrices.",
-                )
+                problem = f"the matrix of {name!r} is missing"
+                expected = f"a matrix for each of {list_names(basis)}"
+                hint = f"Write {name} = [[...], [...]] among the matrices."
+                raise self.source.fault(key, problem, found=name, expected=expected, hint=hint)
         chosen = [matrices[name] for name in basis]
         if bracket is None:
             with point_at_faults(self.source, key):
@@ -319,13 +316,9 @@ class _Algebras:
         """Refuse a product whose parts bring one name twice."""
         for place, name in enumerate(algebra.basis):
             if name in algebra.basis[:place]:
-                raise self.source.fault(
-                    key,
-                    f"the basis would have two vectors {name!r}",
-                    found=name,
-                    expected="names that differ",
-                    hint="Choose another name here.",
-                )
+                problem = f"the basis would have two vectors {name!r}"
+                expected, hint = "names that differ", "Choose another name here."
+                raise self.source.fault(key, problem, found=name, expected=expected, hint=hint)
 
 
 ALGEBRA = Table[Structure](

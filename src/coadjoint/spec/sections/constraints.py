@@ -123,13 +123,10 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
     for definition in sorted(find_definitions_with_reactions(reading.file)):
         name = signature(definition)[0]
         if name in names:
-            raise reading.source.fault(
-                key,
-                f"the constraint rests on {name}, which names a reaction",
-                found=name,
-                expected="an equation between velocities, which no reaction enters",
-                hint=f"Write {name} without reactions, or use it in [forces] alone.",
-            )
+            problem = f"the constraint rests on {name}, which names a reaction"
+            expected = "an equation between velocities, which no reaction enters"
+            hint = f"Write {name} without reactions, or use it in [forces] alone."
+            raise reading.source.fault(key, problem, found=name, expected=expected, hint=hint)
 
 
 def _check_unasked(source: Source, file: Any) -> None:

@@ -75,12 +75,9 @@ def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> No
     chain = [name]
     while (following := parts[chain[-1]].rate or "") in parts:
         if following in chain:
-            raise source.fault(
-                ("inputs", name, "rate"),
-                f"the rates {' -> '.join([*chain, following])} form a circle",
-                found=rate,
-                expected="an input whose rates end at one without",
-            )
+            problem = f"the rates {' -> '.join([*chain, following])} form a circle"
+            expected = "an input whose rates end at one without"
+            raise source.fault(("inputs", name, "rate"), problem, found=rate, expected=expected)
         chain.append(following)
 
 

@@ -70,12 +70,9 @@ def _read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter
     key: KeyPath = ("parameters", name, "default")
     default = read_default(source, key, part.default, shape)
     if default is not None and part.positive and min(default) <= 0:
-        raise source.fault(
-            key,
-            f"the default {min(default)} of {name!r} is not positive",
-            found=str(min(default)),
-            expected="positive numbers, since positive = true",
-        )
+        problem = f"the default {min(default)} of {name!r} is not positive"
+        expected = "positive numbers, since positive = true"
+        raise source.fault(key, problem, found=str(min(default)), expected=expected)
     return Parameter(
         name=name,
         shape=shape,

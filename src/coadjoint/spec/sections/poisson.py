@@ -190,12 +190,9 @@ class _Bracket:
                     f"{n!r} {_describe(len(c), f)}"
                     for n, c, f in zip(pair, (q, p), forms, strict=True)
                 ]
-                raise self.source.fault(
-                    key,
-                    " and ".join(sides),
-                    found=list_names(pair),
-                    expected="a position and a momentum of one shape and form",
-                )
+                problem = " and ".join(sides)
+                expected = "a position and a momentum of one shape and form"
+                raise self.source.fault(key, problem, found=list_names(pair), expected=expected)
             paired += (*q, *p)
             weights |= zip(zip(q, p, strict=True), pairing_weights(len(q), forms[0]), strict=True)
         self._check_single(paired)
@@ -214,12 +211,10 @@ class _Bracket:
                 often = "no pair" if place not in places else "more than one pair"
                 ways = "Declare a constant as a parameter, or let a force or [metriplectic] move it"
                 hint = "" if place in places else f"{ways}."
+                problem = f"the coordinate {name!r} is in {often}"
+                expected = "each coordinate in one pair"
                 raise self.source.fault(
-                    ("poisson", "canonical"),
-                    f"the coordinate {name!r} is in {often}",
-                    found=name,
-                    expected="each coordinate in one pair",
-                    hint=hint,
+                    ("poisson", "canonical"), problem, found=name, expected=expected, hint=hint
                 )
 
 
