@@ -38,15 +38,15 @@ def reserved_words() -> dict[str, str]:
     >>> reserved_words()["restrict"]
     'a keyword of C'
     """
-    found: dict[str, str] = {}
+    words: dict[str, str] = {}
     for path in sorted(targets_folder().glob("*/reserved.txt")):
         kind = ""
         for line in path.read_text(encoding="ascii").splitlines():
             if line.startswith("# "):
                 kind = line.removeprefix("# ")
             else:
-                found |= {word: kind for word in line.split() if word not in found}
-    return found
+                words |= {word: kind for word in line.split() if word not in words}
+    return words
 
 
 def derivations_folder() -> Path:
@@ -68,7 +68,7 @@ def systems_folder() -> Path:
 
 
 def _folder(installed: str, checkout: str) -> Path:
-    """The folder inside the installed package, or else beside ``src`` in a checkout."""
+    """The folder inside the installed package, or else next to ``src`` in a checkout."""
     package = Path(__file__).resolve().parent
     inside = package / installed
     return inside if inside.is_dir() else package.parents[1] / checkout

@@ -20,8 +20,8 @@ from typing import Any
 
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
-from coadjoint.build.compiler import LABEL, Compiler, compile_kernel, find_compiler
-from coadjoint.errors import CompilerError, OutputError
+from coadjoint.build.compiler import ANOTHER, LABEL, Compiler, compile_kernel, find_compiler
+from coadjoint.errors import CompilerError, OutputError, remedy_for, system_error
 
 _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
 #: An array: where it is, and its stride.
@@ -60,7 +60,7 @@ class Library:
         except (OSError, ValueError) as error:
             raise CompilerError(
                 f"the compiled kernel of {name} cannot be loaded: {error}. "
-                "Set CC to another compiler.",
+                f"{remedy_for(str(error)) or ANOTHER}",
                 found=str(error),
             ) from error
         for what, expected in (("id", identity), ("build", build)):
@@ -145,8 +145,9 @@ def load_library(
                 (work / file).write_bytes(content)
             fresh = compile_kernel(compiler, work, build)
         except (OSError, OutputError) as error:
+            reason = (isinstance(error, OSError) and system_error(error)) or error
             raise CompilerError(
-                f"the kernel of {name} cannot be compiled here: {error}", found=str(error)
+                f"the kernel of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error
         library = Library(fresh, name, identity, build, source)
         verify(library)

@@ -1,6 +1,6 @@
 """Command ``list``: the systems, and what is known of each.
 
-Comes in: a folder of specs and the generated folder beside it. Goes out: a table. Nothing is
+Comes in: a folder of specs and the generated folder next to it. Goes out: a table. Nothing is
 derived and nothing generated is run: what was proved is read from the certificates, and the specs
 are read in a bounded child.
 """
@@ -16,7 +16,7 @@ import click
 
 from coadjoint.cli.arguments import seconds_option
 from coadjoint.cli.output import json_option, print_json, print_table
-from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
+from coadjoint.cli.regenerate import add_folder_options, folders, proved_cell, spec_paths
 from coadjoint.errors import CoadjointError
 from coadjoint.files import read_certificate
 
@@ -48,7 +48,7 @@ class Entry:
 
 
 @click.command("list")
-@with_folders
+@add_folder_options
 @seconds_option
 @json_option
 def command(

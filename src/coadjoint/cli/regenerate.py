@@ -1,6 +1,6 @@
 """Command ``regenerate``, the main job: specs in, verified kernels out.
 
-Comes in: a folder of specs. Goes out: the generated folder beside it, a table, and the errors of
+Comes in: a folder of specs. Goes out: the generated folder next to it, a table, and the errors of
 systems that failed. Read next: `coadjoint.regenerate`.
 """
 
@@ -10,6 +10,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,7 @@ folder_options = (
 )
 
 
-def with_folders(function: Any) -> Any:
+def add_folder_options(function: Any) -> Any:
     """Add ``--derivations`` and ``--output`` to a command."""
     for option in reversed(folder_options):
         function = option(function)
@@ -59,7 +60,7 @@ def with_folders(function: Any) -> Any:
     help="Number of systems processed in parallel.",
 )
 @seconds_option
-@with_folders
+@add_folder_options
 @json_option
 def command(
     names: tuple[str, ...],
@@ -77,28 +78,16 @@ def command(
     if not check:
         refuse_elsewhere(bool(derivations or output), target)
     paths = spec_paths(source, names)
-    complete = not names
+    run = engine.check
+    if not check:
+        wait = partial(say, f"waiting for another run in {target}", err=True)
+        run = partial(engine.regenerate, on_wait=wait)
     try:
         with progress_bars() as progress:
-            if check:
-                outcome = engine.check(
-                    paths,
-                    target,
-                    jobs=jobs,
-                    complete=complete,
-                    seconds=seconds,
-                    progress=progress,
-                )
-            else:
-                outcome = engine.regenerate(
-                    paths,
-                    target,
-                    jobs=jobs,
-                    complete=complete,
-                    seconds=seconds,
-                    progress=progress,
-                    on_wait=lambda: say(f"waiting for another run in {target}", err=True),
-                )
+            whole = not names
+            outcome = run(
+                paths, target, jobs=jobs, complete=whole, seconds=seconds, progress=progress
+            )
     except DriftError as drift:
         show_drift(drift)
         raise
@@ -111,8 +100,8 @@ def folders(derivations: Path | None, output: Path | None) -> tuple[Path, Path]:
     here = Path("derivations")
     shipped = derivations_folder()
     source = derivations or (here if here.is_dir() else shipped)
-    beside = systems_folder() if source.resolve() == shipped.resolve() else None
-    return source, output or beside or source.parent / "generated"
+    installed = systems_folder() if source.resolve() == shipped.resolve() else None
+    return source, output or installed or source.parent / "generated"
 
 
 def refuse_elsewhere(is_named: bool, target: Path) -> None:
@@ -146,23 +135,21 @@ def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
     Raises:
         SpecError: There is none, or none of a given name.
     """
-    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    if not found:
+    by_name = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    if not by_name:
         raise SpecError(
             f"{folder}: no specs found; expected files ending in .toml. "
             "Write one with `coadjoint new`, or name the folder with --derivations.",
             path=str(folder),
         )
     for name in names:
-        if name not in found:
-            near = get_close_matches(name, found, n=1)
+        if name not in by_name:
+            near = get_close_matches(name, by_name, n=1)
             hint = f" Did you mean {near[0]!r}?" if near else ""
-            raise SpecError(
-                f"{folder}: no spec is called {name!r}; expected one of {', '.join(found)}.{hint}",
-                path=str(folder),
-                found=name,
-            )
-    return [found[name] for name in dict.fromkeys(names)] if names else list(found.values())
+            known = ", ".join(by_name)
+            message = f"{folder}: no spec is called {name!r}; expected one of {known}.{hint}"
+            raise SpecError(message, path=str(folder), found=name)
+    return [by_name[name] for name in dict.fromkeys(names or by_name)]
 
 
 def report_failures(failures: Mapping[str, CoadjointError]) -> int:

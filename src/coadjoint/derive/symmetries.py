@@ -26,7 +26,7 @@ from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_functi
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.model import Symmetry, matrix_size, unpacked
+from coadjoint.spec.model import Symmetry, matrix_size, unpack
 
 #: Components that move, by name.
 Moves = Mapping[str, Element]
@@ -46,7 +46,7 @@ def momentum_maps(setting: Setting, energy: Element | None) -> dict[str, tuple[E
 def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Quantity:
     """The components of a momentum map as what it is in formulas."""
     if symmetry.form in ("antisymmetric", "symmetric"):
-        return unpacked(components, symmetry.form)
+        return unpack(components, symmetry.form)
     return shape(components, symmetry.shape)
 
 
@@ -183,7 +183,7 @@ def _kept_entries(
         "antisymmetric": [rows[i][j] for i in range(size) for j in range(i + 1, size)],
         "symmetric": [rows[i][j] for i in range(size) for j in range(i, size)],
     }.get(form, list(parts))
-    if any(x != y for x, y in zip(entries(unpacked(kept, form)), parts, strict=True)):
+    if any(x != y for x, y in zip(entries(unpack(kept, form)), parts, strict=True)):
         raise _fault(setting, formula, f"the value is not {form}", "Correct the formula.")
     return tuple(kept)
 

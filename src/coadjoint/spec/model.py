@@ -16,7 +16,7 @@ from typing import Any
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
-from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
+from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpack
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
@@ -37,7 +37,6 @@ from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
 from coadjoint.spec.sections.variables import Variable, state_of
-from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
 
 __all__ = [
     "FORMS",
@@ -60,7 +59,6 @@ __all__ = [
     "Rolling",
     "Section",
     "Shape",
-    "SpatialMomentum",
     "Spec",
     "Symmetry",
     "Time",
@@ -69,7 +67,7 @@ __all__ = [
     "component_names",
     "matrix_size",
     "state_of",
-    "unpacked",
+    "unpack",
 ]
 
 
@@ -137,8 +135,8 @@ class Spec:
         galilean: Whether Newton's law is claimed to be that of every Galilean observer.
         reduction: The submanifold to which a motion is restricted, whose state this is, or None.
         constraints: Equations between velocities; empty for motions that are free.
-        forces: What acts beside the energy, by the name of the velocity that it works on, or of the
-            momentum or coordinate to whose rate it is added.
+        forces: What acts in addition to the energy, by the name of the velocity that it works on,
+            or of the momentum or coordinate to whose rate it is added.
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
         domain: Where the system is defined, as far as declared.
         relaxation: Dissipation by a symmetric bracket, or None.
@@ -212,25 +210,20 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """The velocities that follow from the state, emitted beside the dynamics."""
+        """The velocities that follow from the state, emitted with the dynamics."""
         state = self.state
         return tuple(each for each in self.having_role("velocity") if each not in state)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""
-        found = (variable for variable in self.having_role(role) if variable.of == coordinate)
-        return next(found, None)
+        partners = (variable for variable in self.having_role(role) if variable.of == coordinate)
+        return next(partners, None)
 
     @property
     def attitude(self) -> Variable | None:
         """The group element in the state, as a matrix or a unit quaternion; None without one."""
         advected = ((v, v.representation) for v in self.having_role("advected"))
         return next((v for v, action in advected if action and action.name in ATTITUDES), None)
-
-    @property
-    def spatial(self) -> tuple[SpatialMomentum, ...]:
-        """The momenta seen from space; empty without an attitude that can be inverted."""
-        return spatial_momenta(self)
 
     @property
     def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:
@@ -240,7 +233,7 @@ class Spec:
 
     @property
     def is_driven(self) -> bool:
-        """Whether anything acts beside the energy: forces or dissipation of any kind."""
+        """Whether anything acts in addition to the energy: forces or dissipation of any kind."""
         return self.is_forced or self.relaxation is not None
 
     @property

@@ -35,6 +35,7 @@ from coadjoint.spec.core.reading import Naming, Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.model import Spec
 from coadjoint.spec.sections.reduction import REDUCTION
+from coadjoint.spec.spatial import spatial_momenta
 from coadjoint.spec.tables import TABLES
 from coadjoint.spec.validate import validate
 
@@ -64,11 +65,9 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
         return read_spec_text(data.decode("utf-8"), path)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
+        problem = f"the byte 0x{data[error.start]:02x} is not UTF-8"
         raise file_fault(
-            f"{os.fspath(path)}:{line}",
-            f"the byte 0x{data[error.start]:02x} is not UTF-8",
-            "a text in UTF-8",
-            found=data[error.start],
+            f"{os.fspath(path)}:{line}", problem, "a text in UTF-8", found=data[error.start]
         ) from None
 
 
@@ -109,7 +108,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         accepted=frozenset(_list_accepted(file)),
         **_read_tables(reading),
     )
-    following = [(each.momentum.name, each.name, each.components) for each in spec.spatial]
+    following = [(each.momentum.name, each.name, each.components) for each in spatial_momenta(spec)]
     following += [(each.velocity.name, each.name, each.components) for each in spec.reduced_momenta]
     for owner, momentum, components in following:
         reading.declare(Naming(("variables", owner), momentum, components))
@@ -120,16 +119,16 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
 
 def _read_tables(reading: Reading) -> dict[str, Any]:
     """The record of every table, by the attribute of a `Spec` that it is."""
-    own, found = {each.name for each in fields(Spec)}, dict[str, Any](records={})
+    own, attributes = {each.name for each in fields(Spec)}, dict[str, Any](records={})
     for table in TABLES:
         record = table.of(reading)
         if table.place is None:
-            found |= vars(record)
+            attributes |= vars(record)
         elif table.place not in own:
-            found["records"][table.key] = record
-        elif found.get(table.place) is None:  # two tables may give one attribute
-            found[table.place] = record
-    return found
+            attributes["records"][table.key] = record
+        elif attributes.get(table.place) is None:  # two tables may give one attribute
+            attributes[table.place] = record
+    return attributes
 
 
 def _list_accepted(part: Any, key: KeyPath = ()) -> Iterator[KeyPath]:
@@ -154,7 +153,7 @@ def read_file(path: str) -> bytes:
         # blocking, because opening a pipe would wait for a writer.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
     except (OSError, ValueError) as error:
-        raise _not_opened(path, error) from None
+        raise _explain_unopened(path, error) from None
     try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
@@ -164,22 +163,18 @@ def read_file(path: str) -> bytes:
         with os.fdopen(os.dup(descriptor), "rb") as file:
             data = file.read(SPEC_BYTES + 1)  # it may have grown since
     except OSError as error:
-        raise _not_opened(path, error) from None
+        raise _explain_unopened(path, error) from None
     finally:
         os.close(descriptor)
     check_bytes(path, len(data))
     if not data.strip():
         raise file_fault(
-            path,
-            "the file is empty",
-            "a spec",
-            "Write one with: coadjoint new NAME.",
-            found="",
+            path, "the file is empty", "a spec", "Write one with: coadjoint new NAME.", found=""
         )
     return data
 
 
-def _not_opened(path: str, error: OSError | ValueError) -> CoadjointError:
+def _explain_unopened(path: str, error: OSError | ValueError) -> CoadjointError:
     """Why a file could not be opened, and which one may have been meant."""
     number = error.errno if isinstance(error, OSError) else None
     if number == errno.ELOOP and Path(path).is_symlink():
@@ -187,8 +182,8 @@ def _not_opened(path: str, error: OSError | ValueError) -> CoadjointError:
         hint = f"Give the file that it points to: {target}."
         return file_fault(path, "this is a symbolic link", "a regular file", hint, found=target)
     if number == errno.ENOENT:
-        beside = [str(p) for p in Path(path).parent.glob("*.toml")]
-        hint = did_you_mean(path, beside)
+        near = [str(p) for p in Path(path).parent.glob("*.toml")]
+        hint = did_you_mean(path, near)
         return file_fault(path, "there is no such file", "a spec in TOML", hint, found=path)
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return file_fault(
@@ -213,13 +208,8 @@ def check_bytes(path: str, size: int) -> None:
         LimitError: It is.
     """
     if size > SPEC_BYTES:
-        raise file_fault(
-            path,
-            f"the file has {size} bytes",
-            f"at most {SPEC_BYTES} (SPEC_BYTES)",
-            found=size,
-            kind=LimitError,
-        )
+        expected = f"at most {SPEC_BYTES} (SPEC_BYTES)"
+        raise file_fault(path, f"the file has {size} bytes", expected, found=size, kind=LimitError)
 
 
 def file_fault(

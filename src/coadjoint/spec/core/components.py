@@ -7,6 +7,8 @@ from the entries that a form keeps. Read next: `coadjoint.spec.model`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, product
 from math import isqrt
 from typing import Any
@@ -67,16 +69,16 @@ def matrix_size(count: int, form: str) -> int | None:
     return next(sizes, None)
 
 
-def unpacked(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
+def unpack(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
     """The rows of the matrix that the kept entries stand for.
 
     Args:
         values: The kept entries, of any kind that negates and multiplies by 0.
         form: ``"antisymmetric"``, ``"symmetric"`` or ``"matrix"``.
 
-    >>> unpacked([3, -2, 1], "antisymmetric")
+    >>> unpack([3, -2, 1], "antisymmetric")
     ((0, 3, -2), (-3, 0, 1), (2, -1, 0))
-    >>> unpacked([1, 2, 3], "symmetric")
+    >>> unpack([1, 2, 3], "symmetric")
     ((1, 2), (2, 3))
     """
     size = matrix_size(len(values), form)
@@ -112,3 +114,22 @@ class Components:
     def value_shape(self) -> Shape:
         """Shape in formulas: that of the whole matrix where there is a form."""
         return self.shape if self.matrix_size is None else (self.matrix_size,) * 2
+
+
+@dataclass(frozen=True)
+class Argument(Components):
+    """An argument that a user gives to every kernel: a parameter or an input.
+
+    Attributes:
+        name: As declared, e.g. ``chi``.
+        shape: ``()``, ``(n,)`` or ``(n, m)``; with a form ``(n,)`` for the n entries that it keeps.
+        default: One exact value per component, row by row; None if the user must give it.
+        unit: Unit text, ``"1"`` if dimensionless.
+        doc: Free text for documents.
+    """
+
+    name: str
+    shape: Shape
+    default: tuple[Fraction, ...] | None = None
+    unit: str = "1"
+    doc: str = ""

@@ -15,14 +15,15 @@ from typing import Annotated, Any, Generic, TypeVar
 
 from pydantic import Field
 
-from coadjoint.errors import CoadjointError, LimitError
+from coadjoint import limits
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import (
     DRIVING,
     Declared,
     Formula,
-    Quantity,
+    HasComponents,
     Scope,
     make_scope,
     read_formula,
@@ -239,16 +240,14 @@ class Reading:
     ) -> CoadjointError:
         """An error for a name at a key that nothing has."""
         names = list(known)
+        problem = f"there is no {what} {name!a}"
+        hint = did_you_mean(name, names)
         return self.at_key(
-            key,
-            f"there is no {what} {name!a}",
-            name,
-            f"one of {list_names(names)}" if names else otherwise,
-            did_you_mean(name, names),
+            key, problem, name, f"one of {list_names(names)}" if names else otherwise, hint
         )
 
     def check_count(
-        self, what: str, table: str, quantities: Iterable[Quantity], limit: str, most: int
+        self, what: str, table: str, quantities: Iterable[HasComponents], limit: str
     ) -> None:
         """Refuse too many components.
 
@@ -256,12 +255,6 @@ class Reading:
             LimitError: There are.
         """
         count = sum(len(quantity.components) for quantity in quantities)
-        if count > most:
-            raise self.source.fault(
-                (table,),
-                f"the {what} have {count} components",
-                found=count,
-                expected=f"at most {most} ({limit})",
-                kind=LimitError,
-                limit=limit,
-            )
+        if count > getattr(limits, limit):
+            problem = f"the {what} have {count} components"
+            raise self.source.too_many((table,), problem, count, limit)

@@ -84,8 +84,8 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
     """The constraints in declared order.
 
     Raises:
-        SpecError: One is no equation between velocities, or beside them stands what a constrained
-            motion does not have.
+        SpecError: One is no equation between velocities, or the spec has with them what a
+            constrained motion does not have.
     """
     source, file = reading.source, reading.file
     _check_unasked(source, file)
@@ -93,12 +93,12 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
     }
-    scope, found = _scope(reading), []
+    scope, constraints = _scope(reading), []
     for name, text in texts.items():
         _check_names_no_reaction(reading, ("constraints", name), text)
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
-        found.append(Constraint(name, left, right, *solved.get(name, ())))
-    return tuple(found)
+        constraints.append(Constraint(name, left, right, *solved.get(name, ())))
+    return tuple(constraints)
 
 
 def _scope(reading: Reading) -> Scope:
@@ -123,13 +123,10 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
     for definition in sorted(find_definitions_with_reactions(reading.file)):
         name = signature(definition)[0]
         if name in names:
-            raise reading.source.fault(
-                key,
-                f"the constraint rests on {name}, which names a reaction",
-                found=name,
-                expected="an equation between velocities, which no reaction enters",
-                hint=f"Write {name} without reactions, or use it in [forces] alone.",
-            )
+            problem = f"the constraint rests on {name}, which names a reaction"
+            expected = "an equation between velocities, which no reaction enters"
+            hint = f"Write {name} without reactions, or use it in [forces] alone."
+            raise reading.source.fault(key, problem, found=name, expected=expected, hint=hint)
 
 
 def _check_unasked(source: Source, file: Any) -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from pydantic import Field
 
-from coadjoint.spec.core.formulas import Formula, Scope
+from coadjoint.spec.core.formulas import Formula, Scope, misfit
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
@@ -51,24 +51,16 @@ def read_lax(reading: Reading, part: LaxPart) -> Lax:
     L = _read_square(reading, "L", part.L, of_state)
     M = _read_square(reading, "M", part.M, of_motion)
     if L.shape != M.shape:
-        raise reading.source.fault(
-            ("lax", "M"),
-            f"M is {words(M.shape)} and L is {words(L.shape)}",
-            found=words(M.shape),
-            expected="two matrices of one size",
-        )
+        raise misfit(reading.source, ("lax", "M"), M, f"{words(L.shape)}, as L is")
     return Lax(part.spectral, L, M)
 
 
 def _check_spectral(reading: Reading, name: str) -> None:
     """The spectral parameter has a name of its own; it may be a keyword, since no code names it."""
     if not NAME.fullmatch(name) or name in reading.owners or name in FUNCTIONS:
-        raise reading.source.fault(
-            ("lax", "spectral"),
-            f"{name!a} cannot name the spectral parameter",
-            found=name,
-            expected="a name that nothing else has, such as 'lambda'",
-        )
+        problem = f"{name!a} cannot name the spectral parameter"
+        expected = "a name that nothing else has, such as 'lambda'"
+        raise reading.source.fault(("lax", "spectral"), problem, found=name, expected=expected)
 
 
 def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formula:
@@ -76,13 +68,8 @@ def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formu
     key: KeyPath = ("lax", which)
     formula = reading.formula(key, text, scope, any_shape=True)
     if len(formula.shape) != 2 or formula.shape[0] != formula.shape[1]:
-        raise reading.source.fault(
-            key,
-            f"{which} is {words(formula.shape)}",
-            found=words(formula.shape),
-            expected="a square matrix",
-            hint="Write hat(a) for the matrix of a vector a, diag(a) for a diagonal one.",
-        )
+        hint = "Write hat(a) for the matrix of a vector a, diag(a) for a diagonal one."
+        raise misfit(reading.source, key, formula, "a square matrix", hint)
     return formula
 
 

@@ -17,13 +17,13 @@ from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.matrices import size
 from coadjoint.spec.core.components import Shape, component_names, matrix_size
 from coadjoint.spec.core.degrees import degree_in
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
+from coadjoint.spec.core.faults import ExpressionError, list_names
 from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.parts import Accept, Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
-from coadjoint.spec.core.values import Names, Prose, Unit
+from coadjoint.spec.core.values import Names, Prose, Unit, misfit_form
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra, scalars_of
 from coadjoint.spec.sections.momenta import Section
@@ -76,7 +76,7 @@ class SymmetryPart(Part):
 
 @dataclass(frozen=True)
 class Symmetry:
-    """An infinitesimal action, whose momentum map is emitted beside the dynamics.
+    """An infinitesimal action, whose momentum map is emitted with the dynamics.
 
     Attributes:
         name: Of the momentum map.
@@ -145,13 +145,8 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     """
     state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
     if name not in state:
-        raise reading.source.fault(
-            key,
-            f"{name!a} is not a variable of the state",
-            found=name,
-            expected=f"one of {list_names(state)}",
-            hint=did_you_mean(name, state),
-        )
+        problem = f"{name!a} is not a variable of the state"
+        raise reading.source.unknown(key, problem, name, state)
     return state[name]
 
 
@@ -180,19 +175,13 @@ class _Actions:
         )
         form = part.form or ""
         if form and matrix_size(algebra.dimension, form) is None:
-            raise self.source.fault(
-                (*key, "form"),
-                f"{algebra.dimension} components fill no matrix of the form {form!r}",
-                found=algebra.dimension,
-                expected="as many entries as the algebra has dimensions",
-                hint="Remove form.",
-            )
+            raise misfit_form(self.source, (*key, "form"), algebra.dimension, form)
         element = part.vector or part.matrix or ""
         shapes = self._element(part, key, algebra) if element else {}
         if part.linear is not None:
             self._check_linear(key, part.linear, algebra)
         generators = {
-            variable: self._moves(key, variable, text, shapes)
+            variable: self._read_generator(key, variable, text, shapes)
             for variable, text in (part.generators or {}).items()
         }
         if part.time is not None and self.reading.file.constraints:
@@ -204,7 +193,7 @@ class _Actions:
                 hint="Remove time: the balance of the energy is proved of every motion.",
             )
         scalar = {
-            table: self._scalar((*key, table), getattr(part, table), shapes)
+            table: self._read_scalar((*key, table), getattr(part, table), shapes)
             for table in ("time", "map")
             if getattr(part, table) is not None
         }
@@ -229,12 +218,9 @@ class _Actions:
         name = getattr(part, way)
         names = {name, *(f"{name}_{block}" for block in algebra.blocks)}
         if not NAME.fullmatch(name) or names & (self.reading.owners.keys() | {"energy"}):
-            raise self.source.fault(
-                (*key, way),
-                f"{name!a} cannot name an element of {algebra.name}",
-                found=name,
-                expected="a name that nothing else has, such as 'xi'",
-            )
+            problem = f"{name!a} cannot name an element of {algebra.name}"
+            expected = "a name that nothing else has, such as 'xi'"
+            raise self.source.fault((*key, way), problem, found=name, expected=expected)
         if way == "vector":
             parts = {f"{name}_{block}": len(run) for block, run in algebra.blocks.items()}
             counts = {name: algebra.dimension, **parts}
@@ -245,13 +231,10 @@ class _Actions:
     def _check_matrices(self, key: KeyPath, algebra: LieAlgebra) -> None:
         """The algebra has matrices, which its elements are, or which act on the state."""
         if not algebra.matrices:
-            raise self.source.fault(
-                key,
-                f"{algebra.name} has no matrices",
-                found=algebra.name,
-                expected="an algebra that is declared by matrices, or by name",
-                hint=f"Write {'generators' if key[-1] == 'linear' else 'vector'} in its place.",
-            )
+            problem = f"{algebra.name} has no matrices"
+            expected = "an algebra that is declared by matrices, or by name"
+            hint = f"Write {'generators' if key[-1] == 'linear' else 'vector'} in its place."
+            raise self.source.fault(key, problem, found=algebra.name, expected=expected, hint=hint)
 
     def _check_linear(self, key: KeyPath, names: Sequence[str], algebra: LieAlgebra) -> None:
         """The matrices fit the stacked components."""
@@ -269,29 +252,29 @@ class _Actions:
                 expected=f"variables with {rows} components together",
             )
 
-    def _moves(self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape]) -> Formula:
+    def _read_generator(
+        self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape]
+    ) -> Formula:
         """How a variable moves under the element."""
         key = (*key, "generators", name)
         formula = read_move(self.reading, key, name, text, "a generator", shapes)
-        return self._linear(key, formula, shapes)
+        return self._require_linear(key, formula, shapes)
 
-    def _scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
+    def _read_scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
         kind = f"a {key[-1]} of a symmetry"
         scope = self.reading.scope(kind, state_roles(self.reading), shapes, driven=("time",))
-        return self._linear(key, self.reading.formula(key, text, scope), shapes)
+        return self._require_linear(key, self.reading.formula(key, text, scope), shapes)
 
-    def _linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
+    def _require_linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
         """The formula, if it is linear in the element."""
         element, *_ = names
         try:
             degree = degree_in(formula.tree, tuple(names))
             if degree not in (1, None):
+                problem = f"the value is of degree {degree} in {element!r}"
+                expected = f"a formula that is linear in {element}"
                 raise ExpressionError(
-                    f"the value is of degree {degree} in {element!r}",
-                    0,
-                    len(formula.text),
-                    found=element,
-                    expected=f"a formula that is linear in {element}",
+                    problem, 0, len(formula.text), found=element, expected=expected
                 )
         except ExpressionError as error:
             raise self.source.expression_fault(key, error) from None
@@ -318,5 +301,5 @@ def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[s
 
 
 def shapes_in_claims(reading: Reading) -> Mapping[str, Shape]:
-    """What claims about symmetries may name beside the state."""
+    """What claims about symmetries may name in addition to the state."""
     return emitted_shapes([*OBSERVABLES.of(reading), *SYMMETRIES.of(reading)])

@@ -21,7 +21,6 @@ from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
-from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.names import derived_names
@@ -151,10 +150,9 @@ def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple
         LimitError: The state has too many components.
     """
     solved = find_solved_velocities(reading.file)
-    found = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
-    limit = "STATE_COMPONENTS", STATE_COMPONENTS
-    reading.check_count("state", "variables", state_of(found), *limit)
-    return found
+    variables = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
+    reading.check_count("state", "variables", state_of(variables), "STATE_COMPONENTS")
+    return variables
 
 
 def _read_variable(
@@ -221,10 +219,7 @@ def _read_variable(
 
 
 def _is_state(
-    name: str,
-    part: VariablePart,
-    parts: Mapping[str, VariablePart],
-    solved: Collection[str] | None,
+    name: str, part: VariablePart, parts: Mapping[str, VariablePart], solved: Collection[str] | None
 ) -> bool:
     """Whether a variable is part of the state; see `quantities.state_of`."""
     if solved is not None:
@@ -234,13 +229,10 @@ def _is_state(
 
 
 def _constrained_momentum(source: Source, key: KeyPath) -> CoadjointError:
-    return source.fault(
-        (*key, "role"),
-        f"{key[-1]!r} is a momentum, and the state has velocities on these routes",
-        found="momentum",
-        expected="velocities, which are the state on the routes nonholonomic and hamel",
-        hint="Remove it; the velocities that no constraint gives are the state.",
-    )
+    problem = f"{key[-1]!r} is a momentum, and the state has velocities on these routes"
+    expected = "velocities, which are the state on the routes nonholonomic and hamel"
+    hint = "Remove it; the velocities that no constraint gives are the state."
+    return source.fault((*key, "role"), problem, found="momentum", expected=expected, hint=hint)
 
 
 def _as_partner(
@@ -249,31 +241,20 @@ def _as_partner(
     """A velocity or momentum with the shape and form of its coordinate."""
     coordinates = [name for name, each in parts.items() if each.role == "coordinate"]
     if part.of is None:
-        raise source.fault(
-            (*key, "role"),
-            f"the {part.role} {key[-1]!r} belongs to no coordinate",
-            found=part.role,
-            expected=f"of = one of {list_names(coordinates)}" if coordinates else "a coordinate",
-            hint=_advise_partner(part.role, parts, coordinates),
-        )
+        problem = f"the {part.role} {key[-1]!r} belongs to no coordinate"
+        expected = f"of = one of {list_names(coordinates)}" if coordinates else "a coordinate"
+        hint = _advise_partner(part.role, parts, coordinates)
+        raise source.fault((*key, "role"), problem, found=part.role, expected=expected, hint=hint)
     if part.of not in coordinates:
-        raise source.fault(
-            (*key, "of"),
-            f"there is no coordinate {part.of!a}",
-            found=part.of,
-            expected=f"one of {list_names(coordinates)}"
-            if coordinates
-            else "a declared coordinate",
-            hint=did_you_mean(part.of, coordinates),
-        )
+        problem = f"there is no coordinate {part.of!a}"
+        expected = f"one of {list_names(coordinates)}" if coordinates else "a declared coordinate"
+        hint = did_you_mean(part.of, coordinates)
+        raise source.fault((*key, "of"), problem, found=part.of, expected=expected, hint=hint)
     rivals = [n for n, each in parts.items() if (each.role, each.of) == (part.role, part.of)]
     if rivals[0] != key[-1]:
-        raise source.fault(
-            (*key, "of"),
-            f"{rivals[0]!r} is the {part.role} of {part.of!r} already",
-            found=part.of,
-            expected=f"one {part.role} for each coordinate",
-        )
+        problem = f"{rivals[0]!r} is the {part.role} of {part.of!r} already"
+        expected = f"one {part.role} for each coordinate"
+        raise source.fault((*key, "of"), problem, found=part.of, expected=expected)
     whole = parts[part.of]
     return part.model_copy(update={"shape": whole.shape, "form": whole.form})
 
@@ -311,12 +292,8 @@ def _check_role(
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
         return
-    raise source.fault(
-        (*key, "role"),
-        f"{key[-1]!r} has the role {part.role!r} {place}",
-        found=part.role,
-        expected=f"{roles} {place}",
-    )
+    problem = f"{key[-1]!r} has the role {part.role!r} {place}"
+    raise source.fault((*key, "role"), problem, found=part.role, expected=f"{roles} {place}")
 
 
 def check_elements(
@@ -331,13 +308,10 @@ def check_elements(
         if form == "matrix" or len(block) < algebra.dimension:
             turned = {}
         if size(algebra.elements) != rows or turned != dict(matrix):
-            raise source.fault(
-                key,
-                f"the matrix of {algebra.basis[i]} is not of the form {form!r}",
-                found=algebra.basis[i],
-                expected=f"a basis of all {form} matrices with {rows} rows",
-                hint="Remove form, or declare the algebra by such matrices.",
-            )
+            problem = f"the matrix of {algebra.basis[i]} is not of the form {form!r}"
+            expected = f"a basis of all {form} matrices with {rows} rows"
+            hint = "Remove form, or declare the algebra by such matrices."
+            raise source.fault(key, problem, found=algebra.basis[i], expected=expected, hint=hint)
 
 
 def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
@@ -349,13 +323,13 @@ def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple
     size = matrix_size(len(block), "antisymmetric")
     assert size is not None, block
     place = {b: n for n, b in enumerate(block)}
-    found: dict[tuple[int, int], dict[int | None, object]] = {}
+    constants: dict[tuple[int, int], dict[int | None, object]] = {}
     for (i, j), row in algebra.constants.items():
         if i in place and j in place:
             a, b = place[i], place[j]
             sign = 1 if a < b else -1
-            found[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
-    if size > 2 and found != dict(so_indefinite(size, 0).constants):
+            constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
+    if size > 2 and constants != dict(so_indefinite(size, 0).constants):
         names = list_names(algebra.basis[b] for b in block)
         raise source.fault(
             key,
@@ -378,13 +352,10 @@ def _representation(
 ) -> Representation:
     """The action on an advected quantity."""
     if part.representation is None:
-        raise source.fault(
-            key,
-            f"the advected quantity {key[-1]!r} has no representation",
-            found=str(key[-1]),
-            expected=f"representation = one of {list_names((*KNOWN, *declared))}",
-            hint=f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".',
-        )
+        problem = f"the advected quantity {key[-1]!r} has no representation"
+        expected = f"representation = one of {list_names((*KNOWN, *declared))}"
+        hint = f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".'
+        raise source.fault(key, problem, found=str(key[-1]), expected=expected, hint=hint)
     inner = (*key, "representation")
     name = part.representation
     return representation_of(source, inner, algebra, name, declared, invariance)
@@ -419,7 +390,7 @@ def motion_roles(reading: Reading) -> tuple[str, ...]:
 
 
 def position_roles(reading: Reading) -> tuple[str, ...]:
-    """Roles of the positions: what a Lagrangian is a function of beside the velocities."""
+    """Roles of the positions: what a Lagrangian is a function of, apart from the velocities."""
     roles = motion_roles(reading)
     default = "coordinate" if ALGEBRA.of(reading).algebra is None else "advected"
     return tuple(each for each in roles if each not in ("velocity", "momentum")) or (default,)
