@@ -23,7 +23,7 @@ from coadjoint.derive.mechanics.legendre import known_side
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import determinant
-from coadjoint.exact.regular import witness_regular
+from coadjoint.exact.ranks import witness_regular
 from coadjoint.exact.signs import sign
 from coadjoint.exact.witness import is_entire, point_text
 
