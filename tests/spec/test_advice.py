@@ -22,7 +22,6 @@ from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
 END = "[claims]"
-MAPPED = '[charts.c]\nvariables = { A = [] }\nmap = { v = "A" }\nrates = { A = "A" }\n'
 BARE = """
 title = "A Lax pair alone"
 routes = ["lax"]
@@ -249,12 +248,6 @@ ADVICE = [
         write(RATES, f'{RATES}\npairs = [["A", "B"]]'),
         "Remove pairs.",
         write('pairs = [["A", "B"]]', ""),
-    ),
-    (
-        SLEIGH,
-        write("[constraints]", f"{MAPPED}[constraints]"),
-        "Remove [charts], or [constraints].",
-        write(MAPPED, ""),
     ),
     # -- variables
     (

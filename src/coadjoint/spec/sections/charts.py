@@ -20,6 +20,7 @@ from coadjoint.spec.core.formulas import Formula, Scope, read_fitting
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
+from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.sections.variables import VARIABLES, state_of
 
 #: Ways to say how a chart moves.
@@ -89,18 +90,8 @@ def read_charts(reading: Reading, parts: Mapping[str, ChartPart]) -> tuple[Decla
     """The declared charts, in order.
 
     Raises:
-        SpecError: A formula does not fit, something is missing or too much, or the motion is one
-            that the kernel solves for.
+        SpecError: A formula does not fit, or something is missing or too much.
     """
-    for table in ("constraints", "reduction"):
-        if parts and getattr(reading.file, table):
-            raise reading.at_key(
-                ("charts",),
-                f"[charts] does not go with [{table}]",
-                table,
-                "a motion whose rates are written out",
-                f"Remove [charts], or [{table}].",
-            )
     return tuple(_read_chart(reading, name, part) for name, part in parts.items())
 
 
@@ -113,17 +104,19 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
     scope = reading.scope("a chart", (), shapes)
     for v in variables:
         reading.declare(Naming((*key, "variables", v.name), v.name, v.components))
-    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading))}
-    given = [each for each in _MOTIONS if getattr(part, each)]
-    if len(given) != 1:
+    reduction = REDUCTION.of(reading)
+    given = {} if reduction is None else reduction.section
+    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading)) if v.name not in given}
+    motions = [each for each in _MOTIONS if getattr(part, each)]
+    if len(motions) != 1:
         raise reading.at_key(
             key,
-            f"the chart has {list_names(given) or 'no motion'}",
-            list_names(given),
+            f"the chart has {list_names(motions) or 'no motion'}",
+            list_names(motions),
             f"exactly one of {list_names(_MOTIONS)}",
             "Write rates = { r = ... } for every variable.",
         )
-    (kind,) = given
+    (kind,) = motions
     if kind == "rates" and part.pairs:
         raise reading.at_key(
             (*key, "pairs"),
