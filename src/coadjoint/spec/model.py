@@ -268,7 +268,8 @@ class Spec:
             )
             for variable in self.variables
         )
-        whole = replace(self, observables=(), conserved=(), reduction=None)
+        records = {key: each for key, each in self.records.items() if key != "charts"}
+        whole = replace(self, observables=(), conserved=(), reduction=None, records=records)
         return replace(
             self,
             algebra=None,

@@ -20,6 +20,7 @@ from coadjoint.spec.core.formulas import Formula, Scope, read_fitting
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
+from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.sections.variables import VARIABLES, state_of
 
 #: Ways to say how a chart moves.
@@ -89,15 +90,8 @@ def read_charts(reading: Reading, parts: Mapping[str, ChartPart]) -> tuple[Decla
     """The declared charts, in order.
 
     Raises:
-        SpecError: A formula does not fit, something is missing or too much, or the motion is one
-            that the kernel solves for.
+        SpecError: A formula does not fit, or something is missing or too much.
     """
-    for table in ("constraints", "reduction"):
-        if parts and getattr(reading.file, table):
-            problem = f"[charts] does not go with [{table}]"
-            expected = "a motion whose rates are written out"
-            hint = f"Remove [charts], or [{table}]."
-            raise reading.at_key(("charts",), problem, table, expected, hint)
     return tuple(_read_chart(reading, name, part) for name, part in parts.items())
 
 
@@ -110,7 +104,9 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
     scope = reading.scope("a chart", (), shapes)
     for v in variables:
         reading.declare(Naming((*key, "variables", v.name), v.name, v.components))
-    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading))}
+    reduction = REDUCTION.of(reading)
+    fixed = {} if reduction is None else reduction.section
+    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading)) if v.name not in fixed}
     given = [each for each in _MOTIONS if getattr(part, each)]
     if len(given) != 1:
         problem = f"the chart has {list_names(given) or 'no motion'}"

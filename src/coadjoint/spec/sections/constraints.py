@@ -136,7 +136,6 @@ def _check_unasked(source: Source, file: Any) -> None:
         SpecError: Something is, with what to declare instead.
     """
     gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
-    unbracketed = "none, since a constraint that gives no velocity leaves no bracket of the state"
     asked = {"casimirs": "claims of Casimirs", "brackets": "claims of brackets"}
     for key, what in asked.items():
         if getattr(file.claims, key) and not gives:
@@ -144,9 +143,10 @@ def _check_unasked(source: Source, file: Any) -> None:
                 ("claims", key),
                 f"there are {what} with [constraints]",
                 found=key,
-                expected=unbracketed,
-                hint="Declare momenta along the constraints in [momenta], and name what is "
-                "conserved in claims.conserved.",
+                expected="constraints that each give a velocity, since the bracket is one of the "
+                "momenta of all velocities that are left",
+                hint="Solve the constraints for velocities, as w == y*u, or name what is conserved "
+                "in claims.conserved.",
             )
 
 
