@@ -76,7 +76,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one run.
+    """The result of one run.
 
     Attributes:
         rows: Systems that passed, in the order of the specs.

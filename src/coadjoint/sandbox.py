@@ -281,13 +281,9 @@ class _Task:
             message, limit = self._out_of_patience(), self.wall
         else:
             message, limit = self._explain_end(status, errors), self.memory
+        message = f"{self.subject}: {message}"
         return ResourceError(
-            f"{self.subject}: {message}",
-            limit=limit,
-            task=self.subject,
-            stage=self.stage,
-            used=self.used,
-            status=status,
+            message, limit=limit, task=self.subject, stage=self.stage, used=self.used, status=status
         )
 
     @property

@@ -298,6 +298,33 @@ MUTANTS = (
         "_bracket: rewrite x * tensor[i][j] * y -> x * tensor[i][i] * y",
     ),
     *of(
+        "bound_symmetries",
+        "lift: flip explicit",
+        "motion_defects: flip explicit",
+        "constraint_defects: rewrite each.residual -> each.residual - each.residual",
+        "_changes: flip in_state",
+        tests=("tests/prove/test_bound_symmetries.py",),
+    ),
+    *of(
+        "derive/reductions",
+        "velocities: rewrite self(value) -> -self(value)",
+        tests=("tests/prove/test_reductions.py -k rayleigh",),
+    ),
+    *of(
+        "mechanics/parts",
+        "whole: rewrite outer * slope -> slope",
+        "whole: rewrite outer * slope -> outer",
+        "_is_part: rewrite not definition.arguments and not _1 -> not definition.arguments",
+        tests=("tests/derive/test_friction.py",),
+    ),
+    *of(
+        "mechanics/solver",
+        "_row: rewrite self._rest(j, i) -> self._rest(i, j)",
+        "_rest: rewrite self._w[i, k] * self._u[k, j] -> self._w[i, k] * self._u[k, i]",
+        "_eliminate: rewrite value * share -> value",
+        tests=("tests/derive/test_friction.py", "tests/derive/test_solver.py"),
+    ),
+    *of(
         "momentum_maps",
         "action_defects: flip moved",
         "bracket_defects: rewrite _1 - moved[a][b] -> _1 + moved[a][b]",
@@ -310,7 +337,7 @@ MUTANTS = (
     ),
     *of(
         "spec/core/definitions",
-        "_expand_call: rewrite argument[1] + isinstance(part, Index) -> 1",
+        "place: rewrite argument[1] + isinstance(part, Index) -> 1",
         "_component: rewrite replace(_1, name=_2) -> whole",
         "_expand_call: rewrite len(given) != len(definition.arguments) -> not given",
         "_check_arguments: rewrite arguments[:place] -> []",

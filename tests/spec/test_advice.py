@@ -22,7 +22,6 @@ from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
 END = "[claims]"
-MAPPED = '[charts.c]\nvariables = { A = [] }\nmap = { v = "A" }\nrates = { A = "A" }\n'
 BARE = """
 title = "A Lax pair alone"
 routes = ["lax"]
@@ -189,6 +188,16 @@ ADVICE = [
         "Write what acts along a momentum in [forces].",
         write('[dissipation]\nR = "dot(Pi, Pi)"', '[forces]\nPi = "-Pi"'),
     ),
+    *(
+        (
+            PARTICLE,
+            [('"w == y*u"', '"2*w == y*u"'), ("[claims]", f"[claims]\n{asked}")],
+            "Solve the constraints for velocities, as w == y*u, or name what is conserved in",
+            done,
+        )
+        for asked in ('casimirs = ["m"]', 'brackets = { "{x, u}" = "m" }')
+        for done in ([('"2*w == y*u"', '"w == y*u/2"')], [(asked, "")])
+    ),
     (
         PARTICLE,
         before_claims(
@@ -249,12 +258,6 @@ ADVICE = [
         write(RATES, f'{RATES}\npairs = [["A", "B"]]'),
         "Remove pairs.",
         write('pairs = [["A", "B"]]', ""),
-    ),
-    (
-        SLEIGH,
-        write("[constraints]", f"{MAPPED}[constraints]"),
-        "Remove [charts], or [constraints].",
-        write(MAPPED, ""),
     ),
     # -- variables
     (
@@ -616,7 +619,6 @@ ELSEWHERE = {
     "Larger systems are solved inside the kernels": "a route that solves for velocities",
     "Leave form out, or declare the algebra by these matrices.": "needs 6 dimensions",
     "Remove form, or declare the algebra by such matrices.": "test_lax.py",
-    "Declare momenta along the constraints in [momenta]": "test_constraints.py reads momenta",
     "Declare it in a spec of the whole system.": "another spec",
     "Write diag(m) for a mass of each row.": "test_newton.py",
     "Remove the momentum ": "below",

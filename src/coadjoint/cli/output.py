@@ -149,6 +149,14 @@ def write_text(path: Path, text: str) -> None:
         ) from error
 
 
+def show_text(text: str, output: Path | None) -> None:
+    """Print a text as it is, or write it to a file that the user named."""
+    if output is None:
+        say(text, end="")
+    else:
+        write_text(output, text)
+
+
 def plural(count: int, noun: str) -> str:
     """A count in words.
 

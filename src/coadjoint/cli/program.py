@@ -108,7 +108,7 @@ class Commands(click.Group):
                 fault = shorten(f"{type(error).__name__}: {error}")
                 self._report(
                     ctx,
-                    f"error: an internal error of coadjoint: {fault}. "
+                    f"error: a fault of coadjoint itself: {fault}. "
                     f"Please report it with the output of `{again}`.",
                 )
         ctx.exit(status or 0)

@@ -76,20 +76,9 @@ def declared_charts(first: Equations) -> list[Equations]:
         first: The emitted route.
 
     Raises:
-        DerivationError: The kernel solves for velocities, or a Lagrangian does not give its
-            accelerations.
+        DerivationError: A Lagrangian does not give its accelerations.
     """
-    setting, found = first.setting, []
-    for chart in _list_declared(setting.spec):
-        if first.kept:
-            formula = next(iter(chart.map.values()))
-            message = (
-                f"the route {first.route} leaves {first.kept[0]} to be solved for in the kernel; "
-                "expected rates that are written out. Declare a Hamiltonian, or remove the chart."
-            )
-            raise fault(setting, formula, message, first.kept[0])
-        found.append(_equations(setting, chart))
-    return found
+    return [_equations(first.setting, chart) for chart in _list_declared(first.spec)]
 
 
 def _equations(setting: Setting, chart: DeclaredChart) -> Equations:

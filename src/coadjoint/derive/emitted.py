@@ -21,6 +21,7 @@ from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import in_formulas, momentum_maps
 from coadjoint.exact import Element
 from coadjoint.spec.model import component_names
+from coadjoint.spec.spatial import spatial_momenta
 
 
 def list_emitted(
@@ -111,7 +112,7 @@ def _last(setting: Setting) -> tuple[Emitted, ...]:
     for name, value in () if pair is None else pair.named:
         unit = units.of_value(setting, value)
         found.append(Emitted(name, (), (name,), unit, (value,), Kept.ALWAYS))
-    for each in setting.spec.spatial:
+    for each in spatial_momenta(setting.spec):
         inner, kept = each.momentum, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
         seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
         parts = tuple(seen[name] for name in inner.components)

@@ -88,6 +88,9 @@ def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
         "equivalence",
         chart_map.decide_related,
     )
+    if first.distribution is not None and first.distribution.kept:
+        kept = ", ".join(f"{equation.name} = 0" for equation, _ in first.distribution.kept)
+        yield f"{other.way} lies where {kept}", "equivalence", chart_map.decide_bound
     if relations:
         yield f"{other.way} keeps {relations}{held}", "equivalence", chart_map.decide_kept
     statement, decision = reach(chart_map)

@@ -47,6 +47,7 @@ from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
+from coadjoint.spec.spatial import spatial_momenta
 
 #: Degrees in the velocities and in the positions up to which integrals are looked for: those of
 #: Jellett and Routh have the degrees (1, 1) and (2, 2).
@@ -272,7 +273,7 @@ def known_integrals(motion: Motion) -> list[Known]:
     emitted = dict(motion.equations.exact.observables)
     named = [(each.name, each.components) for each in spec.sections]
     named += [(each.name, each.components) for each in spec.symmetries]
-    named += [(each.name, each.components) for each in spec.spatial]
+    named += [(each.name, each.components) for each in spatial_momenta(spec)]
     for name, components in named:
         stated[name] = [motion.close(emitted[component]) for component in components]
     pair = lax_integrals(setting)

@@ -24,7 +24,7 @@ from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, claimed_by, decide_zero
 from coadjoint.spec.model import Integral
-from coadjoint.spec.spatial import SpatialMomentum
+from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
 
 
 def about_energy(motion: Motion) -> Iterator[Examined]:
@@ -98,7 +98,7 @@ def is_conserved(equations: Equations, each: Emitted) -> bool:
 
 def about_spatial(motion: Motion) -> Iterator[Examined]:
     """The momenta as seen from space."""
-    for seen in motion.spec.spatial:
+    for seen in spatial_momenta(motion.spec):
         if seen.conserved:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, motion, seen)
 

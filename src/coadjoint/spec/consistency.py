@@ -51,13 +51,9 @@ def check_tables(source: Source, file: Any) -> None:
             hint='Write [algebra] and below it name = "so(3)".',
         )
     if file.algebra is not None and file.poisson is not None:
-        raise source.fault(
-            ("poisson",),
-            "there are both [algebra] and [poisson]",
-            found="poisson",
-            expected="one of them",
-            hint="The bracket on the dual of an algebra follows from it: remove [poisson].",
-        )
+        problem, expected = "there are both [algebra] and [poisson]", "one of them"
+        hint = "The bracket on the dual of an algebra follows from it: remove [poisson]."
+        raise source.fault(("poisson",), problem, found="poisson", expected=expected, hint=hint)
     if file.algebra is None and file.representations:
         raise source.fault(
             ("representations",),
@@ -95,14 +91,11 @@ def check_routes(reading: Reading) -> None:
         obstacles = list(_find_obstacles(file, route))
         if obstacles:
             others = _list_fitting(file)
+            problem = f"the route {route} {obstacles[0].problem}"
+            expected = f"one of {list_names(others)}" if others else "a route that fits the tables"
+            hint = _advise(reading, obstacles, others)
             raise reading.source.fault(
-                ("routes", place),
-                f"the route {route} {obstacles[0].problem}",
-                found=route,
-                expected=f"one of {list_names(others)}"
-                if others
-                else "a route that fits the tables",
-                hint=_advise(reading, obstacles, others),
+                ("routes", place), problem, found=route, expected=expected, hint=hint
             )
     _check_first(reading.source, file)
     _check_use(reading.source, file)
@@ -144,13 +137,10 @@ def _check_bare(reading: Reading) -> None:
     """Where a Lax pair alone moves the state, there are no velocities."""
     velocities = [each.name for each in VARIABLES.of(reading) if each.role == "velocity"]
     if _is_bare(reading.file) and velocities:
-        raise reading.at_key(
-            ("variables", velocities[0]),
-            f"the velocity {velocities[0]!r} has no energy to follow from",
-            velocities[0],
-            "a Lax pair of the state alone, or a table [hamiltonian] with it",
-            "Write M in variables of the state, or declare [hamiltonian].",
-        )
+        problem = f"the velocity {velocities[0]!r} has no energy to follow from"
+        expected = "a Lax pair of the state alone, or a table [hamiltonian] with it"
+        hint = "Write M in variables of the state, or declare [hamiltonian]."
+        raise reading.at_key(("variables", velocities[0]), problem, velocities[0], expected, hint)
 
 
 def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
@@ -206,13 +196,9 @@ def _check_first(source: Source, file: Any) -> None:
     problem = "cannot be the first: it is there to be proved equal to another"
     if ROUTES[first].emitted:
         problem = "moves momenta, and the state has velocities"
-    raise source.fault(
-        ("routes", 0),
-        f"the route {first} {problem}",
-        found=first,
-        expected=f"one of {list_names(fitting)} before it",
-        hint=f'Put "{fitting[0]}" first.' if fitting else "",
-    )
+    problem, expected = f"the route {first} {problem}", f"one of {list_names(fitting)} before it"
+    hint = f'Put "{fitting[0]}" first.' if fitting else ""
+    raise source.fault(("routes", 0), problem, found=first, expected=expected, hint=hint)
 
 
 def _check_use(source: Source, file: Any) -> None:
@@ -344,13 +330,10 @@ def _check_partners(reading: Reading) -> None:
             role = wanted[-1] if lacking else "momentum"
             problem = " and no ".join(wanted) if lacking else "momentum, and others have"
             partner = reading.free_name("v" if role == "velocity" else "p", name)
-            raise reading.at_key(
-                ("variables", name),
-                f"the coordinate {name!r} has no {problem}",
-                name,
-                f"a {role} of each coordinate" if lacking else "momenta of all coordinates",
-                f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.',
-            )
+            problem = f"the coordinate {name!r} has no {problem}"
+            expected = f"a {role} of each coordinate" if lacking else "momenta of all coordinates"
+            hint = f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.'
+            raise reading.at_key(("variables", name), problem, name, expected, hint)
 
 
 def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebra) -> None:

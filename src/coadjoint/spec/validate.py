@@ -100,24 +100,15 @@ def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointErro
     if source.positions.doubled is not None:
         key, span = source.positions.doubled
         first = source.line(source.positions.key(key))
-        return source.fault(
-            key,
-            f"{show_value(key[-1])} is declared twice",
-            found=str(key[-1]),
-            expected="one declaration",
-            hint=f"The first is in line {first}.",
-            at=span,
-        )
+        problem, expected = f"{show_value(key[-1])} is declared twice", "one declaration"
+        hint = f"The first is in line {first}."
+        return source.fault(key, problem, found=str(key[-1]), expected=expected, hint=hint, at=span)
     place = _TOML_PLACE.search(str(error))
     span = _span(source, place)
     problem = _TOML_PLACE.sub("", str(error))
-    return source.fault(
-        (),
-        f"not TOML: {problem[:1].lower()}{problem[1:]}",
-        found=source.text[span[0] : span[1]],
-        hint="Text stands in quotes, a table in one line in { }.",
-        at=span,
-    )
+    problem = f"not TOML: {problem[:1].lower()}{problem[1:]}"
+    hint = "Text stands in quotes, a table in one line in { }."
+    return source.fault((), problem, found=source.text[span[0] : span[1]], hint=hint, at=span)
 
 
 def _span(source: Source, place: re.Match[str] | None) -> Span:
@@ -179,7 +170,7 @@ def _advise_routes(document: Mapping[str, Any]) -> str:
 
 
 def _drop_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
-    """Faults without the missing keys that a misspelt key beside them was meant to be."""
+    """Faults without the missing keys that a misspelt key next to them was meant to be."""
     meant = set()
     for detail in details:
         *table, key = detail["loc"]

@@ -18,7 +18,7 @@ from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.core.components import Shape, unpack
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.formulas import ROLES, Quantity
+from coadjoint.spec.core.formulas import ROLES, HasComponents
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
@@ -39,7 +39,7 @@ _COMBINATION = (
 _POLYNOMIAL = "a polynomial of parameters", "numbers and parameters with + - * and powers"
 
 
-class Constant(Quantity, Protocol):
+class Constant(HasComponents, Protocol):
     """A parameter, as far as coefficients know it."""
 
     @property
@@ -60,7 +60,7 @@ class Scalars:
     """
 
     def __init__(
-        self, parameters: Sequence[Constant] = (), driving: Sequence[Quantity] = ()
+        self, parameters: Sequence[Constant] = (), driving: Sequence[HasComponents] = ()
     ) -> None:
         self._driving = {
             name: each.role for each in driving for name in (each.name, *each.components)
@@ -93,13 +93,10 @@ class Scalars:
         """
         for node in walk(tree):
             if isinstance(node, Name | Index) and node.name in self._driving:
-                raise fault_at(
-                    node,
-                    f"{node.name!r} is {ROLES[self._driving[node.name]]}",
-                    found=node.name,
-                    expected="constants of the algebra in terms of numbers and parameters",
-                    hint="Put a parameter in its place.",
-                )
+                problem = f"{node.name!r} is {ROLES[self._driving[node.name]]}"
+                expected = "constants of the algebra in terms of numbers and parameters"
+                hint = "Put a parameter in its place."
+                raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
 
     def check_terms(self, tree: Node, terms: int) -> None:
         """Count the terms of a coefficient with parameters: elimination among many takes for ever.
@@ -217,13 +214,10 @@ class _Reading:
     def _single(self, node: Node, name: str) -> str:
         """The name of a basis vector that is not also that of a parameter."""
         if name in self.scalars.shapes:
+            problem = f"{name!r} is both a parameter and in the basis"
+            hint = "Rename the parameter."
             raise ExpressionError(
-                f"{name!r} is both a parameter and in the basis",
-                node.start,
-                node.end,
-                found=name,
-                expected="names that differ",
-                hint="Rename the parameter.",
+                problem, node.start, node.end, found=name, expected="names that differ", hint=hint
             )
         return name
 

@@ -119,12 +119,9 @@ def _expand_call(
 ) -> tuple[Node, int]:
     """The expression of a definition in the place of its call, and the number of its parts."""
     if len(given) != len(definition.arguments):
+        problem = f"{definition.name} is given {len(given)} argument{'s' * (len(given) != 1)}"
         raise ExpressionError(
-            f"{definition.name} is given {len(given)} argument{'s' * (len(given) != 1)}",
-            node.start,
-            node.end,
-            found=str(len(given)),
-            expected=definition.signature,
+            problem, node.start, node.end, found=str(len(given)), expected=definition.signature
         )
     values = dict(zip(definition.arguments, given, strict=True))
     count = 0
@@ -180,7 +177,7 @@ def define(
     Args:
         source: The text of the spec.
         texts: Expressions by the keys of [definitions].
-        shapes: Shapes of all that they may name beside each other.
+        shapes: Shapes of all that they may name, apart from each other.
 
     Raises:
         SpecError: An expression is none, or a name in it is unknown.
@@ -227,13 +224,11 @@ def _shape(
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name not in (*shapes, *arguments):
             later = node.name in defined
+            problem = f"{node.name!r} is {'defined no earlier' if later else 'not declared'}"
+            expected = "variables, parameters, arguments and earlier definitions"
+            hint = "" if later else did_you_mean(node.name, (*shapes, *arguments, *defined))
             raise ExpressionError(
-                f"{node.name!r} is {'defined no earlier' if later else 'not declared'}",
-                node.start,
-                node.end,
-                found=node.name,
-                expected="variables, parameters, arguments and earlier definitions",
-                hint="" if later else did_you_mean(node.name, (*shapes, *arguments, *defined)),
+                problem, node.start, node.end, found=node.name, expected=expected, hint=hint
             )
     if arguments:
         return None

@@ -66,7 +66,7 @@ def read_expression(text: str, defined: Collection[str] = ()) -> Node:
 
     Args:
         text: What stands in the spec.
-        defined: Functions that it may call beside those of the language.
+        defined: Functions that it may call in addition to those of the language.
 
     Raises:
         ExpressionError: A syntax error, with what was probably meant, or a limit passed.
@@ -214,13 +214,8 @@ class _Reader:
         if self.next.kind == "(":
             return self._call(name)
         if name.text in self.functions:
-            raise ExpressionError(
-                f"the function {name.text!r} has no argument",
-                name.start,
-                name.end,
-                found=name.text,
-                expected=f"{name.text}(...)",
-            )
+            problem, expected = f"the function {name.text!r} has no argument", f"{name.text}(...)"
+            raise ExpressionError(problem, name.start, name.end, found=name.text, expected=expected)
         if self.next.kind == "[":
             return self._index(name)
         return self._count(Name(name.text, start=name.start, end=name.end))
@@ -284,12 +279,8 @@ class _Reader:
         """``node``, counted."""
         self.nodes += 1
         if self.nodes > limits.EXPRESSION_NODES:
-            raise _limit(
-                "EXPRESSION_NODES",
-                f"the expression has more than {limits.EXPRESSION_NODES} parts",
-                node.start,
-                node.end,
-            )
+            problem = f"the expression has more than {limits.EXPRESSION_NODES} parts"
+            raise _limit("EXPRESSION_NODES", problem, node.start, node.end)
         return node
 
     @contextmanager
@@ -297,12 +288,8 @@ class _Reader:
         """One level of nesting; so the reader cannot run out of stack."""
         self.depth += 1
         if self.depth > limits.EXPRESSION_NESTING:
-            raise _limit(
-                "EXPRESSION_NESTING",
-                f"the expression nests deeper than {limits.EXPRESSION_NESTING} levels",
-                token.start,
-                token.end,
-            )
+            problem = f"the expression nests deeper than {limits.EXPRESSION_NESTING} levels"
+            raise _limit("EXPRESSION_NESTING", problem, token.start, token.end)
         yield
         self.depth -= 1
 
@@ -310,12 +297,9 @@ class _Reader:
         if self.next.kind == mark:
             return self._take()
         if self.next.kind == "":
+            problem, expected = f"{opening.text!r} is never closed", f"a {mark!r} after it"
             raise ExpressionError(
-                f"{opening.text!r} is never closed",
-                opening.start,
-                opening.end,
-                found=opening.text,
-                expected=f"a {mark!r} after it",
+                problem, opening.start, opening.end, found=opening.text, expected=expected
             )
         raise self._unexpected()
 

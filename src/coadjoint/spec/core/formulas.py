@@ -22,7 +22,7 @@ from coadjoint.spec.core.source import Source, write_key
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
-class Quantity(Protocol):
+class HasComponents(Protocol):
     """What has components: a variable, a parameter, an input or the time."""
 
     @property
@@ -67,7 +67,7 @@ class Formula:
 
 
 #: What a spec declares and a formula may use.
-Declared = Quantity | Definition
+Declared = HasComponents | Definition
 #: What the variables of each role are called together.
 PLURALS = {
     "velocity": "velocities",
@@ -187,13 +187,10 @@ def _check_roles(tree: Node, scope: Scope) -> None:
     """Refuse a declared name that this kind of formula may not use, saying why."""
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
-            raise fault_at(
-                node,
-                f"{node.name!r} is {ROLES[scope.outside[node.name]]}",
-                found=node.name,
-                expected=f"{scope.kind} in terms of {scope.takes}",
-                hint=did_you_mean(node.name, scope.shapes),
-            )
+            problem = f"{node.name!r} is {ROLES[scope.outside[node.name]]}"
+            expected = f"{scope.kind} in terms of {scope.takes}"
+            hint = did_you_mean(node.name, scope.shapes)
+            raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
 
 
 def read_fitting(

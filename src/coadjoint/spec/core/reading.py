@@ -23,7 +23,7 @@ from coadjoint.spec.core.formulas import (
     DRIVING,
     Declared,
     Formula,
-    Quantity,
+    HasComponents,
     Scope,
     make_scope,
     read_formula,
@@ -240,16 +240,14 @@ class Reading:
     ) -> CoadjointError:
         """An error for a name at a key that nothing has."""
         names = list(known)
+        problem = f"there is no {what} {name!a}"
+        hint = did_you_mean(name, names)
         return self.at_key(
-            key,
-            f"there is no {what} {name!a}",
-            name,
-            f"one of {list_names(names)}" if names else otherwise,
-            did_you_mean(name, names),
+            key, problem, name, f"one of {list_names(names)}" if names else otherwise, hint
         )
 
     def check_count(
-        self, what: str, table: str, quantities: Iterable[Quantity], limit: str
+        self, what: str, table: str, quantities: Iterable[HasComponents], limit: str
     ) -> None:
         """Refuse too many components.
 

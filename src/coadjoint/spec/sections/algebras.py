@@ -32,7 +32,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import Quantity
+from coadjoint.spec.core.formulas import HasComponents
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
@@ -88,7 +88,7 @@ def read_structure(reading: Reading, part: AlgebraPart) -> Structure:
 
 def scalars_of(reading: Reading) -> Scalars:
     """The parameters that constants may depend on, and what they may not name."""
-    driving: list[Quantity] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
+    driving: list[HasComponents] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
     return Scalars(PARAMETERS.of(reading), driving)
 
 
@@ -148,7 +148,7 @@ class _Algebras:
     def _add_blocks(
         self, algebra: LieAlgebra, declared: Mapping[str, list[str]], key: KeyPath
     ) -> LieAlgebra:
-        """The algebra with the declared blocks beside its own."""
+        """The algebra with the declared blocks in addition to its own."""
         if not declared:
             return algebra
         blocks = {
@@ -217,13 +217,10 @@ class _Algebras:
         matrices, size = read_matrices(self.source, key, tables, basis, self.scalars)
         for name in basis:
             if name not in matrices:
-                raise self.source.fault(
-                    key,
-                    f"the matrix of {name!r} is missing",
-                    found=name,
-                    expected=f"a matrix for each of {list_names(basis)}",
-                    hint=f"Write {name} = [[...], [...]] among the matrices.",
-                )
+                problem = f"the matrix of {name!r} is missing"
+                expected = f"a matrix for each of {list_names(basis)}"
+                hint = f"Write {name} = [[...], [...]] among the matrices."
+                raise self.source.fault(key, problem, found=name, expected=expected, hint=hint)
         chosen = [matrices[name] for name in basis]
         if bracket is None:
             with point_at_faults(self.source, key):
@@ -319,13 +316,9 @@ class _Algebras:
         """Refuse a product whose parts bring one name twice."""
         for place, name in enumerate(algebra.basis):
             if name in algebra.basis[:place]:
-                raise self.source.fault(
-                    key,
-                    f"the basis would have two vectors {name!r}",
-                    found=name,
-                    expected="names that differ",
-                    hint="Choose another name here.",
-                )
+                problem = f"the basis would have two vectors {name!r}"
+                expected, hint = "names that differ", "Choose another name here."
+                raise self.source.fault(key, problem, found=name, expected=expected, hint=hint)
 
 
 ALGEBRA = Table[Structure](

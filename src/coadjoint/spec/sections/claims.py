@@ -196,12 +196,9 @@ def _split_sides(reading: Reading, key: KeyPath, text: str) -> tuple[str, str]:
             depth += (letter in "([") - (letter in ")]")
             if letter == "," and depth == 0:
                 return inner[:place].strip(), inner[place + 1 :].strip()
+    problem, expected = f"{text!a} is not a bracket", "a key such as '{L, A}'"
     raise reading.source.fault(
-        key,
-        f"{text!a} is not a bracket",
-        found=text,
-        expected="a key such as '{L, A}'",
-        at=reading.source.positions.key(key),
+        key, problem, found=text, expected=expected, at=reading.source.positions.key(key)
     )
 
 
@@ -216,14 +213,10 @@ def _read_side(reading: Reading, key: KeyPath, text: str, side: str) -> Formula:
             key, f"{side!a}: {problem}".rstrip("."), found=error.parts.get("found"), at=at
         ) from None
     if len(formula.shape) > 1:
-        raise reading.source.fault(
-            key,
-            f"{side!a} is {words(formula.shape)}",
-            found=side,
-            expected="scalars and vectors in a bracket",
-            hint="Take a row or a component of it, as A[1] or A[1, 2].",
-            at=at,
-        )
+        problem = f"{side!a} is {words(formula.shape)}"
+        expected = "scalars and vectors in a bracket"
+        hint = "Take a row or a component of it, as A[1] or A[1, 2]."
+        raise reading.source.fault(key, problem, found=side, expected=expected, hint=hint, at=at)
     return formula
 
 

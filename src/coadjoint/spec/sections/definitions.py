@@ -46,12 +46,10 @@ def _read_name(source: Source, text: str) -> str:
     """The name in a key of [definitions]."""
     if not _KEY.fullmatch(text):
         key: KeyPath = ("definitions", text)
+        problem = f"{text!a} cannot be defined"
+        expected = 'a name, or a name with arguments in quotes, such as "V(s, d)"'
         raise source.fault(
-            key,
-            f"{text!a} cannot be defined",
-            found=text,
-            expected='a name, or a name with arguments in quotes, such as "V(s, d)"',
-            at=source.positions.key(key),
+            key, problem, found=text, expected=expected, at=source.positions.key(key)
         )
     return signature(text)[0]
 

@@ -1,4 +1,4 @@
-"""Forces: the table [forces], what acts beside the energy.
+"""Forces: the table [forces], what acts in addition to the energy.
 
 Comes in: formulas by the names of what they act along. Goes out: a `Formula` for each.
 Read next: `coadjoint.spec.sections.relaxation`.
@@ -73,7 +73,7 @@ def read_along(
 FORCES = Table[dict[str, Formula]](
     "forces",
     str,
-    "forces beside the energy, by the names of the velocities they work on",
+    "forces in addition to the energy, by the names of the velocities they work on",
     read_forces,
     many=True,
     acts=True,

@@ -61,12 +61,8 @@ def block_places(
     if isinstance(block, list):
         places = places_of(source, key, block, algebra.basis)
         if len(set(places)) < len(places):
-            raise source.fault(
-                key,
-                "a name of the basis stands twice",
-                found=list_names(block),
-                expected="each name once",
-            )
+            problem = "a name of the basis stands twice"
+            raise source.fault(key, problem, found=list_names(block), expected="each name once")
         return places
     if block in algebra.blocks:
         return algebra.blocks[block]

@@ -79,13 +79,9 @@ def _check_free(tree: Node, scalars: Scalars) -> None:
     """X and Y are the matrices, so no parameter may have these names."""
     for node in walk(tree):
         if isinstance(node, Name) and node.name in PAIR and node.name in scalars.shapes:
-            raise fault_at(
-                node,
-                f"{node.name!r} is a parameter, and stands for a matrix of the algebra here",
-                found=node.name,
-                expected="parameters with other names than X and Y",
-                hint="Rename the parameter.",
-            )
+            problem = f"{node.name!r} is a parameter, and stands for a matrix of the algebra here"
+            expected, hint = "parameters with other names than X and Y", "Rename the parameter."
+            raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
 
 
 class _Evaluation:

@@ -70,7 +70,7 @@ def read_sections(reading: Reading, parts: Mapping[str, SectionPart]) -> tuple[S
     if parts and (reading.file.lagrangian is None or reading.file.poisson is not None):
         raise reading.source.fault(
             ("momenta",),
-            "there is [momenta] without a Lagrangian, or beside a declared bracket",
+            "there is [momenta] without a Lagrangian, or with a declared bracket",
             found="momenta",
             expected="[lagrangian] alone, whose derivatives by the velocities are the momenta",
             hint="Name the momentum in [observables], and claim it in claims.conserved.",

@@ -64,13 +64,9 @@ def read_newton(reading: Reading, parts: Mapping[str, NewtonPart]) -> tuple[Forc
 def _check_law(reading: Reading, name: str, given: bool, moving: bool) -> None:
     """Every coordinate has a law, and its velocity is part of the state."""
     if not given:
-        raise reading.source.fault(
-            ("newton",),
-            f"the coordinate {name!r} has no law",
-            found=name,
-            expected="a law for every coordinate",
-            hint=f'Write for instance {name} = {{ force = "-{name}" }}.',
-        )
+        problem, expected = f"the coordinate {name!r} has no law", "a law for every coordinate"
+        hint = f'Write for instance {name} = {{ force = "-{name}" }}.'
+        raise reading.source.fault(("newton",), problem, found=name, expected=expected, hint=hint)
     if not moving:
         raise reading.source.fault(
             ("newton", name),

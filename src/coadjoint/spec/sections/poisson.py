@@ -66,7 +66,7 @@ class Poisson:
         entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
             the declared brackets, or the magnetic terms of a canonical one.
         pairs: ``(i, j)`` of a position and its momentum of a canonical bracket, else empty.
-        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices beside
+        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices off
             the diagonal, since there the pairing is ``tr(P dS/dt)``, which counts it twice.
     """
 
@@ -190,12 +190,9 @@ class _Bracket:
                     f"{n!r} {_describe(len(c), f)}"
                     for n, c, f in zip(pair, (q, p), forms, strict=True)
                 ]
-                raise self.source.fault(
-                    key,
-                    " and ".join(sides),
-                    found=list_names(pair),
-                    expected="a position and a momentum of one shape and form",
-                )
+                problem = " and ".join(sides)
+                expected = "a position and a momentum of one shape and form"
+                raise self.source.fault(key, problem, found=list_names(pair), expected=expected)
             paired += (*q, *p)
             weights |= zip(zip(q, p, strict=True), pairing_weights(len(q), forms[0]), strict=True)
         self._check_single(paired)
@@ -214,12 +211,10 @@ class _Bracket:
                 often = "no pair" if place not in places else "more than one pair"
                 ways = "Declare a constant as a parameter, or let a force or [metriplectic] move it"
                 hint = "" if place in places else f"{ways}."
+                problem = f"the coordinate {name!r} is in {often}"
+                expected = "each coordinate in one pair"
                 raise self.source.fault(
-                    ("poisson", "canonical"),
-                    f"the coordinate {name!r} is in {often}",
-                    found=name,
-                    expected="each coordinate in one pair",
-                    hint=hint,
+                    ("poisson", "canonical"), problem, found=name, expected=expected, hint=hint
                 )
 
 

@@ -97,33 +97,23 @@ def _check_alone(reading: Reading) -> None:
     for key, given in alien.items():
         if given:
             name = str(key[-1])
-            raise reading.source.fault(
-                key,
-                f"{name!r} does not go with [reduction], whose motion has no bracket",
-                found=name,
-                expected="a state, a Hamiltonian, forces, observables and integrals",
-                hint="Declare it in a spec of the whole system.",
-            )
+            problem = f"{name!r} does not go with [reduction], whose motion has no bracket"
+            expected = "a state, a Hamiltonian, forces, observables and integrals"
+            hint = "Declare it in a spec of the whole system."
+            raise reading.source.fault(key, problem, found=name, expected=expected, hint=hint)
     if file.hamiltonian is None:
-        raise reading.source.fault(
-            ("reduction",),
-            "there is no Hamiltonian",
-            found="hamiltonian",
-            expected="a table [hamiltonian] with [reduction]",
-        )
+        problem, expected = "there is no Hamiltonian", "a table [hamiltonian] with [reduction]"
+        raise reading.source.fault(("reduction",), problem, found="hamiltonian", expected=expected)
 
 
 def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]) -> None:
     """What the section gives is a variable, and no matrix kept as a list."""
     if name not in known or known[name].form:
         kind = "is a matrix kept as a list" if name in known else "is no variable"
-        raise reading.at_key(
-            ("reduction", "section", name),
-            f"{name!r} {kind}",
-            name,
-            f"one of {list_names(n for n, v in known.items() if not v.form)}",
-            did_you_mean(name, known),
-        )
+        problem = f"{name!r} {kind}"
+        expected = f"one of {list_names(n for n, v in known.items() if not v.form)}"
+        hint = did_you_mean(name, known)
+        raise reading.at_key(("reduction", "section", name), problem, name, expected, hint)
 
 
 REDUCTION = Table[Submanifold | None](

@@ -34,7 +34,7 @@ class MetriplecticPart(Part):
 
 @dataclass(frozen=True)
 class Relaxation:
-    """Dissipation by a symmetric bracket beside the Poisson bracket P.
+    """Dissipation by a symmetric bracket, in addition to the Poisson bracket P.
 
     Attributes:
         G: Symmetric and positive semidefinite: a scalar, times the unit matrix, or a matrix with a

@@ -60,12 +60,9 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
     """
     key = ("rolling",)
     if not reading.file.constraints:
-        raise reading.source.fault(
-            key,
-            "there are no constraints",
-            found="constraints",
-            expected='[constraints] with [rolling], as rolling = "Y == cross(Omega, s)"',
-        )
+        problem = "there are no constraints"
+        expected = '[constraints] with [rolling], as rolling = "Y == cross(Omega, s)"'
+        raise reading.source.fault(key, problem, found="constraints", expected=expected)
     turning, velocity = _find_body(reading, key)
     scope = reading.scope("an arm", position_roles(reading), driven=())
     _check_free(reading, key)
