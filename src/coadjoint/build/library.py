@@ -21,6 +21,7 @@ from typing import Any
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
 from coadjoint.build.compiler import (
+    ANOTHER,
     CALL,
     CALL_AT,
     LABEL,
@@ -29,7 +30,7 @@ from coadjoint.build.compiler import (
     compile_kernel,
     find_compiler,
 )
-from coadjoint.errors import CompilerError, OutputError
+from coadjoint.errors import CompilerError, OutputError, remedy_for, system_error
 
 _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
 
@@ -60,7 +61,7 @@ class Library:
         except (OSError, ValueError, AttributeError) as error:
             raise CompilerError(
                 f"the compiled kernel of {name} cannot be loaded: {error}. "
-                "Set CC to another compiler.",
+                f"{remedy_for(str(error)) or ANOTHER}",
                 found=str(error),
             ) from error
         for what, label, expected in carried:
@@ -154,8 +155,9 @@ def load_library(
                 (work / file).write_bytes(content)
             fresh = compile_kernel(compiler, work, build)
         except (OSError, OutputError) as error:
+            reason = (isinstance(error, OSError) and system_error(error)) or error
             raise CompilerError(
-                f"the kernel of {name} cannot be compiled here: {error}", found=str(error)
+                f"the kernel of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error
         library = Library(fresh, name, identity, build, source)
         verify(library)
