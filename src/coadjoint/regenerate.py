@@ -26,7 +26,7 @@ from coadjoint.errors import CoadjointError, DriftError, OutputError, SpecError
 from coadjoint.files import read_object, read_regular
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
-from coadjoint.render.ownership import PACKAGE, leftovers, make_plan, read_manifest
+from coadjoint.render.ownership import PACKAGE, list_leftovers, make_plan, read_manifest
 from coadjoint.render.write import (
     SYSTEM_FILES,
     GeneratedSystem,
@@ -269,7 +269,7 @@ def _is_current(output: Path, names: set[str] | None) -> bool:
     manifest = read_manifest(output)
     if any(not _has_text(output / file, text) for file, text in PACKAGE.items()):
         return False
-    if any(leftovers(output)):
+    if any(list_leftovers(output)):
         return False
     same = names is None or manifest["systems"].keys() == names
     return bool(same and manifest["templates"] == template_hashes())

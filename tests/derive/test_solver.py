@@ -144,7 +144,7 @@ def test_everything_is_proved_and_lowered_without_closed_forms():
     programs = lower(equations)
     for program in programs.values():
         check_inverse(equations, program)
-    fixed = {s.name for s in programs["rhs"].at_level("parameters")}
+    fixed = {s.name for s in programs["rhs"].statements_at("parameters")}
     assert {"_d1", "_d4", "_l2_1"} <= fixed
     assert not fixed & {"_y1", "W12"}
 

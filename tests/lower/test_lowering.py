@@ -229,7 +229,7 @@ def test_parameter_statements_read_parameters_alone(system):
     """What is hoisted out of the loop over members does not depend on the member."""
     for program in lower(derive(shipped(system))).values():
         fixed = set(program.parameters)
-        for statement in program.at_level("parameters"):
+        for statement in program.statements_at("parameters"):
             assert {n.name for n in walk(statement.value) if isinstance(n, Symbol)} <= fixed
             fixed.add(statement.name)
 

@@ -50,18 +50,18 @@ CHECKS = (
     ),
     *of(
         "check",
-        "_differing_elements: never is_zero",
-        "_differing_elements: rewrite enumerate(_1) -> list(enumerate(_1))[:1]",
+        "_find_differing_elements: never is_zero",
+        "_find_differing_elements: rewrite enumerate(_1) -> list(enumerate(_1))[:1]",
         tests=("tests/lower/test_lowering.py -k one_changed_node",),
     ),
     *of(
         "check",
-        "_differing_residues: never a",
+        "_find_differing_residues: never a",
         tests=("tests/derive/test_projection.py -k undone",),
     ),
     *of(
         "lowering",
-        "_shorter: then element",
+        "_shorten: then element",
         tests=("tests/lower/test_lowering.py -k 'careful_hand and kirchhoff'",),
     ),
     *of(

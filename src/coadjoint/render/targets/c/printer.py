@@ -10,35 +10,25 @@ from typing import Final
 from coadjoint.lower.program import Node
 from coadjoint.render.printers import WIDTH, Printer, indent
 
-C: Final = Printer("")
+
+class CPrinter(Printer):
+    """Writes nodes and assignments in C."""
+
+    def assignment(self, node: Node, to: str, column: int = 4, comment: str = "") -> str:
+        """``to = node;``, broken at the operators if it is long; the first line is not indented.
+
+        >>> from coadjoint.lower.program import Symbol
+        >>> C.assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
+        'out[0] = Pi1; /* dPi1/dt */'
+        """
+        note = f" /* {comment} */" if comment else ""
+        line = f"{to} = {self.text(node)};"
+        if column + len(line) + len(note) <= WIDTH:
+            return line + note
+        inner = self.break_lines(node, WIDTH - column - 4 - 1)
+        inner[-1] += ";"
+        return indent([f"{to} ={note}", *("    " + text for text in inner)], column)
 
 
-def c_text(node: Node) -> str:
-    """``node`` as a C expression on one line.
-
-    >>> from fractions import Fraction
-    >>> from coadjoint.lower.program import Divide, Multiply, Negate, Number, Symbol
-    >>> x, y = Symbol("x"), Symbol("y")
-    >>> c_text(Divide(Negate(Negate(x)), Multiply(Number(Fraction(1, 2)), y)))
-    '-(-x) / (0.5 * y)'
-    """
-    return C.text(node)
-
-
-def c_assignment(node: Node, to: str, column: int = 4, comment: str = "") -> str:
-    """``to = node;`` in C, broken at the operators if it is long; the first line is not indented.
-
-    >>> from coadjoint.lower.program import Symbol
-    >>> c_assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
-    'out[0] = Pi1; /* dPi1/dt */'
-    """
-    note = f" /* {comment} */" if comment else ""
-    line = f"{to} = {c_text(node)};"
-    if column + len(line) + len(note) <= WIDTH:
-        return line + note
-    inner = C.break_lines(node, WIDTH - column - 4 - 1)
-    inner[-1] += ";"
-    return indent([f"{to} ={note}", *("    " + text for text in inner)], column)
-
-
-FILTERS: Final = {"c_assignment": c_assignment}
+C: Final = CPrinter("")
+FILTERS: Final = {"c_assignment": C.assignment}
