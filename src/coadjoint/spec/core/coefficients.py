@@ -96,7 +96,7 @@ class Scalars:
                 problem = f"{node.name!r} is {ROLES[self._driving[node.name]]}"
                 expected = "constants of the algebra in terms of numbers and parameters"
                 hint = "Put a parameter in its place."
-                raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
+                raise fault_at(node, problem, node.name, expected, hint)
 
     def check_terms(self, tree: Node, terms: int) -> None:
         """Count the terms of a coefficient with parameters: elimination among many takes for ever.
@@ -108,13 +108,10 @@ class Scalars:
             return
         self._terms += terms
         if self._terms > PARAMETRIC_TERMS:
+            problem = f"with this one, coefficients have {self._terms} terms that hold parameters"
+            hint = "Put numbers for some of the parameters."
             raise ExpressionError(
-                f"with this one, coefficients have {self._terms} terms that hold parameters",
-                tree.start,
-                tree.end,
-                found=str(self._terms),
-                hint="Put numbers for some of the parameters.",
-                limit="PARAMETRIC_TERMS",
+                problem, tree.start, tree.end, str(self._terms), hint=hint, limit="PARAMETRIC_TERMS"
             )
 
     @cached_property
@@ -216,9 +213,7 @@ class _Reading:
         if name in self.scalars.shapes:
             problem = f"{name!r} is both a parameter and in the basis"
             hint = "Rename the parameter."
-            raise ExpressionError(
-                problem, node.start, node.end, found=name, expected="names that differ", hint=hint
-            )
+            raise ExpressionError(problem, node.start, node.end, name, "names that differ", hint)
         return name
 
     def _scalar(self, node: Node, name: str, indices: tuple[int, ...] = ()) -> _Linear:

@@ -31,7 +31,6 @@ class ExpressionError(Exception):
         problem: str,
         start: int,
         end: int,
-        *,
         found: str = "",
         expected: str = "",
         hint: str = "",
@@ -43,9 +42,12 @@ class ExpressionError(Exception):
         self.expected = f"at most {getattr(limits, limit)} ({limit})" if limit else expected
 
 
-def fault_at(node: Node, problem: str, **parts: str) -> ExpressionError:
+def fault_at(
+    node: Node, problem: str, found: str = "", expected: str = "", hint: str = "", limit: str = ""
+) -> ExpressionError:
     """A fault at a node; where a definition was expanded, it is the definition that has it."""
     where = f"in the definition of {node.within}: " if node.within else ""
+    parts = {"found": found, "expected": expected, "hint": hint, "limit": limit}
     return ExpressionError(where + problem, node.start, node.end, **parts)
 
 

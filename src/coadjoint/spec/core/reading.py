@@ -18,7 +18,6 @@ from pydantic import Field
 from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import (
     DRIVING,
     Declared,
@@ -153,6 +152,7 @@ class Reading:
 
     def __init__(self, source: Source, file: Any, name: str, tables: Sequence[Table[Any]]) -> None:
         self.source, self.file, self.name, self.tables = source, file, name, tables
+        self.fault, self.at_key, self.unknown = source.fault, source.at_key, source.unknown
         self.owners: dict[str, Naming] = {}
         self._records: dict[str, Any] = {}
         self._open: list[str] = []
@@ -227,24 +227,6 @@ class Reading:
         return read_formula(self.source, key, text, scope, any_shape=any_shape)
 
     # -- faults -------------------------------------------------------------------------
-
-    def at_key(
-        self, key: KeyPath, problem: str, found: Any, expected: str, hint: str = ""
-    ) -> CoadjointError:
-        """An error that points at a key and not at its value."""
-        at = self.source.positions.key(key)
-        return self.source.fault(key, problem, found=found, expected=expected, hint=hint, at=at)
-
-    def unknown(
-        self, key: KeyPath, what: str, name: str, known: Iterable[str], otherwise: str
-    ) -> CoadjointError:
-        """An error for a name at a key that nothing has."""
-        names = list(known)
-        problem = f"there is no {what} {name!a}"
-        hint = did_you_mean(name, names)
-        return self.at_key(
-            key, problem, name, f"one of {list_names(names)}" if names else otherwise, hint
-        )
 
     def check_count(
         self, what: str, table: str, quantities: Iterable[HasComponents], limit: str

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, list_names
+from coadjoint.spec.core.faults import did_you_mean, fault_at, list_names
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
@@ -204,13 +204,9 @@ def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
 def _find_shape(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
     if name in scope:
         return scope[name]
-    raise _fault(
-        node,
-        f"{name!r} is not declared",
-        name,
-        "a variable or parameter of this spec",
-        did_you_mean(name, scope, f"Declared are {list_names(scope)}." if scope else ""),
-    )
+    problem = f"{name!r} is not declared"
+    hint = did_you_mean(name, scope, f"Declared are {list_names(scope)}." if scope else "")
+    raise fault_at(node, problem, name, "a variable or parameter of this spec", hint)
 
 
 def _component(node: Node, name: str, indices: tuple[int, ...], shape: Shape) -> Shape:
@@ -218,12 +214,12 @@ def _component(node: Node, name: str, indices: tuple[int, ...], shape: Shape) ->
     text = f"{name}[{', '.join(map(str, indices))}]"
     if len(shape) < len(indices):
         expected = f"{name}[1]" if shape else f"{name} without a subscript"
-        raise _fault(node, f"{name} is {words(shape)}, found {text}", text, expected)
+        raise fault_at(node, f"{name} is {words(shape)}, found {text}", text, expected)
     for index, length in zip(indices, shape, strict=False):
         if not 1 <= index <= length:
             hint = "Components are counted from 1." if index == 0 else ""
             problem = f"the subscript of {text} is out of range"
-            raise _fault(node, problem, text, f"1 to {length}", hint)
+            raise fault_at(node, problem, text, f"1 to {length}", hint)
     return shape[len(indices) :]
 
 
@@ -233,9 +229,9 @@ def _power(node: Power, base: Shape) -> Shape:
     if not _is_square(base):
         hint = "The square of a vector is dot(a, a)." if len(base) == 1 else ""
         problem = f"{words(base)} has no power"
-        raise _fault(node, problem, words(base), "a scalar or a square matrix", hint)
+        raise fault_at(node, problem, words(base), "a scalar or a square matrix", hint)
     if node.exponent < 0 and not _is_small_square(base):
-        raise _fault(node, f"{words(base)} is inverted", words(base), _SMALL)
+        raise fault_at(node, f"{words(base)} is inverted", words(base), _SMALL)
     return base
 
 
@@ -244,12 +240,12 @@ def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
         if left == right:
             return left
         problem = f"{words(left)} {operator} {words(right)} do not fit"
-        raise _fault(node, problem, problem, f"two of one shape around {operator}")
+        raise fault_at(node, problem, problem, f"two of one shape around {operator}")
     if operator == "/":
         if right == ():
             return left
         hint = "Write inverse(A)*x." if len(right) == 2 else ""
-        raise _fault(node, f"division by {words(right)}", words(right), "a scalar divisor", hint)
+        raise fault_at(node, f"division by {words(right)}", words(right), "a scalar divisor", hint)
     if left == () or right == ():
         return left + right
     if len(left) == 2 and left[1] == right[0]:
@@ -259,14 +255,14 @@ def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
         hint = "Write dot(a, b) for the scalar product, cross(a, b) for the vector product."
     elif len(left) == 1:
         hint = "Write transpose(A)*a for a row vector times a matrix."
-    raise _fault(node, problem, problem, "matching sizes around *", hint)
+    raise fault_at(node, problem, problem, "matching sizes around *", hint)
 
 
 def _call(node: Call, arguments: list[Shape]) -> Shape:
     function, name = FUNCTIONS[node.function], node.function
     if function.arity not in (0, len(arguments)):
         given = f"{len(arguments)} argument{'s' * (len(arguments) != 1)}"
-        raise _fault(node, f"{name} is given {given}", given, function.takes)
+        raise fault_at(node, f"{name} is given {given}", given, function.takes)
     shape = function.rule(*arguments)
     if shape is not None:
         return shape
@@ -275,8 +271,4 @@ def _call(node: Call, arguments: list[Shape]) -> Shape:
         hint = "The product of matrices is trace(transpose(A)*B)."
     if name in ("det", "inverse") and _is_square(arguments[0]):
         hint = "Larger systems are solved inside the kernels: give the Lagrangian instead."
-    raise _fault(node, f"{name} is given {given}", given, function.takes, hint)
-
-
-def _fault(node: Node, problem: str, found: str, expected: str, hint: str = "") -> ExpressionError:
-    return fault_at(node, problem, found=found, expected=expected, hint=hint)
+    raise fault_at(node, f"{name} is given {given}", given, function.takes, hint)

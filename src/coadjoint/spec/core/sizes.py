@@ -246,8 +246,8 @@ def _determinant(a: Size, n: int) -> Size:
 
 
 def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:
-    return fault_at(node, problem, found=problem, limit=limit)
+    return fault_at(node, problem, problem, limit=limit)
 
 
 def _no_value(node: Node, problem: str, expected: str) -> ExpressionError:
-    return fault_at(node, problem, found=problem, expected=expected)
+    return fault_at(node, problem, problem, expected)

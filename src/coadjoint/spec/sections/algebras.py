@@ -180,14 +180,9 @@ class _Algebras:
                 problem = f"the pair of {basis[i]} and {basis[j]} is declared twice"
                 if i == j:
                     problem = f"{text} is declared, the bracket of {basis[i]} with itself"
-                raise self.source.fault(
-                    (*key, text),
-                    problem,
-                    found=text,
-                    expected="each pair of different vectors once, in either order",
-                    hint="Remove it.",
-                    at=self.source.positions.key((*key, text)),
-                    kind=AlgebraError,
+                expected = "each pair of different vectors once, in either order"
+                raise self.source.at_key(
+                    (*key, text), problem, text, expected, "Remove it.", kind=AlgebraError
                 )
             pairs[i, j] = text
         return pairs
@@ -197,14 +192,10 @@ class _Algebras:
         match = _BRACKET.fullmatch(text)
         unknown = [name for name in match.groups() if name not in basis] if match else [text]
         if match is None or unknown:
-            raise self.source.fault(
-                key,
-                f"{text!a} is not a bracket of the basis",
-                found=unknown[0],
-                expected="a key such as '[e1, e2]' with names of the basis",
-                hint=did_you_mean(unknown[0], basis),
-                at=self.source.positions.key(key),
-            )
+            problem = f"{text!a} is not a bracket of the basis"
+            expected = "a key such as '[e1, e2]' with names of the basis"
+            hint = did_you_mean(unknown[0], basis)
+            raise self.source.at_key(key, problem, unknown[0], expected, hint)
         return basis.index(match[1]), basis.index(match[2])
 
     def _by_matrices(
@@ -220,7 +211,7 @@ class _Algebras:
                 problem = f"the matrix of {name!r} is missing"
                 expected = f"a matrix for each of {list_names(basis)}"
                 hint = f"Write {name} = [[...], [...]] among the matrices."
-                raise self.source.fault(key, problem, found=name, expected=expected, hint=hint)
+                raise self.source.fault(key, problem, name, expected, hint)
         chosen = [matrices[name] for name in basis]
         if bracket is None:
             with point_at_faults(self.source, key):
@@ -318,7 +309,7 @@ class _Algebras:
             if name in algebra.basis[:place]:
                 problem = f"the basis would have two vectors {name!r}"
                 expected, hint = "names that differ", "Choose another name here."
-                raise self.source.fault(key, problem, found=name, expected=expected, hint=hint)
+                raise self.source.fault(key, problem, name, expected, hint)
 
 
 ALGEBRA = Table[Structure](

@@ -126,7 +126,7 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
             problem = f"the constraint rests on {name}, which names a reaction"
             expected = "an equation between velocities, which no reaction enters"
             hint = f"Write {name} without reactions, or use it in [forces] alone."
-            raise reading.source.fault(key, problem, found=name, expected=expected, hint=hint)
+            raise reading.fault(key, problem, name, expected, hint)
 
 
 def _check_unasked(source: Source, file: Any) -> None:
@@ -152,9 +152,9 @@ def _check_unasked(source: Source, file: Any) -> None:
             raise source.fault(
                 key,
                 f"there are {what} with [constraints]",
-                found=key[-1],
-                expected=expected,
-                hint="Declare momenta along the constraints in [momenta], and name what is "
+                key[-1],
+                expected,
+                "Declare momenta along the constraints in [momenta], and name what is "
                 "conserved in claims.conserved.",
             )
 

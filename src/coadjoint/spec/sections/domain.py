@@ -58,9 +58,7 @@ def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, 
             raise reading.at_key(key, problem, name, expected, hint)
         left, sign, right = read_relation(reading.source, key, text, INEQUALITIES, scope)
         if left.shape:
-            raise reading.source.fault(
-                key, f"both sides are {words(left.shape)}", found=text, expected="two scalars"
-            )
+            raise reading.fault(key, f"both sides are {words(left.shape)}", text, "two scalars")
         conditions.append(Condition(name, left, sign, right))
     return tuple(conditions)
 

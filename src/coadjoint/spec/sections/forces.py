@@ -106,12 +106,12 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
     known = {name for each in velocities for name in (each.name, *each.components)}
     if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
-        raise reading.source.fault(
+        raise reading.fault(
             key,
             "Rayleigh's function names no velocity",
-            found=part.R,
-            expected="a function of velocities, whose force is -dR/dxi",
-            hint=f"Name {list_names(v.name for v in velocities)} in it, or remove [dissipation]."
+            part.R,
+            "a function of velocities, whose force is -dR/dxi",
+            f"Name {list_names(v.name for v in velocities)} in it, or remove [dissipation]."
             if velocities
             else "Write what acts along a momentum in [forces].",
         )

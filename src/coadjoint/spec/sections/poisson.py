@@ -131,8 +131,8 @@ class _Bracket:
             raise self.source.fault(
                 ("poisson", "nambu"),
                 f"{len(texts)} distinguished functions of {n} coordinates",
-                found=len(texts),
-                expected=f"{n - 2}, two fewer than there are coordinates"
+                len(texts),
+                f"{n - 2}, two fewer than there are coordinates"
                 if n > 2
                 else "at least 3 coordinates",
             )
@@ -150,12 +150,11 @@ class _Bracket:
             key: KeyPath = ("poisson", way, text)
             i, j = self._pair(key, text, allowed)
             if i == j or (i, j) in entries or (j, i) in entries:
-                raise self.source.fault(
+                raise self.source.at_key(
                     key,
                     f"{text!a} is {'declared twice' if i != j else '0 and needs no declaration'}",
-                    found=text,
-                    expected="each pair of two components once, in either order",
-                    at=self.source.positions.key(key),
+                    text,
+                    "each pair of two components once, in either order",
                 )
             entries[i, j] = self._formula(key, value, "a bracket")
         return tuple((i, j, formula) for (i, j), formula in entries.items())
@@ -167,14 +166,10 @@ class _Bracket:
         unknown = [name for name in match.groups() if name not in names] if match else [text]
         if match is None or unknown:
             example = list_names(names[:2]) if len(names) > 1 else "X1, X2"
-            raise self.source.fault(
-                key,
-                f"{text!a} is not a bracket of these components",
-                found=unknown[0],
-                expected=f"a key such as '{{{example}}}' with components among {list_names(names)}",
-                hint=did_you_mean(unknown[0], names),
-                at=self.source.positions.key(key),
-            )
+            problem = f"{text!a} is not a bracket of these components"
+            expected = f"a key such as '{{{example}}}' with components among {list_names(names)}"
+            hint = did_you_mean(unknown[0], names)
+            raise self.source.at_key(key, problem, unknown[0], expected, hint)
         return self.state.index(match[1]), self.state.index(match[2])
 
     def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
@@ -192,7 +187,7 @@ class _Bracket:
                 ]
                 problem = " and ".join(sides)
                 expected = "a position and a momentum of one shape and form"
-                raise self.source.fault(key, problem, found=list_names(pair), expected=expected)
+                raise self.source.fault(key, problem, list_names(pair), expected)
             paired += (*q, *p)
             weights |= zip(zip(q, p, strict=True), pairing_weights(len(q), forms[0]), strict=True)
         self._check_single(paired)
@@ -213,9 +208,7 @@ class _Bracket:
                 hint = "" if place in places else f"{ways}."
                 problem = f"the coordinate {name!r} is in {often}"
                 expected = "each coordinate in one pair"
-                raise self.source.fault(
-                    ("poisson", "canonical"), problem, found=name, expected=expected, hint=hint
-                )
+                raise self.source.fault(("poisson", "canonical"), problem, name, expected, hint)
 
 
 def _describe(count: int, form: str) -> str:

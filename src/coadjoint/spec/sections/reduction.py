@@ -56,12 +56,8 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
     for name in part.section:
         _check_eliminated(reading, name, known)
     if len(part.section) == len(known):
-        raise reading.source.fault(
-            ("reduction", "section"),
-            "no variable is left",
-            found=list_names(part.section),
-            expected="a section over at least one variable",
-        )
+        problem, expected = "no variable is left", "a section over at least one variable"
+        raise reading.fault(("reduction", "section"), problem, list_names(part.section), expected)
     roles = tuple(dict.fromkeys(variable.role for variable in variables))
     left: list[Declared] = [q for q in reading.quantities if q.name not in part.section]
     of_left = make_scope("a section", roles, left, driven=())
@@ -102,10 +98,10 @@ def _check_alone(reading: Reading, variables: Sequence[Variable]) -> None:
             problem = f"{name!r} does not go with [reduction], whose motion has no bracket"
             expected = "momenta or coordinates, a Hamiltonian, observables and integrals"
             hint = "Declare it in a spec of the whole system."
-            raise reading.source.fault(key, problem, found=name, expected=expected, hint=hint)
+            raise reading.fault(key, problem, name, expected, hint)
     if file.hamiltonian is None:
         problem, expected = "there is no Hamiltonian", "a table [hamiltonian] with [reduction]"
-        raise reading.source.fault(("reduction",), problem, found="hamiltonian", expected=expected)
+        raise reading.fault(("reduction",), problem, "hamiltonian", expected)
 
 
 def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]) -> None:
