@@ -167,7 +167,7 @@ def _advise(reading: Reading, obstacles: Sequence[_Obstacle], others: Sequence[s
 
 
 def _write_table(reading: Reading, table: str) -> str:
-    """How a missing table is written, with the names of the spec; "" if there is no telling."""
+    """How a missing table is written, with the names of the spec; "" without an example."""
     role = {"lagrangian": "velocity", "hamiltonian": "momentum"}.get(table)
     example = BY_KEY[table].example
     if role is not None:

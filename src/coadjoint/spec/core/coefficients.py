@@ -79,14 +79,14 @@ class Scalars:
             self._positive += parameter.components if parameter.positive else ()
 
     def value(self, name: str, indices: tuple[int, ...] = ()) -> Coefficient | None:
-        """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
+        """The parameter of a name, as ``I1`` or ``I[1]``; None for other names."""
         component, sign = self._components.get((name, indices), ("", 0))
         if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
             return Fraction(0) if component else None
         return sign * self._field[component]
 
     def check_names(self, tree: Node) -> None:
-        """Refuse what is no constant of the system.
+        """Refuse inputs and the time, which are not constants.
 
         Raises:
             ExpressionError: An input or the time is named.
@@ -99,7 +99,7 @@ class Scalars:
                 raise fault_at(node, problem, node.name, expected, hint)
 
     def check_terms(self, tree: Node, terms: int) -> None:
-        """Count the terms of a coefficient with parameters: elimination among many takes for ever.
+        """Count the terms of a coefficient with parameters: elimination among many does not end.
 
         Raises:
             ExpressionError: There are too many in the spec.

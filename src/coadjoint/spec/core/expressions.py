@@ -1,8 +1,8 @@
 """Expressions: text to a plain tree, by a small reader of our own.
 
 Comes in: the text of one formula, at most ASCII. Goes out: a tree of `coadjoint.spec.core.tree`, or
-an `ExpressionError` that points at the guilty characters and guesses what was meant. Nothing of the
-text is ever executed, evaluated or handed on: numbers become fractions, names stay names.
+an `ExpressionError` that points at the characters at fault and guesses what was meant. No part of
+the text is ever executed, evaluated or passed on: numbers become fractions, names stay names.
 
     sum      = term {("+" | "-") term}
     term     = unary {("*" | "/") unary}

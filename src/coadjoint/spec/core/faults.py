@@ -1,4 +1,4 @@
-"""A fault at a place of an expression, before anybody knows in which file the expression stands.
+"""A fault at a place of an expression, before it is known in which file the expression stands.
 
 Comes in: nothing. Goes out: the exception that the steps on expressions raise, which
 `coadjoint.spec.core.source` turns into a `SpecError` with file, line, column and a caret.
@@ -18,9 +18,9 @@ class ExpressionError(Exception):
 
     Attributes:
         problem: What was found, as a clause: ``'Omgea' is not declared``.
-        start: Offset of the guilty characters in the expression.
+        start: Offset of the characters at fault in the expression.
         end: Offset after them.
-        found: The guilty text.
+        found: The text at fault.
         expected: What would have been accepted; with a limit, its value.
         hint: The likely fix, as a sentence.
         limit: Name of the constant in `coadjoint.limits` that was passed, or "".

@@ -34,7 +34,7 @@ def read_pairs(
         kind: Class of the error for a pair that is declared twice.
 
     Raises:
-        SpecError: A key is no bracket of these names, of a name with itself, or there already.
+        SpecError: A key does not name two of these names, or names a pair that is declared already.
     """
     pairs: dict[tuple[int, int], str] = {}
     for text in texts:

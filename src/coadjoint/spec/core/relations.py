@@ -59,7 +59,7 @@ def read_relation(
 def _no_relation(
     source: Source, key: KeyPath, text: str, signs: tuple[str, ...], matches: list[re.Match[str]]
 ) -> CoadjointError:
-    """Why a text is no relation."""
+    """Why a text is not a relation."""
     wanted = matches[1] if len(matches) > 1 else matches[0] if matches else None
     problem = "there are two signs" if len(matches) > 1 else f"there is no {list_names(signs)}"
     example = "Y == cross(Omega, s)" if signs == EQUATION else "1 - Gamma3^2 > 0"

@@ -1,4 +1,4 @@
-"""Source: a spec's text with its positions, and how to point at the guilty characters in it.
+"""Source: a spec's text with its positions, and how to point at the characters at fault.
 
 Comes in: a file path and its text. Goes out: errors of one form,
 
@@ -99,10 +99,10 @@ class Source:
         Args:
             key: The key concerned.
             problem: What was found, as a clause.
-            found: The guilty value.
+            found: The value at fault.
             expected: What would have been accepted.
             hint: The likely fix, as a sentence.
-            at: The guilty characters; by default the value of the key.
+            at: The characters at fault; by default the value of the key.
             kind: Class of the error.
             parts: Further attributes.
         """

@@ -84,7 +84,7 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
     """The constraints in declared order.
 
     Raises:
-        SpecError: One is no equation between velocities, or the spec has with them what a
+        SpecError: One is not an equation between velocities, or the spec has with them what a
             constrained motion does not have.
     """
     source, file = reading.source, reading.file

@@ -79,7 +79,7 @@ class DissipationPart(Part):
 def _no_velocity(
     reading: Reading, key: KeyPath, name: str, velocities: Mapping[str, Variable]
 ) -> CoadjointError:
-    """An error for something along what is no velocity, or nothing that a force may change."""
+    """An error for a force along something that forces do not act along."""
     roles = {each.role for each in velocities.values()} or {"velocity"}
     what = "velocity" if roles == {"velocity"} else "variable"
     problem, hint = f"there is no such {what} as {name!a}", did_you_mean(name, velocities)
@@ -97,7 +97,7 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     """Rayleigh's function.
 
     Raises:
-        SpecError: It is no formula of velocities.
+        SpecError: It is not a formula of velocities.
     """
     key: KeyPath = ("dissipation", "R")
     reactions = reaction_shapes(CONSTRAINTS.of(reading))

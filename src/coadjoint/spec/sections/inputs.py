@@ -45,7 +45,7 @@ def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input
     """The inputs with one exact default for each component, or none.
 
     Raises:
-        SpecError: A default does not have the shape, or a rate is no input of the same shape.
+        SpecError: A default does not have the shape, or a rate is not an input of the same shape.
         LimitError: There are too many.
     """
     source = reading.source

@@ -97,7 +97,7 @@ def read_matrices(
     """Sparse matrices by name of the basis, and their common size.
 
     Raises:
-        SpecError: A name is not in the basis, a matrix has another size, or an entry is no number.
+        SpecError: A name is not in the basis, or a matrix has another size or other entries.
         LimitError: There are too many entries.
     """
     size = len(next(iter(tables.values()), []))

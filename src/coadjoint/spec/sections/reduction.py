@@ -24,7 +24,7 @@ class ReductionPart(Part):
     """A submanifold that the motion keeps, on which some variables follow from the others."""
 
     section: Annotated[dict[str, str], Field(min_length=1)] = Field(
-        description="what variables are there, as y = 'cross(x, K*x)'; they are no state any more",
+        description="what variables are there, as y = 'cross(x, K*x)'; the state is without them",
         json_schema_extra=name_pattern(),
     )
     where: list[str] = Field([], description="functions of all variables that vanish there")
@@ -47,8 +47,8 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
     """The declared submanifold.
 
     Raises:
-        SpecError: What is restricted is no vector or scalar of the state, something is left of no
-            variable, or the spec has what a restricted motion cannot.
+        SpecError: What is restricted is not a vector or scalar of the state, no variable is left,
+            or the spec has a table that a restricted motion cannot have.
     """
     variables = VARIABLES.of(reading)
     _check_alone(reading, variables)

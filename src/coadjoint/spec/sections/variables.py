@@ -158,7 +158,7 @@ def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple
 def _read_variable(
     reading: Reading, name: str, part: VariablePart, solved: Collection[str] | None
 ) -> Variable:
-    """One variable; velocities that constraints give are no part of the state."""
+    """One variable; velocities that constraints give are not part of the state."""
     source, parts = reading.source, reading.file.variables
     algebra, invariance = ALGEBRA.of(reading).algebra, ALGEBRA.of(reading).invariance
     key: KeyPath = ("variables", name)
