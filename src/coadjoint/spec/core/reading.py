@@ -81,7 +81,8 @@ class Table(Generic[Record]):
         least: How many entries it has at least, if it is there.
         pattern: What the names of its entries look like.
         field: The annotation and the pydantic field of its key, where they are not the usual ones.
-        absent: The record of a table that is left out.
+        absent: The record of a table that is left out; of named entries, of none.
+        always: Whether it is read even where it has no entries.
         attribute: The attribute of a `Spec` that is the record; by default the key. With None, the
             fields of the record are attributes themselves.
         quantities: Whether formulas of other tables may name the record, or the records in it.
@@ -101,12 +102,17 @@ class Table(Generic[Record]):
     pattern: str = NAME_PATTERN
     field: tuple[Any, Any] | None = None
     absent: Any = None
+    always: bool = False
     attribute: str | None = ""
     quantities: bool = False
     names: Callable[[str, Record], Iterable[Naming]] = name_none
     routed: bool = False
     acts: bool = False
     example: str = ""
+
+    def __post_init__(self) -> None:
+        if self.many and self.absent is None:
+            object.__setattr__(self, "absent", ())
 
     def of(self, reading: Reading) -> Record:
         """The record of this table."""
@@ -163,7 +169,8 @@ class Reading:
             assert table.key not in self._open, (*self._open, table.key)
             self._open.append(table.key)
             part = getattr(self.file, table.key)
-            record = table.absent if part is None else table.read(self, part)
+            is_absent = part is None or (table.many and not part and not table.always)
+            record = table.absent if is_absent else table.read(self, part)
             self._records[table.key] = record
             self._open.pop()
             for naming in table.names(table.key, record):

@@ -93,7 +93,7 @@ def read_charts(reading: Reading, parts: Mapping[str, ChartPart]) -> tuple[Decla
             that the kernel solves for.
     """
     for table in ("constraints", "reduction"):
-        if parts and getattr(reading.file, table):
+        if getattr(reading.file, table):
             problem = f"[charts] does not go with [{table}]"
             expected = "a motion whose rates are written out"
             hint = f"Remove [charts], or [{table}]."
@@ -189,5 +189,4 @@ CHARTS = Table[tuple[DeclaredChart, ...]](
     "the same motion in other variables, by name",
     read_charts,
     many=True,
-    absent=(),
 )

@@ -177,7 +177,6 @@ CONSTRAINTS = Table[tuple[Constraint, ...]](
     read_constraints,
     many=True,
     least=1,
-    absent=(),
     names=_name_all,
     acts=True,
 )

@@ -66,6 +66,7 @@ FORCES = Table[dict[str, Formula]](
     "forces in addition to the energy, by the names of the velocities they work on",
     read_forces,
     many=True,
+    absent={},
     acts=True,
 )
 

@@ -67,7 +67,7 @@ def read_sections(reading: Reading, parts: Mapping[str, SectionPart]) -> tuple[S
     Raises:
         SpecError: There is no Lagrangian, no such velocity that nothing gives, or a shape differs.
     """
-    if parts and (reading.file.lagrangian is None or reading.file.poisson is not None):
+    if reading.file.lagrangian is None or reading.file.poisson is not None:
         problem = "there is [momenta] without a Lagrangian, or with a declared bracket"
         expected = "[lagrangian] alone, whose derivatives by the velocities are the momenta"
         hint = "Name the momentum in [observables], and claim it in claims.conserved."

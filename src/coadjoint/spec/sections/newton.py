@@ -113,7 +113,6 @@ NEWTON = Table[tuple[Force, ...]](
     read_newton,
     many=True,
     least=1,
-    absent=(),
     routed=True,
     example='q = { mass = "m", force = "-k*q" }',
 )

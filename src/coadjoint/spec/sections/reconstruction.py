@@ -178,5 +178,6 @@ RECONSTRUCTION = Table[tuple[Reconstructed, ...]](
     "what follows from the motion, as x = 'v'",
     read_reconstruction,
     many=True,
+    always=True,  # what follows for a body that rolls is not declared
     names=_name_all,
 )

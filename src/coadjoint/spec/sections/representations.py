@@ -124,6 +124,7 @@ REPRESENTATIONS = Table[dict[str, Representation]](
     "declared representations",
     read_representations,
     many=True,
+    absent={},
 )
 
 
