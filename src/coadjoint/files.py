@@ -82,7 +82,7 @@ def read_certificate(path: Path) -> dict[str, Any]:
     for key in ("title", "source", "description"):
         if not isinstance(certificate.get(key), str):
             certificate.pop(key, None)
-    for key in ("docs", "definitions", "constraints", "domain"):
+    for key in ("docs", "definitions", "observables", "constraints", "domain"):
         if not is_table_of_texts(certificate.get(key)):
             certificate.pop(key, None)
     for key in ("casimirs", "routes"):

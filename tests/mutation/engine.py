@@ -305,7 +305,7 @@ MUTANTS = (
         "bracket_defects: rewrite _1 - moved[a][b] -> _1 + moved[a][b]",
         "field_defects: flip b",
         "cocycle: flip _along",
-        "_in_algebra: then self",
+        "_in_algebra: then sign",
         "sigma: then value",
         "lift: flip weight in components",
         "generating_function: drop _degree",

@@ -72,10 +72,10 @@ Keys of --format json:
 def command(
     algebra: str, form: str, degree: int, generators: int, output: Path | None, seconds: int | None
 ) -> None:
-    """Show brackets, invariants and Casimirs of a Lie algebra, proved.
+    """Show and prove invariants and Casimirs of a Lie algebra.
 
-    NAME is an algebra such as so(4), se(3) or "sl(2,R)"; SPEC is a shipped system or the path of a
-    spec, whose algebra together with the duals of its advected quantities is shown.
+    NAME is an algebra such as so(4), se(3) or "sl(2,R)". SPEC is a shipped system or the path of a
+    spec; its advected quantities are included.
     """
     from coadjoint.errors import ResourceError
     from coadjoint.sandbox import run_bounded

@@ -104,7 +104,7 @@ system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete
 
 #: The option ``--output`` of commands that show a document.
 output_option = click.option(
-    "--output", type=click.Path(path_type=Path), help="File to write instead."
+    "--output", type=click.Path(path_type=Path), help="File to write, in place of the terminal."
 )
 
 
@@ -121,6 +121,6 @@ def format_option(*formats: str) -> Callable[[Callable[..., Any]], Callable[...,
 seconds_option = click.option(
     "--seconds",
     type=click.IntRange(1, MOST),
-    help="Processor time that deriving one system may take. Default: COADJOINT_SECONDS, else "
+    help="Processor seconds for the derivation of one system. Default: COADJOINT_SECONDS, else "
     f"{WORKER_SECONDS}.",
 )

@@ -27,12 +27,12 @@ from coadjoint.errors import OutputError
     type=click.IntRange(1, 10_000_000),
     default=200_000,
     show_default=True,
-    help="Minimum number of points at which NumPy and C are compared bit by bit.",
+    help="Least number of points at which NumPy and C are compared bit for bit.",
 )
 @seconds_option
 @json_option
 def command(system: str, points: int, seconds: int | None, as_json: bool) -> None:
-    """Check the generated kernels against 50 digits and each other."""
+    """Compare kernels with 50 digits and with each other."""
     from coadjoint.sandbox import run_bounded
 
     path, folder = spec_path(system), load_system(system, seconds).folder

@@ -70,9 +70,9 @@ class Finding:
 @click.command("doctor")
 @json_option
 def command(as_json: bool) -> int:
-    """Look for compiler, cache, packages and damaged files.
+    """Check compiler, cache, packages, limits and generated files.
 
-    What is missing is shown with the way to get it; exit status 1 if something does not work.
+    Shows what to do about each problem. The exit status is 1 if something does not work.
     """
     findings = list(examine())
     if as_json:
@@ -179,7 +179,7 @@ def _children() -> str:
     from coadjoint.sandbox import run_bounded
 
     run_bounded("coadjoint.fingerprint:digest", [], seconds=allowed_seconds(), memory=WORKER_BYTES)
-    return "started, limited and heard"
+    return "started, limited and answered"
 
 
 def _compiler() -> str:

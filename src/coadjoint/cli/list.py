@@ -54,7 +54,7 @@ class Entry:
 def command(
     derivations: Path | None, output: Path | None, seconds: int | None, as_json: bool
 ) -> None:
-    """List systems and the state of their certificates."""
+    """List systems, claims proved and the state of their files."""
     from coadjoint.bounded import read_all_bounded
 
     source, target = folders(derivations, output)

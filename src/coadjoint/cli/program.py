@@ -108,8 +108,8 @@ class Commands(click.Group):
                 fault = shorten(f"{type(error).__name__}: {error}")
                 self._report(
                     ctx,
-                    f"error: a fault of coadjoint itself: {fault}. "
-                    f"Please report it with what `{again}` shows.",
+                    f"error: an internal error of coadjoint: {fault}. "
+                    f"Please report it with the output of `{again}`.",
                 )
         ctx.exit(status or 0)
 
@@ -170,8 +170,8 @@ def _open_closed_streams() -> None:
 @click.version_option(__version__, prog_name="coadjoint")
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 def main(**_: Any) -> None:
-    """Turn declared mechanical systems into proved equations and verified NumPy and C kernels.
+    """Turn declared mechanical systems into proved equations and verified kernels.
 
     SYSTEM is the name of a shipped system, as `coadjoint list` shows them; SPEC is the path of a
-    .toml file. Exit status: 0 all is well, 1 a check failed, 2 the input was wrong.
+    .toml file. Exit status: 0 success, 1 a check failed, 2 wrong input.
     """

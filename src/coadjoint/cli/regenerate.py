@@ -47,7 +47,11 @@ def add_folder_options(function: Any) -> Any:
 
 @click.command("regenerate")
 @click.argument("names", nargs=-1, metavar="[SYSTEM]...")
-@click.option("--check", is_flag=True, help="Write nothing; compare with a fresh run, 1 on drift.")
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Write nothing; compare with a fresh run. Exit status 1 if files differ.",
+)
 @click.option(
     "--jobs",
     type=click.IntRange(1),

@@ -52,31 +52,39 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 @_repeatable(
     "--set",
     "parameters",
-    help="A parameter, e.g. I=1,2,3; the others have their defaults. Repeatable.",
+    help="A parameter, e.g. I=1,2,3. Default: that of the spec. Repeatable.",
 )
 @_repeatable(
     "--input",
     "inputs",
-    help="A constant input, e.g. u=0.5; the others have their defaults. Repeatable.",
+    help="A constant input, e.g. u=0.5. Default: that of the spec. Repeatable.",
 )
 @_repeatable(
     "--state",
-    help="Initial value of a quantity or component, e.g. Pi=1,0,0, or of the whole state without "
-    "a name. Default: what the spec says, else each vector of unit length along (1, 2, 3, ...), "
-    "each scalar 1, then moved onto the constraints. Repeatable.",
+    help="Initial value of a variable or component, e.g. Pi=1,0,0, or of the whole state, e.g. "
+    "1,0,0. Default: that of the spec, else 1 for scalars and unit vectors, projected onto the "
+    "constraints. Repeatable.",
 )
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long.")
-@click.option("--method", default="auto", show_default=True, help="auto is DOP853.")
+@click.option(
+    "--time", type=float, default=10.0, show_default=True, help="Length of the simulation."
+)
+@click.option(
+    "--method", default="auto", show_default=True, help="Integrator of SciPy; auto is DOP853."
+)
 @click.option("--rtol", type=float, default=1e-10, show_default=True, help="Relative tolerance.")
 @click.option(
     "--samples",
     type=click.IntRange(2, 10_000_000),
     default=1001,
     show_default=True,
-    help="Evenly spaced samples.",
+    help="Number of evenly spaced samples.",
 )
 @click.option(
-    "--max-steps", type=click.IntRange(1), default=1_000_000, show_default=True, help="Most steps."
+    "--max-steps",
+    type=click.IntRange(1),
+    default=1_000_000,
+    show_default=True,
+    help="Largest number of steps.",
 )
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option(
@@ -84,7 +92,12 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     type=click.Path(path_type=Path),
     help="Picture of the path of (x, y) on the plane to write, e.g. trace.png.",
 )
-@click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
+@click.option(
+    "--csv",
+    "table",
+    type=click.Path(path_type=Path),
+    help="Table of the trajectory to write, e.g. top.csv.",
+)
 @seconds_option
 @json_option
 def command(
@@ -204,7 +217,7 @@ def trajectory_csv(system: System, solution: Solution) -> str:
 
 
 def _print(system: System, solution: Solution) -> None:
-    """Where it began and ended, and the drift of its invariants."""
+    """First and last values, and the drift of the invariants."""
     _print_ends(solution, "state", system.STATE.components, f"{system.title} ({system.name})")
     if system.RECONSTRUCTED:
         _print_ends(solution, "reconstructed", system.RECONSTRUCTED.components)

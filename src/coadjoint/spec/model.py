@@ -257,12 +257,14 @@ class Spec:
         """The Spec of the motion on a submanifold, where some variables follow from the others."""
         section, where = submanifold.section, submanifold.where
         # what follows from the state is named and emitted as velocities are
+        follows = {*section, *(each.name for each in self.defined)}
         variables = tuple(
             replace(
                 variable,
-                role="velocity" if variable.name in section else "coordinate",
+                role="velocity" if variable.name in follows else "coordinate",
                 block=(),
                 representation=None,
+                of="",
             )
             for variable in self.variables
         )

@@ -137,23 +137,14 @@ def _check_unasked(source: Source, file: Any) -> None:
     """
     gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
     unbracketed = "none, since a constraint that gives no velocity leaves no bracket of the state"
-    asked: dict[KeyPath, tuple[str, bool, str]] = {
-        ("claims", "casimirs"): ("claims of Casimirs", not gives, unbracketed),
-        ("claims", "brackets"): ("claims of brackets", not gives, unbracketed),
-        ("symmetries",): (
-            "[symmetries]",
-            bool(file.constraints),
-            "none, since symmetries of a constrained motion need not keep their momenta",
-        ),
-    }
-    for key, (what, is_refused, expected) in asked.items():
-        table = getattr(file.claims, str(key[-1])) if len(key) > 1 else file.symmetries
-        if table and is_refused:
+    asked = {"casimirs": "claims of Casimirs", "brackets": "claims of brackets"}
+    for key, what in asked.items():
+        if getattr(file.claims, key) and not gives:
             raise source.fault(
-                key,
+                ("claims", key),
                 f"there are {what} with [constraints]",
-                key[-1],
-                expected,
+                key,
+                unbracketed,
                 "Declare momenta along the constraints in [momenta], and name what is "
                 "conserved in claims.conserved.",
             )

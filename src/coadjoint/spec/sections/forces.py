@@ -18,7 +18,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
-from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
+from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles, state_of
 
 
 def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula]:
@@ -43,11 +43,21 @@ def _find_forced(reading: Reading) -> Mapping[str, Variable]:
     With a Lagrangian a force along a velocity says what it does; with a Hamiltonian momenta and the
     coordinates of a declared bracket may have no velocities.
     """
-    roles = {"velocity"}
-    if reading.file.lagrangian is None:
-        roles |= {"momentum"}
-        roles |= {"coordinate"} if reading.file.poisson is not None else set()
-    return {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
+    moving = {each.name: each for each in _list_moving(reading)}
+    if reading.file.lagrangian is not None:
+        return moving
+    roles = {"momentum"} | ({"coordinate"} if reading.file.poisson is not None else set())
+    return moving | {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
+
+
+def _list_moving(reading: Reading) -> list[Variable]:
+    """The velocities on which forces work.
+
+    Those in a state that a Hamiltonian moves have no mass, by which a force would be divided.
+    """
+    variables = VARIABLES.of(reading)
+    massless = [] if reading.file.lagrangian is not None else state_of(variables)
+    return [each for each in variables if each.role == "velocity" and each not in massless]
 
 
 def read_along(
@@ -90,8 +100,22 @@ def _no_velocity(
         problem = f"{name!r} is {ROLES[own.role]}"
         near = [v for v, each in velocities.items() if (each.block, each.of) == (own.block, own.of)]
         hint = f"Write {(near or list(velocities))[0]} in its place." if velocities else ""
+        if own.role == "velocity":
+            problem, hint = _say_massless(own)
     expected = f"one of {list_names(velocities)}" if velocities else "a declared velocity"
     return reading.at_key(key, problem, name, expected, hint or f"Remove {name}.")
+
+
+def _say_massless(velocity: Variable) -> tuple[str, str]:
+    """Why no force acts along a velocity of the state that a Hamiltonian moves, and what to do."""
+    name = velocity.name
+    hint = f'Write {name} = {{ role = "coordinate" }} in [variables], and in [forces] what is added'
+    problem = f"a Hamiltonian moves the velocity {name!r}, and says no mass to divide a force by"
+    return problem, f"{hint} to its rate."
+
+
+def _names_of(variable: Variable) -> set[str]:
+    return {variable.name, *variable.components}
 
 
 def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
@@ -104,9 +128,13 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("a dissipation", motion_roles(reading), reactions)
     formula = reading.formula(key, part.R, scope)
-    velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
-    known = {name for each in velocities for name in (each.name, *each.components)}
-    if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
+    velocities = _list_moving(reading)
+    named = {getattr(node, "name", "") for node in walk(formula.tree)}
+    for each in VARIABLES.of(reading):
+        if each.role == "velocity" and each not in velocities and named & _names_of(each):
+            problem, hint = _say_massless(each)
+            raise reading.fault(key, problem, each.name, "velocities with a mass", hint)
+    if not named & {name for each in velocities for name in _names_of(each)}:
         raise reading.fault(
             key,
             "Rayleigh's function names no velocity",
