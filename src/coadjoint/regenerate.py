@@ -265,7 +265,7 @@ def _refuse_early(output: Path, pending: Sequence[_Source], keep: set[str] | Non
 
 
 def _is_current(output: Path, names: set[str] | None) -> bool:
-    """Whether the manifest speaks of these systems and of the templates as they are."""
+    """Whether the manifest lists these systems and the present templates."""
     manifest = read_manifest(output)
     if any(not _has_text(output / file, text) for file, text in PACKAGE.items()):
         return False
@@ -291,7 +291,7 @@ def _unchanged_row(source: _Source, output: Path) -> Row | None:
     entry = read_manifest(output)["systems"].get(source.name)
     row: Any = kept.get("row")
     if not _is_row(row) or entry is None or kept.get("entry") != entry:
-        return None  # a damaged stamp is no stamp
+        return None  # nor does a damaged stamp count
     if not is_intact(output, source.name):
         return None
     return _row({**row, "seconds": 0.0, "fresh": False})

@@ -105,7 +105,7 @@ def folders(derivations: Path | None, output: Path | None) -> tuple[Path, Path]:
 
 
 def refuse_elsewhere(is_named: bool, target: Path) -> None:
-    """Refuse a run that would write where nobody has asked for it.
+    """Refuse a run that would write to a folder that the user did not name.
 
     Args:
         is_named: Whether a folder of specs or a generated folder was named.

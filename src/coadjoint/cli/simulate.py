@@ -126,7 +126,7 @@ def command(
     driven = chosen_parameters(loaded.INPUTS, inputs) or None
     start: Any = initial_state(loaded.STATE, state)
     declared = state or all(quantity.default for quantity in loaded.STATE.values())
-    if "projection" in loaded.functions and not declared:  # no fault of the user
+    if "projection" in loaded.functions and not declared:  # the user gave none
         start = loaded.projection(start, given, driven, time=0.0 if loaded.TIME else None)
     solution = loaded.simulate(
         start,

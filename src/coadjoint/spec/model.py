@@ -127,7 +127,7 @@ class Spec:
         sha256: Hash of the file's bytes.
         lax: The declared Lax pair, or None.
         newton: Declared forces, one for each coordinate; empty if none.
-        clebsch: How the algebra acts on a pair of its own of the route clebsch, or None.
+        clebsch: How the algebra acts on the further pair of the route clebsch, or None.
         definitions: Short names in declared order; formulas hold them no more.
         symmetries: Declared actions; their momentum maps are emitted after the observables.
         transformations: Maps that are claimed to keep the motion.
@@ -196,7 +196,7 @@ class Spec:
 
     @property
     def state(self) -> tuple[Variable, ...]:
-        """The state of the kernels, in declared order: what is no velocity that another gives.
+        """The state of the kernels, in declared order: all but velocities that others give.
 
         Velocities follow from momenta; only where a coordinate has no momentum is its velocity
         part of the state. Under constraints, those velocities are that no constraint gives.

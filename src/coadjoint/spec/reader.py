@@ -43,8 +43,8 @@ from coadjoint.spec.validate import validate
 def read_spec(path: str | os.PathLike[str]) -> Spec:
     """Read a spec from a file.
 
-    What the text may ask for is limited (docs/limits.md); the time that reading takes is not, and
-    nor is that of `coadjoint.derive` and `coadjoint.prove`. For a file of a stranger there are
+    What the text may ask for is limited (docs/limits.md). The time that reading takes is not
+    limited, nor that of `coadjoint.derive` and `coadjoint.prove`. For an untrusted file use
     `coadjoint.read_bounded`, `derive_bounded` and `prove_bounded`.
 
     Args:

@@ -79,14 +79,14 @@ class Scalars:
             self._positive += parameter.components if parameter.positive else ()
 
     def value(self, name: str, indices: tuple[int, ...] = ()) -> Coefficient | None:
-        """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
+        """The parameter of a name, as ``I1`` or ``I[1]``; None for other names."""
         component, sign = self._components.get((name, indices), ("", 0))
         if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
             return Fraction(0) if component else None
         return sign * self._field[component]
 
     def check_names(self, tree: Node) -> None:
-        """Refuse what is no constant of the system.
+        """Refuse inputs and the time, which are not constants.
 
         Raises:
             ExpressionError: An input or the time is named.
@@ -96,10 +96,10 @@ class Scalars:
                 problem = f"{node.name!r} is {ROLES[self._driving[node.name]]}"
                 expected = "constants of the algebra in terms of numbers and parameters"
                 hint = "Put a parameter in its place."
-                raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
+                raise fault_at(node, problem, node.name, expected, hint)
 
     def check_terms(self, tree: Node, terms: int) -> None:
-        """Count the terms of a coefficient with parameters: elimination among many takes for ever.
+        """Count the terms of a coefficient with parameters: elimination among many does not end.
 
         Raises:
             ExpressionError: There are too many in the spec.
@@ -108,13 +108,10 @@ class Scalars:
             return
         self._terms += terms
         if self._terms > PARAMETRIC_TERMS:
+            problem = f"with this one, coefficients have {self._terms} terms that hold parameters"
+            hint = "Put numbers for some of the parameters."
             raise ExpressionError(
-                f"with this one, coefficients have {self._terms} terms that hold parameters",
-                tree.start,
-                tree.end,
-                found=str(self._terms),
-                hint="Put numbers for some of the parameters.",
-                limit="PARAMETRIC_TERMS",
+                problem, tree.start, tree.end, str(self._terms), hint=hint, limit="PARAMETRIC_TERMS"
             )
 
     @cached_property
@@ -216,9 +213,7 @@ class _Reading:
         if name in self.scalars.shapes:
             problem = f"{name!r} is both a parameter and in the basis"
             hint = "Rename the parameter."
-            raise ExpressionError(
-                problem, node.start, node.end, found=name, expected="names that differ", hint=hint
-            )
+            raise ExpressionError(problem, node.start, node.end, name, "names that differ", hint)
         return name
 
     def _scalar(self, node: Node, name: str, indices: tuple[int, ...] = ()) -> _Linear:

@@ -55,5 +55,5 @@ def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> in
     if any(known) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
         problem = f"this is not linear in {names[0]!r}"
         expected = f"sums of terms that are linear in {names[0]}"
-        raise fault_at(node, problem, found=names[0], expected=expected)
+        raise fault_at(node, problem, names[0], expected)
     return known[0] if known else None if plain else 0

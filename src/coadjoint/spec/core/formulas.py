@@ -174,9 +174,7 @@ def read_formula(
         if shape != () and not any_shape:
             hint = "Write dot(a, a) for the square of a vector." if len(shape) == 1 else ""
             problem = f"the value is {words(shape)}"
-            raise ExpressionError(
-                problem, 0, len(text), found=words(shape), expected="a scalar", hint=hint
-            )
+            raise ExpressionError(problem, 0, len(text), words(shape), "a scalar", hint)
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
@@ -190,7 +188,7 @@ def _check_roles(tree: Node, scope: Scope) -> None:
             problem = f"{node.name!r} is {ROLES[scope.outside[node.name]]}"
             expected = f"{scope.kind} in terms of {scope.takes}"
             hint = did_you_mean(node.name, scope.shapes)
-            raise fault_at(node, problem, found=node.name, expected=expected, hint=hint)
+            raise fault_at(node, problem, node.name, expected, hint)
 
 
 def read_fitting(
@@ -212,4 +210,4 @@ def misfit(
 ) -> CoadjointError:
     """A formula whose value has another shape than it may have."""
     value = words(formula.shape)
-    return source.fault(key, f"the value is {value}", found=value, expected=expected, hint=hint)
+    return source.fault(key, f"the value is {value}", value, expected, hint)

@@ -129,7 +129,7 @@ def read_default(
     if spread is None and value is not None:
         problem = f"the default of {str(key[-2])!r} does not have its shape {list(shape)}"
         expected = f"one number for all components, or {_shape_words(shape)}"
-        raise source.fault(key, problem, found=_shape_text(value), expected=expected)
+        raise source.fault(key, problem, _shape_text(value), expected)
     return spread
 
 
@@ -181,4 +181,4 @@ def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> Coadjoin
     problem = f"{count} components fill no matrix of the form {form!r}"
     expected = f"{counts[form]} components for an n by n matrix"
     hint = f"Remove form, or choose another {_SIZED[str(key[0])]}."
-    return source.fault(key, problem, found=count, expected=expected, hint=hint)
+    return source.fault(key, problem, count, expected, hint)

@@ -147,7 +147,8 @@ def _read_each(
     """A formula for each name, of its shape."""
     for name in texts:
         if name not in shapes:
-            raise reading.unknown((*key, name), "variable", name, shapes, "none")
+            problem = f"there is no variable {name!a}"
+            raise reading.unknown((*key, name), problem, name, shapes, is_key=True)
     missing = [name for name in shapes if name not in texts]
     if missing:
         raise _incomplete(reading, key, missing)
@@ -184,5 +185,4 @@ CHARTS = Table[tuple[DeclaredChart, ...]](
     "the same motion in other variables, by name",
     read_charts,
     many=True,
-    absent=(),
 )

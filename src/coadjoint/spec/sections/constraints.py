@@ -84,7 +84,7 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
     """The constraints in declared order.
 
     Raises:
-        SpecError: One is no equation between velocities, or the spec has with them what a
+        SpecError: One is not an equation between velocities, or the spec has with them what a
             constrained motion does not have.
     """
     source, file = reading.source, reading.file
@@ -126,7 +126,7 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
             problem = f"the constraint rests on {name}, which names a reaction"
             expected = "an equation between velocities, which no reaction enters"
             hint = f"Write {name} without reactions, or use it in [forces] alone."
-            raise reading.source.fault(key, problem, found=name, expected=expected, hint=hint)
+            raise reading.fault(key, problem, name, expected, hint)
 
 
 def _check_unasked(source: Source, file: Any) -> None:
@@ -168,7 +168,6 @@ CONSTRAINTS = Table[tuple[Constraint, ...]](
     read_constraints,
     many=True,
     least=1,
-    absent=(),
     names=_name_all,
     acts=True,
 )

@@ -48,9 +48,7 @@ def _read_name(source: Source, text: str) -> str:
         key: KeyPath = ("definitions", text)
         problem = f"{text!a} cannot be defined"
         expected = 'a name, or a name with arguments in quotes, such as "V(s, d)"'
-        raise source.fault(
-            key, problem, found=text, expected=expected, at=source.positions.key(key)
-        )
+        raise source.at_key(key, problem, text, expected)
     return signature(text)[0]
 
 

@@ -45,7 +45,7 @@ def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input
     """The inputs with one exact default for each component, or none.
 
     Raises:
-        SpecError: A default does not have the shape, or a rate is no input of the same shape.
+        SpecError: A default does not have the shape, or a rate is not an input of the same shape.
         LimitError: There are too many.
     """
     source = reading.source
@@ -65,19 +65,16 @@ def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> No
     rate = parts[name].rate
     alike = [other for other in parts if other != name and parts[other].shape == parts[name].shape]
     if rate is not None and rate not in alike:
-        raise source.fault(
-            ("inputs", name, "rate"),
-            f"{rate!a} is not another input with the shape of {name!r}",
-            found=rate,
-            expected=f"one of {list_names(alike)}" if alike else "another input of its shape",
-            hint=did_you_mean(rate, alike) or "Declare it in [inputs].",
-        )
+        problem = f"{rate!a} is not another input with the shape of {name!r}"
+        expected = f"one of {list_names(alike)}" if alike else "another input of its shape"
+        hint = did_you_mean(rate, alike) or "Declare it in [inputs]."
+        raise source.fault(("inputs", name, "rate"), problem, rate, expected, hint)
     chain = [name]
     while (following := parts[chain[-1]].rate or "") in parts:
         if following in chain:
             problem = f"the rates {' -> '.join([*chain, following])} form a circle"
             expected = "an input whose rates end at one without"
-            raise source.fault(("inputs", name, "rate"), problem, found=rate, expected=expected)
+            raise source.fault(("inputs", name, "rate"), problem, rate, expected)
         chain.append(following)
 
 

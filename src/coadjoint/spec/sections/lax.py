@@ -60,7 +60,7 @@ def _check_spectral(reading: Reading, name: str) -> None:
     if not NAME.fullmatch(name) or name in reading.owners or name in FUNCTIONS:
         problem = f"{name!a} cannot name the spectral parameter"
         expected = "a name that nothing else has, such as 'lambda'"
-        raise reading.source.fault(("lax", "spectral"), problem, found=name, expected=expected)
+        raise reading.fault(("lax", "spectral"), problem, name, expected)
 
 
 def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formula:

@@ -72,7 +72,7 @@ def _read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter
     if default is not None and part.positive and min(default) <= 0:
         problem = f"the default {min(default)} of {name!r} is not positive"
         expected = "positive numbers, since positive = true"
-        raise source.fault(key, problem, found=str(min(default)), expected=expected)
+        raise source.fault(key, problem, str(min(default)), expected)
     return Parameter(
         name=name,
         shape=shape,

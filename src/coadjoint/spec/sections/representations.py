@@ -65,9 +65,7 @@ def read_representations(
         if not NAME.fullmatch(name) or name in KNOWN:
             problem = f"{name!a} cannot name a representation"
             expected = f"a name other than {', '.join(KNOWN)}, which every algebra has"
-            raise source.fault(
-                key, problem, found=name, expected=expected, at=source.positions.key(key)
-            )
+            raise source.at_key(key, problem, name, expected)
         if part.matrices is None:
             representations[name] = _on_matrices(source, key, algebra, name, part)
         elif part.left is None and part.right is None:
@@ -79,7 +77,7 @@ def read_representations(
             side = "right" if part.left is None else "left"
             problem = f"the representation {name!r} has both matrices and {side!r}"
             expected = "either matrices over the basis, or blocks that act from left and right"
-            raise source.fault((*key, side), problem, found=side, expected=expected)
+            raise source.fault((*key, side), problem, side, expected)
     return representations
 
 
@@ -91,9 +89,7 @@ def _on_matrices(
         problem = f"the representation {name!r} says nothing of how the algebra acts"
         expected = "matrices, or a block of the algebra as left or right"
         hint = f'Write for instance right = "{next(iter((*algebra.blocks, *algebra.basis)))}".'
-        raise source.fault(
-            key, problem, found=name, expected=expected, hint=hint, at=source.positions.key(key)
-        )
+        raise source.at_key(key, problem, name, expected, hint)
     left, right = (
         _own_matrices(source, (*key, side), algebra, block)
         for side, block in (("left", part.left), ("right", part.right))
@@ -114,7 +110,7 @@ def _own_matrices(
         named = list_names(algebra.basis[i] for i in places)
         problem = f"{algebra.name} has no matrices for {named}"
         expected = "a block of an algebra that is given by matrices, such as so(3)"
-        raise source.fault(key, problem, found=named, expected=expected)
+        raise source.fault(key, problem, named, expected)
     number = {old: new for new, old in enumerate(sorted(used))}
     return tuple(
         {(number[r], number[c]): x for (r, c), x in matrix.items()} if i in places else {}
@@ -128,6 +124,7 @@ REPRESENTATIONS = Table[dict[str, Representation]](
     "declared representations",
     read_representations,
     many=True,
+    absent={},
 )
 
 

@@ -146,7 +146,7 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
     if name not in state:
         problem = f"{name!a} is not a variable of the state"
-        raise reading.source.unknown(key, problem, name, state)
+        raise reading.unknown(key, problem, name, state)
     return state[name]
 
 
@@ -220,7 +220,7 @@ class _Actions:
         if not NAME.fullmatch(name) or names & (self.reading.owners.keys() | {"energy"}):
             problem = f"{name!a} cannot name an element of {algebra.name}"
             expected = "a name that nothing else has, such as 'xi'"
-            raise self.source.fault((*key, way), problem, found=name, expected=expected)
+            raise self.source.fault((*key, way), problem, name, expected)
         if way == "vector":
             parts = {f"{name}_{block}": len(run) for block, run in algebra.blocks.items()}
             counts = {name: algebra.dimension, **parts}
@@ -234,7 +234,7 @@ class _Actions:
             problem = f"{algebra.name} has no matrices"
             expected = "an algebra that is declared by matrices, or by name"
             hint = f"Write {'generators' if key[-1] == 'linear' else 'vector'} in its place."
-            raise self.source.fault(key, problem, found=algebra.name, expected=expected, hint=hint)
+            raise self.source.fault(key, problem, algebra.name, expected, hint)
 
     def _check_linear(self, key: KeyPath, names: Sequence[str], algebra: LieAlgebra) -> None:
         """The matrices fit the stacked components."""
@@ -248,8 +248,8 @@ class _Actions:
                 (*key, "linear"),
                 f"{list_names(names)} have {count} components, and the matrices of {algebra.name} "
                 f"have {rows} rows",
-                found=count,
-                expected=f"variables with {rows} components together",
+                count,
+                f"variables with {rows} components together",
             )
 
     def _read_generator(
@@ -273,9 +273,7 @@ class _Actions:
             if degree not in (1, None):
                 problem = f"the value is of degree {degree} in {element!r}"
                 expected = f"a formula that is linear in {element}"
-                raise ExpressionError(
-                    problem, 0, len(formula.text), found=element, expected=expected
-                )
+                raise ExpressionError(problem, 0, len(formula.text), element, expected)
         except ExpressionError as error:
             raise self.source.expression_fault(key, error) from None
         return formula
