@@ -15,6 +15,7 @@ ask.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from math import prod
 
 from coadjoint.exact import Element, Field
@@ -64,6 +65,19 @@ class Decided:
             self._members.add(name)
         self._extend(name, value)
         return value
+
+    def list_computed(self, lines: Iterable[tuple[str, Element]]) -> list[tuple[str, Element]]:
+        """Definitions as the kernel computes them; intermediates that are zero are left out."""
+        noted = [(name, self.define(name, value)) for name, value in lines]
+        return [(name, value) for name, value in noted if value != 0 or not name.startswith("_")]
+
+    def copy(self) -> Decided:
+        """The same, to which further definitions may be added."""
+        twin = copy(self)
+        twin.numbers, twin._members = {**self.numbers}, {*self._members}
+        twin._definitions, twin._closed = {**self._definitions}, {**self._closed}
+        twin._points = None if self._points is None else [{**at} for at in self._points]
+        return twin
 
     def value(self, element: Element) -> Element:
         """The element, or what it is identically equal to: zero, or a value of parameters alone."""

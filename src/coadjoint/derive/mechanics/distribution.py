@@ -121,6 +121,14 @@ class Distribution:
         )
 
     @cached_property
+    def kept_rows(self) -> list[Row]:
+        """``(A, -b)`` of these constraints, in eta."""
+        field, names = self.setting.field, self.independent
+        rest = dict.fromkeys(names, field.zero)
+        residuals = [residual for _, residual in self.kept]
+        return [(*field.gradient(each, names), field.substitute(each, rest)) for each in residuals]
+
+    @cached_property
     def is_linear(self) -> bool:
         """Whether no constraint has an affine term: rest is allowed, and energy keeps its value."""
         field = self.setting.field

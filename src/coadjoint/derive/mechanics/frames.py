@@ -16,7 +16,7 @@ Read next: `coadjoint.derive.mechanics.distribution`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -118,8 +118,3 @@ class Frame:
 def frame_of(setting: Setting) -> Frame:
     """The frame of a system."""
     return Frame(setting)
-
-
-def frame_rates(frame: Frame) -> Mapping[str, Element]:
-    """``dz/dt`` of every position in the velocities themselves."""
-    return frame.rates(frame.setting.elements(frame.velocities))

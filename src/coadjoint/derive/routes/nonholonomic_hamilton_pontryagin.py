@@ -27,14 +27,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics import kinematics
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
-from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
+from coadjoint.derive.mechanics.constrained import emit_motion, start_motion
+from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
-from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.routes import hamilton_pontryagin
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
@@ -44,11 +43,6 @@ ROUTE = "nonholonomic-hamilton-pontryagin"
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
-    """Coordinates about the moving point, and the names that the kernel solves for."""
-    return (*_coordinates(spec), *kinematics.symbols(spec))
-
-
-def _coordinates(spec: Spec) -> tuple[str, ...]:
     """Coordinates about the moving point, and their rates."""
     return hamilton_pontryagin.symbols(spec) if spec.algebra is not None else ()
 
@@ -60,7 +54,8 @@ def derive(setting: Setting) -> Equations:
         DerivationError: As on the route nonholonomic.
     """
     mechanics(setting).check_quadratic()
-    found = distribution(setting)
+    motion = start_motion(setting)
+    found = motion.distribution
     forces, moved = _vary(setting)
     momentum = _momentum_equations(found, forces, moved)
     constraint = [_rate(found, each.residual, moved) for each in found.equations]
@@ -70,15 +65,14 @@ def derive(setting: Setting) -> Equations:
     mass = tuple(field.gradient(line, names) for line in left)
     rest = dict.fromkeys([*names, *map(multiplier_name, range(len(found.kept)))], field.zero)
     known = [-field.substitute(line, rest) for line in left]
-    motion = ConstrainedMotion(found)
-    exact = emission(motion, motion.kinematics, mass, known, list(given.items()))
     steps = _steps(found, forces, momentum, constraint, given)
-    return Equations(setting, ROUTE, exact, steps, distribution=found)
+    reactions = list(given.items())
+    return emit_motion(motion, ROUTE, mass, known, lambda _: steps, reactions=reactions)
 
 
 def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
     """F along each velocity by the variation of the motion, and ``dz/dt`` by that of momenta."""
-    known, own = mechanics(setting), len(_coordinates(setting.spec)) // 2
+    known, own = mechanics(setting), len(symbols(setting.spec)) // 2
     velocities = setting.elements(known.frame.velocities)
     forces: Row = ()
     moved = dict(zip(setting.positions, velocities[own:], strict=True))
@@ -170,40 +164,37 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     names, momenta = found.frame.velocities, mechanics(found.setting).momenta
-    steps = (
-        Step(
+    equations = [each.name for each in found.equations]
+    return (
+        write_step(
             "Variation of the velocities: the Legendre relation",
             "mu = dl/dxi",
             r"\mu = \partial l / \partial \xi",
-            tuple(zip((partial("l", name) for name in names), momenta, strict=True)),
+            write_slopes("l", names, momenta),
         ),
-        Step(
+        write_step(
             "Variation of the motion without constraints",
             "F_k from d/dt dL/d(deps/dt) = dL/deps at eps = 0, dl/dq of coordinates",
             r"F_k: \quad \frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
             r"= \frac{\partial L}{\partial \epsilon}",
-            tuple((symbol(f"F_{name}"), value) for name, value in zip(names, forces, strict=True)),
+            zip((f"F_{name}" for name in names), forces, strict=True),
         ),
-        Step(
+        write_step(
             "Variation of the motion within the constraints",
             "dmu/dt - F - f - A^T lambda = 0",
             r"\dot\mu - F - f - A^T \lambda = 0",
-            tuple((symbol(f"E_{name}"), value) for name, value in momentum.items()),
+            ((f"E_{name}", value) for name, value in momentum.items()),
         ),
-        Step(
+        write_step(
             "Constraints, imposed after the variation, and their rates",
             "d/dt (left - right) = 0",
             r"\frac{d}{dt}(A \xi - b) = 0",
-            tuple(
-                (rate(each.name), value)
-                for each, value in zip(found.equations, constraint, strict=True)
-            ),
+            write_rates(equations, constraint),
         ),
-        Step(
+        write_step(
             "Rates and multipliers that these equations give",
             "dxi/dt = B deta/dt + c,  lambda",
             r"\dot\xi = B \dot\eta + c, \quad \lambda",
-            tuple((symbol(name), value) for name, value in given.items()),
+            given,
         ),
     )
-    return tuple(step for step in steps if step.lines)
