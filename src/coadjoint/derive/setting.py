@@ -114,8 +114,8 @@ class Setting:
         """What ``{q, p}`` is for each momentum: 1, or 1/2 beside the diagonal of symmetric ones."""
         coordinates = self.spec.having_role("coordinate") if self.spec.algebra is None else ()
         partners = [self.spec.partner("momentum", variable.name) for variable in coordinates]
-        found = [w for p in partners if p for w in pairing_weights(len(p.components), p.form)]
-        return tuple(found) or (Fraction(1),) * len(self.momenta)
+        weights = [w for p in partners if p for w in pairing_weights(len(p.components), p.form)]
+        return tuple(weights) or (Fraction(1),) * len(self.momenta)
 
     @cached_property
     def advected(self) -> tuple[Variable, ...]:
@@ -180,12 +180,12 @@ class Setting:
     @cached_property
     def reactions(self) -> Mapping[str, Value]:
         """The multipliers of constraints, whole and by component, as symbols."""
-        found: dict[str, Value] = {}
+        values: dict[str, Value] = {}
         for each in self.spec.constraints:
             parts = self.elements(each.reactions)
-            found |= zip(each.reactions, parts, strict=True)
-            found[each.reaction] = shape(parts, each.shape)
-        return found
+            values |= zip(each.reactions, parts, strict=True)
+            values[each.reaction] = shape(parts, each.shape)
+        return values
 
     def excess(
         self, condition: Inequality, others: Mapping[str, Value] = MappingProxyType({})
@@ -216,8 +216,8 @@ class Setting:
         self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
     ) -> Element:
         """The value of a declared scalar formula; arguments as in `value`."""
-        found: Element = self.value(formula, observables)
-        return found
+        value: Element = self.value(formula, observables)
+        return value
 
     def components(
         self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
@@ -329,14 +329,14 @@ def _positive_name(condition: Inequality) -> str:
 
 def _conditions(setting: Setting) -> tuple[Condition, ...]:
     """The declared domain, but for bounds of reactions, which are no functions of the state."""
-    found = []
+    conditions = []
     for each in setting.spec.domain:
         nodes = [node for side in (each.left, each.right) for node in tree.walk(side.tree)]
         named = {node.name for node in nodes if isinstance(node, tree.Name | tree.Index)}
         if not named <= setting.values.keys():
             continue
-        found.append(Condition(setting.excess(each), strict=not each.sign.endswith("=")))
-    return tuple(found)
+        conditions.append(Condition(setting.excess(each), strict=not each.sign.endswith("=")))
+    return tuple(conditions)
 
 
 def _defaults(quantities: Sequence[Declared]) -> dict[str, Fraction]:

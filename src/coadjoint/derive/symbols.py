@@ -31,7 +31,7 @@ def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     if not taken & set(names):
         return tuple(names)
     for n in count():
-        found = [f"{name}_{n}" for name in names]
-        if not taken & set(found):
-            return tuple(found)
+        numbered = [f"{name}_{n}" for name in names]
+        if not taken & set(numbered):
+            return tuple(numbered)
     raise AssertionError("some number is free")

@@ -154,15 +154,15 @@ def moved_components(
     Raises:
         DerivationError: A matrix is not of the form of its variable.
     """
-    found: dict[str, Element] = {}
+    components: dict[str, Element] = {}
     for variable in setting.spec.state:
         formula = formulas.get(variable.name)
         if formula is not None:
             parts = entries(setting.value(formula, known))
             if variable.form in FORMS:
                 parts = _kept_entries(setting, parts, variable.form, formula)
-            found |= zip(variable.components, parts, strict=True)
-    return found
+            components |= zip(variable.components, parts, strict=True)
+    return components
 
 
 def _kept_entries(
@@ -186,15 +186,15 @@ def _kept_entries(
 
 def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tuple[Element, ...]:
     """J of each basis vector."""
-    found = []
+    values = []
     for element, value in _resting(setting)[symmetry.name]:
         if symmetry.time is not None:
             if energy is None:
                 problem = "time moves, and the motion has no energy"
                 raise _fault(setting, symmetry.time, problem, "Leave time out.")
             value = value - energy * _evaluate_at(setting, symmetry.time, symmetry, element)
-        found.append(value)
-    return tuple(found)
+        values.append(value)
+    return tuple(values)
 
 
 @once
@@ -302,7 +302,7 @@ def _fault(
     path = str(setting.spec.path)
     line = f":{formula.line}" if formula is not None else ""
     key = formula.key if formula is not None else f"symmetries.{symmetry.name if symmetry else ''}"
-    found = formula.text if formula is not None else ""
+    text = formula.text if formula is not None else ""
     return DerivationError(
-        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=found
+        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=text
     )

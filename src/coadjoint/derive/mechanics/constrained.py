@@ -93,7 +93,7 @@ class ConstrainedMotion:
             mass: The reduced mass matrix.
             known: What it times the accelerations is, where reactions may be named.
         """
-        field, found, value = self.frame.setting.field, self.distribution, self.decided.value
+        field, of, value = self.frame.setting.field, self.distribution, self.decided.value
         rows, carried = self.of_kept()
         none = [field.zero] * len(rows)
         pulls = [field.gradient(k, self.pressing) for k in known]
@@ -106,7 +106,7 @@ class ConstrainedMotion:
         ]
         sides = [*map(value, map(self.without_reactions, known)), *map(value, carried)]
         names = [
-            *map(rate_name, found.independent),
+            *map(rate_name, of.independent),
             *map(multiplier_name, range(len(rows))),
         ]
         unlike = {i for i, row in enumerate(pulls) if any(row)}
@@ -140,7 +140,7 @@ class ConstrainedMotion:
             mass: ``d2l/dxi2`` in the frame.
             forces: ``F - M c - dp/dz dz/dt`` in the frame, as a route names them.
         """
-        field, found = self.frame.setting.field, self.distribution
+        field, of = self.frame.setting.field, self.distribution
         known, names = self.kinematics, self.frame.velocities
         turned = [
             field.sum(b * x for b, x in zip(row, self.accelerations, strict=True))
@@ -148,10 +148,9 @@ class ConstrainedMotion:
         ]
         rates = [(rate_name(names[n]), turned[n] + known.c[n]) for n in known.solved]
         values = {
-            equation.reaction: -field[multiplier_name(n)]
-            for n, (equation, _) in enumerate(found.kept)
+            equation.reaction: -field[multiplier_name(n)] for n, (equation, _) in enumerate(of.kept)
         }
-        rows = dict(zip((each.reaction for each in found.equations), found.A, strict=True))
+        rows = dict(zip((each.reaction for each in of.equations), of.A, strict=True))
         for place, equation in self._order_given():
             inertia = field.sum(m * t for m, t in zip(mass[place], turned, strict=True))
             others = field.sum(
@@ -166,10 +165,10 @@ class ConstrainedMotion:
 
         Along such a velocity ``p' - F = A^T lambda`` has but one multiplier that is not known yet.
         """
-        found, waiting = self.distribution, list(self.kinematics.solved)
+        of, waiting = self.distribution, list(self.kinematics.solved)
         giving = {
             self.frame.velocities.index(each.solves): (each, row)
-            for each, row in zip(found.equations, found.A, strict=True)
+            for each, row in zip(of.equations, of.A, strict=True)
             if each.solves
         }
         while waiting:

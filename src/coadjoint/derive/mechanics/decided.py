@@ -142,8 +142,8 @@ class Decided:
 
     def _extend(self, name: str, value: Element) -> None:
         """Give a definition its value at the points."""
-        for at, found in zip(self._points or (), self._values(value), strict=False):
-            at[name] = found
+        for at, residue_there in zip(self._points or (), self._values(value), strict=False):
+            at[name] = residue_there
 
     def _redraw(self) -> None:
         """Other points, with the values of the definitions; None where there were too many."""

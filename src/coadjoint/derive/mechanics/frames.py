@@ -92,8 +92,8 @@ class Frame:
         zeros = [setting.field.zero] * (len(self.velocities) - self._own)
         if not self._own:
             return tuple(zeros)
-        found = setting.algebra.bracket(a[: self._own], b[: self._own])
-        return (*(setting.field.zero + setting.sign * x for x in found), *zeros)
+        bracket = setting.algebra.bracket(a[: self._own], b[: self._own])
+        return (*(setting.field.zero + setting.sign * x for x in bracket), *zeros)
 
     def bracket(self, a: Sequence[Element], b: Sequence[Element]) -> Vector:
         """``[a, b]`` of vector fields whose components are functions of the positions."""
@@ -106,8 +106,8 @@ class Frame:
         zeros = [setting.field.zero] * (len(self.velocities) - self._own)
         if not self._own:
             return tuple(zeros)
-        found = setting.algebra.ad_star(vector[: self._own], momenta[: self._own])
-        return (*(setting.field.zero + setting.sign * x for x in found), *zeros)
+        along = setting.algebra.ad_star(vector[: self._own], momenta[: self._own])
+        return (*(setting.field.zero + setting.sign * x for x in along), *zeros)
 
     def slopes(self, function: Element) -> Vector:
         """``X_k f`` for every k."""

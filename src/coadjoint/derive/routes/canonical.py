@@ -89,11 +89,11 @@ def _pairs(setting: Setting) -> list[Pair]:
 def _magnetic(setting: Setting) -> Magnetic:
     """The declared magnetic terms."""
     bracket, names = setting.spec.poisson, setting.state
-    found: dict[tuple[str, str], Element] = {}
+    terms: dict[tuple[str, str], Element] = {}
     for i, j, formula in bracket.entries if bracket is not None else ():
         value = setting.formula(formula)
-        found |= {(names[i], names[j]): value, (names[j], names[i]): -value}
-    return found
+        terms |= {(names[i], names[j]): value, (names[j], names[i]): -value}
+    return terms
 
 
 def _hamilton(
@@ -145,14 +145,14 @@ def _in_own_momenta(setting: Setting) -> Equations:
     for name, force in zip(own, external_forces(setting, setting.velocities), strict=True):
         named[name] += field.substitute(force, solved)
     rates = {x: named[x] for x in variables}
-    found = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
+    motion = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
     transform = write_step(
         "Legendre transform",
         "v solved from p = dl/dv",
         r"p = \partial l / \partial v",
         solved,
     )
-    return replace(found, steps=(transform, *_steps(variables, h, slopes, found.exact.rates)))
+    return replace(motion, steps=(transform, *_steps(variables, h, slopes, motion.exact.rates)))
 
 
 def _steps(

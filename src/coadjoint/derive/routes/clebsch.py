@@ -99,8 +99,8 @@ def derive(setting: Setting) -> Equations:
     transform = legendre(setting)
     velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
     through = _through(setting, pairs)
-    found = in_chart(setting, "clebsch", rates, image, through, definitions=velocities)
-    return replace(found, steps=_steps(found, action, image))
+    motion = in_chart(setting, "clebsch", rates, image, through, definitions=velocities)
+    return replace(motion, steps=_steps(motion, action, image))
 
 
 def _pairing(setting: Setting, pairs: list[_Pair]) -> Element:
@@ -144,12 +144,12 @@ def _turns_vectors(setting: Setting, action: Representation) -> bool:
     return plain and tuple(map(dict, action.matrices)) == tuple(map(dict, rotations))
 
 
-def _steps(found: Equations, action: Element, image: Mapping[str, Element]) -> tuple[Step, ...]:
+def _steps(motion: Equations, action: Element, image: Mapping[str, Element]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    setting, exact, n = found.setting, found.exact, len(found.variables) // 2
+    setting, exact, n = motion.setting, motion.exact, len(motion.variables) // 2
     sign = "+" if setting.sign == 1 else "-"
     turn, back = ("", "-") if setting.sign == 1 else ("-", "")
-    lines = tuple(write_rates(found.variables, exact.rates))
+    lines = tuple(write_rates(motion.variables, exact.rates))
     return (
         write_step(
             "Clebsch action",

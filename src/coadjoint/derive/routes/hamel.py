@@ -52,19 +52,19 @@ def derive(setting: Setting) -> Equations:
 
 def _right_side(motion: ConstrainedMotion, constrained: Element, momenta: Row) -> Row:
     """``D_k l_c + <p, [xi, D_k]> + B_k f - dp_c/dz dz/dt``."""
-    found, frame = motion.distribution, motion.frame
+    of, frame = motion.distribution, motion.frame
     field = frame.setting.field
-    p = [field.substitute(slope, found.solved) for slope in mechanics(frame.setting).momenta]
+    p = [field.substitute(slope, of.solved) for slope in mechanics(frame.setting).momenta]
     acting = external_forces(frame.setting, frame.velocities)
-    forces = [field.substitute(force, found.solved) for force in acting]
+    forces = [field.substitute(force, of.solved) for force in acting]
     known = []
     for k, momentum in enumerate(momenta):
-        D = [row[k] for row in found.B]
+        D = [row[k] for row in of.B]
         own = (explicit_rate(frame.setting, d, "a constraint") for d in D)
-        turned = [a + b for a, b in zip(frame.bracket(found.xi, D), own, strict=True)]
+        turned = [a + b for a, b in zip(frame.bracket(of.xi, D), own, strict=True)]
         gyroscopic = field.sum(a * b for a, b in zip(p, turned, strict=True) if a and b)
         driven = field.sum(b * f for b, f in zip(D, forces, strict=True) if b and f)
-        carried = frame.along(found.xi, momentum)
+        carried = frame.along(of.xi, momentum)
         carried += explicit_rate(frame.setting, momentum, "a momentum")
         known.append(frame.along(D, constrained) + gyroscopic + driven - carried)
     return tuple(known)

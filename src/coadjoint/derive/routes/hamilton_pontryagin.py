@@ -113,12 +113,12 @@ def momentum_equation(setting: Setting, action: Action) -> tuple[Element, ...]:
     """
     field = setting.field
     forces = field.gradient(action.integrand, action.coordinates)
-    found = []
+    rates = []
     for name, force in zip(action.rates, forces, strict=True):
         slopes = field.gradient(field.derivative(action.integrand, name), action.coordinates)
         carried = (s * field[xi] for s, xi in zip(slopes, action.rates, strict=True))
-        found.append(_at_the_motion(setting, action, force - field.sum(carried)))
-    return tuple(found)
+        rates.append(_at_the_motion(setting, action, force - field.sum(carried)))
+    return tuple(rates)
 
 
 def advection(setting: Setting, action: Action) -> dict[str, list[Element]]:

@@ -82,7 +82,7 @@ def derive(setting: Setting) -> Equations:
         Relation(f"{name} = {element_text(field, value)}", field[name] - value)
         for name, value in zip(momenta, level, strict=True)
     ]
-    found = in_chart(
+    motion = in_chart(
         setting,
         ROUTE,
         rates,
@@ -92,7 +92,7 @@ def derive(setting: Setting) -> Equations:
         definitions=transform.definitions,
         energy=energy,
     )
-    return replace(found, steps=_steps(found, whole, solved, level))
+    return replace(motion, steps=_steps(motion, whole, solved, level))
 
 
 def _advected_names(setting: Setting) -> tuple[str, ...]:
@@ -160,10 +160,10 @@ def _rates(setting: Setting, forces: list[Element]) -> tuple[Element, ...]:
 
 
 def _steps(
-    found: Equations, whole: Element, solved: dict[str, Element], level: Vector
+    motion: Equations, whole: Element, solved: dict[str, Element], level: Vector
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    setting, energy = found.setting, found.exact.energy
+    setting, energy = motion.setting, motion.exact.energy
     assert energy is not None, "this route has one"
     back = "-" if setting.sign == 1 else ""
     work = sign_text(setting.sign, "<mu, [xi, eta]> - p . rho(eta) a")
@@ -193,7 +193,7 @@ def _steps(
             f"<dmu/dt, eta> = {work},  da/dt = {back}rho(xi) a,  dp/dt = 0",
             rf"\langle\dot\mu, \eta\rangle = {work_latex}, \quad "
             rf"\dot a = {back}\rho(\xi) a, \quad \dot p = 0",
-            write_rates(found.variables, found.exact.rates),
+            write_rates(motion.variables, motion.exact.rates),
         ),
         write_step(
             "Level set of the conserved momentum",

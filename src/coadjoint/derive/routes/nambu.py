@@ -46,8 +46,8 @@ def derive(setting: Setting) -> Equations:
     spec, names = setting.spec, setting.state
     if spec.poisson is None:
         h, _ = hamiltonian(setting)
-        found = distinguished_function(setting)
-        functions, multiplier = [found.function], found.multiplier
+        distinguished = distinguished_function(setting)
+        functions, multiplier = [distinguished.function], distinguished.multiplier
     else:
         h, multiplier = setting.hamiltonian, setting.field.one
         functions = [setting.formula(c) for c in spec.poisson.functions]
@@ -109,11 +109,11 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
     """A rational Casimir, and the multiplier that its gradient lacks."""
     algebra, field = momentum_algebra(setting), setting.field
     try:
-        found = casimirs(algebra)
-        reason = found.missing
+        search = casimirs(algebra)
+        reason = search.missing
     except CoadjointError as error:
         reason = str(error)
-    if reason or not found.generators:
+    if reason or not search.generators:
         raise refusal(
             setting,
             "nambu",
@@ -124,7 +124,7 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
         )
     advected = [name for variable in setting.advected for name in variable.components]
     names = dict(zip(algebra.basis, (*setting.momenta, *advected), strict=True))
-    c = field.adopt(found.generators[0], names)
+    c = field.adopt(search.generators[0], names)
     slopes = field.gradient(c, setting.state)
     place = next(n for n, slope in enumerate(slopes) if slope)
     return Distinguished(c, b[place] / slopes[place])

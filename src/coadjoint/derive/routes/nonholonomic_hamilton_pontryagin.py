@@ -55,17 +55,17 @@ def derive(setting: Setting) -> Equations:
     """
     mechanics(setting).check_quadratic()
     motion = start_motion(setting)
-    found = motion.distribution
+    distribution = motion.distribution
     forces, moved = _vary(setting)
-    momentum = _momentum_equations(found, forces, moved)
-    constraint = [_rate(found, each.residual, moved) for each in found.equations]
-    given, left = _eliminate(found, momentum, constraint)
+    momentum = _momentum_equations(distribution, forces, moved)
+    constraint = [_rate(distribution, each.residual, moved) for each in distribution.equations]
+    given, left = _eliminate(distribution, momentum, constraint)
     field = setting.field
-    names = [rate_name(name) for name in found.independent]
+    names = [rate_name(name) for name in distribution.independent]
     mass = tuple(field.gradient(line, names) for line in left)
-    rest = dict.fromkeys([*names, *map(multiplier_name, range(len(found.kept)))], field.zero)
+    rest = dict.fromkeys([*names, *map(multiplier_name, range(len(distribution.kept)))], field.zero)
     known = [-field.substitute(line, rest) for line in left]
-    steps = _steps(found, forces, momentum, constraint, given)
+    steps = _steps(distribution, forces, momentum, constraint, given)
     reactions = list(given.items())
     return emit_motion(motion, ROUTE, mass, known, lambda _: steps, reactions=reactions)
 
@@ -85,10 +85,10 @@ def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
     return (*forces, *setting.field.gradient(known.lagrangian, setting.positions)), moved
 
 
-def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) -> Element:
+def _rate(distribution: Distribution, function: Element, moved: Mapping[str, Element]) -> Element:
     """The time derivative of a function of velocities, positions and time, in accelerations."""
-    setting, field = found.setting, found.setting.field
-    accelerations = {v: field[rate_name(v)] for v in found.frame.velocities}
+    setting, field = distribution.setting, distribution.setting.field
+    accelerations = {v: field[rate_name(v)] for v in distribution.frame.velocities}
     rates = {**moved, **accelerations}
     slopes = zip(field.gradient(function, list(rates)), rates.values(), strict=True)
     own = explicit_rate(setting, function, "a constraint or a momentum")
@@ -96,57 +96,65 @@ def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) 
 
 
 def _momentum_equations(
-    found: Distribution, forces: Row, moved: Mapping[str, Element]
+    distribution: Distribution, forces: Row, moved: Mapping[str, Element]
 ) -> dict[str, Element]:
     """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers.
 
     Multipliers of constraints that are kept have names of their own, with the other sign: so they
     are told from the reactions that forces name.
     """
-    setting, field, names = found.setting, found.setting.field, found.frame.velocities
-    kept = _kept_reactions(found)
-    multipliers = [kept.get(e.reaction, field[e.reaction]) for e in found.equations]
+    setting, field, names = (
+        distribution.setting,
+        distribution.setting.field,
+        distribution.frame.velocities,
+    )
+    kept = _kept_reactions(distribution)
+    multipliers = [kept.get(e.reaction, field[e.reaction]) for e in distribution.equations]
     lines = {}
     for name, momentum, force, outer, column in zip(
         names,
         mechanics(setting).momenta,
         forces,
         external_forces(setting, names),
-        zip(*found.A, strict=True) if found.A else [()] * len(names),
+        zip(*distribution.A, strict=True) if distribution.A else [()] * len(names),
         strict=True,
     ):
         reaction = field.sum(a * x for a, x in zip(column, multipliers, strict=True))
-        lines[name] = _rate(found, momentum, moved) - force - outer - reaction
+        lines[name] = _rate(distribution, momentum, moved) - force - outer - reaction
     return lines
 
 
 def _eliminate(
-    found: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
+    distribution: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
 ) -> tuple[dict[str, Element], list[Element]]:
     """Rates and multipliers that follow, and the momentum equations that are left.
 
     The velocity that a constraint gives has its rate from that constraint, and the constraint its
     multiplier from the momentum equation along that velocity.
     """
-    field = found.setting.field
-    giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
+    field = distribution.setting.field
+    giving = [
+        each for each in zip(distribution.equations, constraint, strict=True) if each[0].solves
+    ]
     lines = {rate_name(equation.solves): line for equation, line in giving}
-    rates = _solve_affine(found, lines)
+    rates = _solve_affine(distribution, lines)
     left = {name: field.substitute(line, rates) for name, line in momentum.items()}
-    multipliers = _solve_affine(found, {each.reaction: left[each.solves] for each, _ in giving})
-    rows = [field.substitute(left[name], multipliers) for name in found.independent]
-    return {**rates, **_kept_reactions(found), **multipliers}, rows
+    multipliers = _solve_affine(
+        distribution, {each.reaction: left[each.solves] for each, _ in giving}
+    )
+    rows = [field.substitute(left[name], multipliers) for name in distribution.independent]
+    return {**rates, **_kept_reactions(distribution), **multipliers}, rows
 
 
-def _kept_reactions(found: Distribution) -> dict[str, Element]:
+def _kept_reactions(distribution: Distribution) -> dict[str, Element]:
     """The reactions of the constraints that are kept, by the names that the kernel solves for."""
-    field = found.setting.field
-    return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(found.kept)}
+    field = distribution.setting.field
+    return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(distribution.kept)}
 
 
-def _solve_affine(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
+def _solve_affine(distribution: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
     """The unknowns of affine equations, one of which belongs to each of them."""
-    field, known = found.setting.field, dict[str, Element]()
+    field, known = distribution.setting.field, dict[str, Element]()
     for name, whole in lines.items():
         line = field.substitute(whole, known)
         value = field[name] - line / field.derivative(line, name)
@@ -156,15 +164,15 @@ def _solve_affine(found: Distribution, lines: Mapping[str, Element]) -> dict[str
 
 
 def _steps(
-    found: Distribution,
+    distribution: Distribution,
     forces: Row,
     momentum: Mapping[str, Element],
     constraint: Sequence[Element],
     given: Mapping[str, Element],
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    names, momenta = found.frame.velocities, mechanics(found.setting).momenta
-    equations = [each.name for each in found.equations]
+    names, momenta = distribution.frame.velocities, mechanics(distribution.setting).momenta
+    equations = [each.name for each in distribution.equations]
     return (
         write_step(
             "Variation of the velocities: the Legendre relation",

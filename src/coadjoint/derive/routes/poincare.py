@@ -57,12 +57,12 @@ def _vector_fields(setting: Setting) -> _Fields:
 def _inertial(setting: Setting, slopes: tuple[Element, ...]) -> list[Element]:
     """``sum c_ks^i eta_k dT/deta_i`` for every s, each constant used for both of its orders."""
     eta = setting.elements(setting.velocities)
-    found = [setting.field.zero for _ in slopes]
+    inertial = [setting.field.zero for _ in slopes]
     for (k, s), row in setting.algebra.constants.items():
         for i, c in row.items():
-            found[s] += setting.sign * c * eta[k] * slopes[i]
-            found[k] -= setting.sign * c * eta[s] * slopes[i]
-    return found
+            inertial[s] += setting.sign * c * eta[k] * slopes[i]
+            inertial[k] -= setting.sign * c * eta[s] * slopes[i]
+    return inertial
 
 
 def _along(setting: Setting, fields: _Fields, function: Element) -> list[Element]:
