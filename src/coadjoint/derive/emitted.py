@@ -1,4 +1,4 @@
-"""Emitted: what is emitted beside the dynamics, as one list that everything else reads.
+"""Emitted: what is emitted in addition to the rates, as one list that everything else reads.
 
 Comes in: a Setting and a route's energy. Goes out: the energy, the claimed Casimirs, velocities,
 the reactions and momenta of constraints, what the spec declares, momentum maps, the integrals of a
@@ -35,11 +35,11 @@ def list_emitted(
     """
     return (
         *(() if energy is None else (emitted_energy(setting, energy),)),
-        *_first(setting),
+        *_list_first(setting),
         *_along_distribution(setting, dict(momenta)),
         *_declared_observables(setting),
         *_momentum_maps(setting, energy),
-        *_last(setting),
+        *_list_last(setting),
     )
 
 
@@ -49,7 +49,7 @@ def emitted_energy(setting: Setting, energy: Element) -> Emitted:
 
 
 @once
-def _first(setting: Setting) -> tuple[Emitted, ...]:
+def _list_first(setting: Setting) -> tuple[Emitted, ...]:
     """Casimirs, velocities that the state gives, and reactions."""
     spec, elements = setting.spec, setting.elements
     emitted = []
@@ -105,7 +105,7 @@ def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted
 
 
 @once
-def _last(setting: Setting) -> tuple[Emitted, ...]:
+def _list_last(setting: Setting) -> tuple[Emitted, ...]:
     """The integrals of the Lax pair, then momenta as seen from space."""
     emitted, pair = [], lax_integrals(setting)
     for name, value in () if pair is None else pair.named:

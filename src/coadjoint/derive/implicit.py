@@ -90,16 +90,16 @@ class ImplicitSolve:
         y: list[Any] = []
         for i in size:
             before = [(weights[i, k], y[k]) for k in size[:i] if (i, k) in weights]
-            y.append(_less(column[i], before))
+            y.append(_subtract_products(column[i], before))
         solution: list[Any] = [None] * len(column)
         for i in reversed(size):
             after = [(weights[i, k], solution[k]) for k in size[i + 1 :] if (i, k) in weights]
             scaled = None if y[i] is None else mul(y[i], weights[i, i])
-            solution[i] = _less(scaled, after)
+            solution[i] = _subtract_products(scaled, after)
         return solution
 
 
-def _less(start: Any, products: list[tuple[Any, Any]]) -> Any:
+def _subtract_products(start: Any, products: list[tuple[Any, Any]]) -> Any:
     """A value minus some products; None is zero."""
     parts = [] if start is None else [start]
     parts += [negative(mul(a, b)) for a, b in products if b is not None]

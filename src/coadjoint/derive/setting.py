@@ -111,7 +111,7 @@ class Setting:
 
     @cached_property
     def weights(self) -> tuple[Fraction, ...]:
-        """What ``{q, p}`` is for each momentum: 1, or 1/2 beside the diagonal of symmetric ones."""
+        """What ``{q, p}`` is for each momentum: 1, or 1/2 off the diagonal of symmetric ones."""
         coordinates = self.spec.having_role("coordinate") if self.spec.algebra is None else ()
         partners = [self.spec.partner("momentum", variable.name) for variable in coordinates]
         weights = [w for p in partners if p for w in pairing_weights(len(p.components), p.form)]
@@ -172,7 +172,7 @@ class Setting:
         places = {
             place: name
             for variable in self.spec.having_role(role)
-            if not variable.of  # of coordinates beside the algebra
+            if not variable.of  # of coordinates next to the algebra
             for place, name in zip(variable.block, variable.components, strict=True)
         }
         return tuple(places[place] for place in sorted(places))
@@ -308,7 +308,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     field.region = Region(parameters, _defaults(quantities))
     values: dict[str, Value] = {name: field[name] for name in names}
     for quantity in quantities:
-        values[quantity.name] = whole(quantity, values)
+        values[quantity.name] = assemble(quantity, values)
     for each in spec.reconstruction:
         values[each.name] = shape([values[name] for name in each.components], each.shape)
     setting = Setting(spec, field, values)
@@ -362,7 +362,7 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))
             values.setdefault(name, field.number(number))
-        values[quantity.name] = whole(quantity, values)
+        values[quantity.name] = assemble(quantity, values)
     return Setting(spec, field, values)
 
 
@@ -381,7 +381,7 @@ def _calls_parameters(spec: Spec) -> bool:
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 
 
-def whole(quantity: Declared, values: Mapping[str, Value]) -> Value:
+def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:

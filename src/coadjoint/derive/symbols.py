@@ -13,13 +13,13 @@ from coadjoint.spec import Parameter, Spec, Variable
 from coadjoint.spec.model import Input, Time
 
 
-def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
+def choose_names(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     """The names, or all of them with one ending if the spec has one of them already.
 
     >>> from coadjoint.spec import read_spec
     >>> from coadjoint.resources import derivations_folder
     >>> spec = read_spec(derivations_folder() / "rigid_body.toml")
-    >>> fresh(spec, ["Q1", "Q2"]), fresh(spec, ["I0", "I1"])
+    >>> choose_names(spec, ["Q1", "Q2"]), choose_names(spec, ["I0", "I1"])
     (('Q1', 'Q2'), ('I0_0', 'I1_0'))
     """
     quantities: list[Variable | Parameter | Input | Time] = [

@@ -62,7 +62,7 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
         setting.field, setting.state, tuple(map(equations.close, equations.exact.rates))
     )
     generators = []
-    for element, value in _resting(setting)[symmetry.name]:
+    for element, value in _maps_at_rest(setting)[symmetry.name]:
         resting = equations.close(value)
         X, is_lifted = _generator(setting, structure, symmetry, element, resting)
         if symmetry.time is not None:
@@ -80,7 +80,7 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
 
 
 def structure_of(equations: Equations) -> PoissonStructure:
-    """The emitted bracket, velocities put in."""
+    """The emitted bracket, velocities substituted."""
     tensor = equations.exact.poisson_tensor
     assert tensor is not None, "only what has a bracket is asked for it"
     closed = tuple(tuple(map(equations.close, row)) for row in tensor)
@@ -187,7 +187,7 @@ def _kept_entries(
 def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tuple[Element, ...]:
     """J of each basis vector."""
     values = []
-    for element, value in _resting(setting)[symmetry.name]:
+    for element, value in _maps_at_rest(setting)[symmetry.name]:
         if symmetry.time is not None:
             if energy is None:
                 problem = "time moves, and the motion has no energy"
@@ -198,7 +198,7 @@ def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tup
 
 
 @once
-def _resting(setting: Setting) -> dict[str, list[tuple[Value, Element]]]:
+def _maps_at_rest(setting: Setting) -> dict[str, list[tuple[Value, Element]]]:
     """J of each basis vector without the part of time, by the names of the momentum maps."""
     return {
         each.name: [(x, _value(setting, each, x)) for x in _elements(setting, each)]
@@ -220,13 +220,13 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
         structure = poisson_structure(setting)
-        return generating_function(structure, _whole(setting, moves))
+        return generating_function(structure, _extend_moves(setting, moves))
     except AlgebraError as error:
         raise _fault(setting, formula, str(error).rstrip("."), "", symmetry) from None
 
 
 def _pairs(setting: Setting) -> list[Pair]:
-    """Positions with canonical momenta; empty beside magnetic terms, and without momenta."""
+    """Positions with canonical momenta; empty with magnetic terms, and without momenta."""
     bracket, field, names = setting.spec.poisson, setting.field, setting.state
     if bracket is None:
         weights = setting.weights if setting.momenta else ()
@@ -243,7 +243,7 @@ def _pairs(setting: Setting) -> list[Pair]:
 
 
 def _covector(setting: Setting) -> dict[str, Element]:
-    """What pairs with the velocity of each position; empty beside magnetic terms."""
+    """What pairs with the velocity of each position; empty with magnetic terms."""
     field = setting.field
     pairs = _pairs(setting)
     if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
@@ -273,7 +273,7 @@ def _generator(
     """
     moves, pairs = _moves(setting, symmetry, element), _pairs(setting)
     if not moves.keys() <= set(positions(setting)):
-        return _whole(setting, moves), False
+        return _extend_moves(setting, moves), False
     if pairs:
         return lift(structure, pairs, moves), True
     by_map = structure.hamiltonian_vector_field(resting)
@@ -283,7 +283,7 @@ def _generator(
     return whole, True
 
 
-def _whole(setting: Setting, moves: Moves) -> VectorField:
+def _extend_moves(setting: Setting, moves: Moves) -> VectorField:
     """A vector field on the state; what is not named stands still."""
     zero = setting.field.zero
     return VectorField(

@@ -133,7 +133,7 @@ def mechanics(setting: Setting) -> Mechanics:
 
 
 def declared_energy(setting: Setting) -> Element | None:
-    """The energy of coordinates and velocities that the spec knows; None if it knows none."""
+    """The energy of coordinates and velocities that the spec gives; None if it gives none."""
     if setting.spec.hamiltonian is not None:
         return setting.hamiltonian
     return mechanics(setting).energy if setting.spec.lagrangian is not None else None

@@ -1,4 +1,4 @@
-r"""Constrained motion: what the routes with constraints share beside the kinematics.
+r"""Constrained motion: what the routes with constraints share in addition to the kinematics.
 
 A route puts matrix and right side into :math:`\mathcal{M} \dot\eta = k`; constraints that are kept
 join them with their multipliers, the kernel solves, and the reactions follow. A force may be

@@ -1,8 +1,8 @@
 r"""Values decided in the exact field before the kernel computes them.
 
 A value that is identically zero costs a kernel operations, and rounding turns it into ``1.9e-17``.
-Whether an intermediate vanishes shows only when the definitions on which it rests are put in:
-:math:`b_1 k_1 + b_2 k_2` with :math:`b = (r \cos\phi, r \sin\phi)`. To put everything in would be
+Whether an intermediate vanishes shows only when the definitions on which it rests are substituted:
+:math:`b_1 k_1 + b_2 k_2` with :math:`b = (r \cos\phi, r \sin\phi)`. To substitute all would be
 too much for six coupled velocities. So each value is first evaluated at two points modulo a prime,
 whose parameters agree: a value that is not zero there is not zero, and one that differs there
 depends on the state. The exact normal form is taken only of what is left, and it alone decides.
@@ -94,11 +94,11 @@ class Decided:
         return closed if moves or closed == 0 else element
 
     def is_zero(self, element: Element) -> bool:
-        """Whether an element is zero once its definitions are put in."""
+        """Whether an element is zero once its definitions are substituted."""
         return bool(self.value(element) == 0)
 
     def close(self, element: Element) -> Element | None:
-        """The normal form of an element with all definitions put in; None where it is too long."""
+        """The normal form with all definitions substituted; None where it is too long."""
         inner = {}
         for name in self.field.reach(element) & self._definitions.keys():
             if name not in self._closed:

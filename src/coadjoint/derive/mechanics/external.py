@@ -129,7 +129,7 @@ def added_rates(setting: Setting) -> list[Element]:
 def metric(setting: Setting) -> Matrix:
     """G of the declared double or metriplectic bracket, with a row for each state component."""
     relaxation, field = setting.spec.relaxation, setting.field
-    assert relaxation is not None, "asked for only beside one"
+    assert relaxation is not None, "asked for only where a bracket dissipates"
     size, value = len(setting.state), setting.value(relaxation.G)
     if isinstance(value, tuple):
         return tuple(tuple(field.zero + x for x in entries(row)) for row in value)

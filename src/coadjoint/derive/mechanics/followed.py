@@ -32,7 +32,7 @@ def rates_followed(setting: Setting, of: Distribution | None) -> tuple[tuple[str
     """Name and rate of every variable that is reconstructed, in order."""
     place: dict[str, Element] = {}
     if setting.spec.rolling is not None:
-        assert of is not None, "the reader asks for constraints beside [rolling]"
+        assert of is not None, "the reader asks for constraints with [rolling]"
         place = dict(zip(CONTACT, contact_rate(of), strict=False))  # without the height
     return tuple(
         pair
@@ -51,7 +51,7 @@ def _rate(setting: Setting, each: Reconstructed, place: dict[str, Element]) -> S
 def attitude_rate(setting: Setting, components: Sequence[str]) -> tuple[Element, ...]:
     """``dq/dt`` by the action of the rotations on unit quaternions."""
     places = turning_places(setting.algebra)
-    assert places is not None, "the reader asks for rotations beside an attitude"
+    assert places is not None, "the reader asks for rotations with an attitude"
     action = quaternion(algebra_by_name("so(3)"), setting.spec.invariance)
     turning = setting.elements([setting.velocities[n] for n in places])
     acted = action.act(turning, setting.elements(components))

@@ -90,7 +90,7 @@ def _values(setting: Setting) -> dict[str, Value]:
 
 
 def _tree(spec: Spec, text: str) -> Node:
-    """A formula with the definitions put in that are no parts."""
+    """A formula with the definitions substituted that are not parts."""
     known = {each.name: each for each in spec.definitions}
     shown = {name: each for name, each in known.items() if not _is_part(spec, each)}
     inner: dict[str, Definition] = {}

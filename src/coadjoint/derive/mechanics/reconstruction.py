@@ -42,7 +42,7 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
         turned = _turn(setting, Quaternion(*g), [mu[place] for place in places])
         along = dict(zip(places, turned, strict=True))
         return tuple(along.get(place, m) for place, m in enumerate(mu))
-    matrix = _whole(setting, g)
+    matrix = _complete(setting, g)
     outer, inner = inverse_of(setting.algebra, matrix), matrix
     if setting.sign == -1:
         outer, inner = inner, outer
@@ -67,7 +67,7 @@ def _turn(setting: Setting, q: Quaternion, mu: Sequence[Element]) -> tuple[Eleme
     return setting.field.vector((outer * Quaternion.pure(mu) * inner).vector)
 
 
-def _whole(setting: Setting, entries: Sequence[Element]) -> Matrix:
+def _complete(setting: Setting, entries: Sequence[Element]) -> Matrix:
     """The attitude as a square matrix, its last row (0, ..., 0, 1) where that is fixed."""
     algebra, field = setting.algebra, setting.field
     n = size(algebra.matrices)

@@ -6,7 +6,7 @@ entry of L, D, y and z becomes a definition with a leading underscore, which no 
 it is never expanded, since the closed form of a sixth velocity would fill a book. The columns of
 W = L D are computed before they are divided, and a pivot that divides several has one reciprocal.
 A matrix that is not symmetric, as where friction is proportional to a reaction, is :math:`A = W U`
-with ones on the diagonal of U, whose rows are computed beside the columns of W; then ``W z = b``
+with ones on the diagonal of U, whose rows are computed with the columns of W; then ``W z = b``
 and ``U x = z``. For a symmetric one U is the transpose of L. Pivots are the same quotients of
 leading minors. What is identically zero in W, y, z or x is left out, and x is then 0.
 Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
@@ -279,15 +279,15 @@ def solution_defects(
     """Entries of ``W - L D``, ``W U - A``, ``W z - b``, ``D z - y``, ``U x - z``.
 
     All are 0 for a solution; U is the transpose of L where A is symmetric, and else there is no L.
-    In each entry the name that is defined last is replaced by its
-    definition, and reciprocals of pivots are: that is enough for a proof, and no closed form is
-    written out. Only where something was left out as identically zero, all definitions are put in.
+    In each entry the name that is defined last is replaced by its definition, and reciprocals of
+    pivots are: that is enough for a proof, and no closed form is written out. Only where something
+    was left out as identically zero, all definitions are substituted.
     """
     return _Defects(field, solve, definitions).entries()
 
 
 class _Defects:
-    """The equations of `solution_defects`, with the definitions put in as far as is needed."""
+    """The equations of `solution_defects`, with the definitions substituted as far as is needed."""
 
     def __init__(self, field: Field, solve: Solve, definitions: Mapping[str, Element]) -> None:
         self.field, self.solve, self.definitions = field, solve, definitions

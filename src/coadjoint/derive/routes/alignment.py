@@ -25,7 +25,7 @@ from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import leave_route
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec import Spec
@@ -58,7 +58,7 @@ def derive(setting: Setting) -> Equations:
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """``alpha`` and the three components of ``chi``."""
-    return fresh(spec, ("alpha", "chi1", "chi2", "chi3"))
+    return choose_names(spec, ("alpha", "chi1", "chi2", "chi3"))
 
 
 def _check_particle(setting: Setting) -> None:

@@ -38,7 +38,7 @@ from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec import Spec
@@ -53,7 +53,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     if _declared_quaternion(spec) is not None:
         return ()
     fixed = [f"{v.name}_space{n + 1}" for v in spec.having_role("advected") for n in range(3)]
-    return fresh(spec, ["q0", "q1", "q2", "q3", *fixed])
+    return choose_names(spec, ["q0", "q1", "q2", "q3", *fixed])
 
 
 def _declared_quaternion(spec: Spec) -> Variable | None:

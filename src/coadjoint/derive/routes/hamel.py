@@ -1,7 +1,7 @@
 r"""Hamel's route: the constrained Lagrangian with the gyroscopic force that it misses.
 
 Theorem (Hamel 1904; Holm 2011, section 12.3.3): let :math:`l_c(\eta, z) = l(B\eta + \beta, z)` be
-the Lagrangian with the constraints put in. The motion is not that of :math:`l_c`: with
+the Lagrangian with the constraints substituted. The motion is not that of :math:`l_c`: with
 :math:`D_k = B_k^l X_l` the fields of the distribution,
 
 .. math::
@@ -12,7 +12,7 @@ where :math:`[\xi, D_k]` gains :math:`\partial D_k/\partial t` if the constraint
 the brackets of the fields leave the distribution unless the constraints are integrable, so
 that the momentum on the right is that of the whole Lagrangian.
 Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
-Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
+Read next: `coadjoint.derive.routes.nonholonomic`, which projects the forces.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 r"""The Kaluza-Klein route: a potential linear in an advected quantity as geodesic motion.
 
-Theorem (Holm 2011, section 8.5): with cyclic coordinates q beside the group, the Lagrangian
+Theorem (Holm 2011, section 8.5): with cyclic coordinates q next to the group, the Lagrangian
 
 .. math::
     l_{KK}(\xi, a, \dot q) = T(\xi) + \tfrac12 |\dot q + a|^2
@@ -38,7 +38,7 @@ from coadjoint.derive.records import (
 )
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import Vector, add, dot, scale, subtract
 from coadjoint.spec import Spec
@@ -51,7 +51,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the velocities of the cyclic coordinates, then of their momenta."""
     count = sum(len(variable.components) for variable in spec.having_role("advected"))
     wanted = [name for letter in ("qdot", "p") for name in component_names(letter, (count,))]
-    return fresh(spec, wanted)
+    return choose_names(spec, wanted)
 
 
 def derive(setting: Setting) -> Equations:
@@ -114,7 +114,7 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
             ROUTE,
             "nothing is advected",
             setting.spec.name,
-            "an advected quantity, beside which a cyclic coordinate turns the potential into "
+            "an advected quantity, with which a cyclic coordinate turns the potential into "
             "kinetic energy; without a potential the motion is geodesic already",
         )
     slopes = setting.field.gradient(lagrangian, names)

@@ -103,7 +103,7 @@ def _integrals(setting: Setting) -> Step:
     known = ["the energy"] * setting.has_energy
     known += ["the claimed Casimirs"] * bool(known or setting.spec.casimirs)
     return write_step(
-        f"Integrals{' beside ' * bool(known)}{' and '.join(known)}",
+        f"Integrals{' in addition to ' * bool(known)}{' and '.join(known)}",
         f"coefficients of tr L^k: {words or 'none'}",
         r"\mathrm{tr}\, L^k = \mathrm{const}",
         integrals.named,

@@ -13,8 +13,8 @@ On the dual of an algebra of three dimensions c is found. Its gradient is :math:
 algebras, :math:`c = x \cdot b/2`. Elsewhere a Casimir C is looked for, and :math:`b = m \nabla C`
 with a multiplier m.
 Comes in: a Setting with a Hamiltonian and such functions, or with an algebra. Goes out: Equations
-whose rates are these determinants, without the bracket; `coadjoint.derive.routes.poisson` takes the
-other road.
+whose rates are these determinants, without the bracket; `coadjoint.derive.routes.poisson` uses the
+bracket.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def derive(setting: Setting) -> Equations:
 
 
 def _velocities(setting: Setting) -> list[tuple[str, str]]:
-    """Momenta and the velocities ``dh/dmu`` that the spec names beside them."""
+    """Momenta and the velocities ``dh/dmu`` that the spec names next to them."""
     given = setting.velocities if setting.momenta else ()
     return list(zip(setting.momenta, given, strict=bool(given)))
 
@@ -94,7 +94,7 @@ def distinguished_function(setting: Setting) -> Distinguished:
             "nambu",
             f"the dual of {momentum_algebra(setting).name} has {structure.dimension} dimensions",
             str(structure.dimension),
-            "three, for one distinguished function c beside h",
+            "three, for one distinguished function c in addition to h",
             "Declare the functions: [poisson] nambu = [...].",
         )
     x, tensor = setting.elements(structure.names), structure.tensor

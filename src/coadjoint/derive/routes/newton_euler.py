@@ -13,8 +13,8 @@ moment :math:`\sum m X` and their second moments :math:`S = \sum m X X^T = (\mat
 alone, which are read off the kinetic energy; force and torque are the work of a potential along
 small shifts and turns of the body. No bracket and no :math:`\mathrm{ad}^*` occurs.
 Comes in: a Setting on so(3), for a body about a fixed point or its centre of mass, or on se(3).
-Goes out: Equations in the momenta. Read next: `coadjoint.derive.routes.euler_poincare`, the other
-road.
+Goes out: Equations in the momenta. Read next: `coadjoint.derive.routes.euler_poincare`, which
+needs no mass points.
 """
 
 from __future__ import annotations

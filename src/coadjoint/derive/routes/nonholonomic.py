@@ -22,7 +22,7 @@ The multipliers are recovered from the complementary projection, with the sign o
 .. math:: \dot p - F = A^T \lambda, \qquad A = \partial(\text{left} - \text{right})/\partial\xi.
 
 Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
-Read next: `coadjoint.derive.routes.hamel`, the road by the constrained Lagrangian.
+Read next: `coadjoint.derive.routes.hamel`, which starts from the constrained Lagrangian.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ hamilton-pontryagin. Where a constraint gives a velocity, the second equation is
 rate, and the first one along that velocity for its multiplier; no basis of the distribution, no
 bracket and no frame occurs.
 Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
-Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
+Read next: `coadjoint.derive.routes.nonholonomic`, which projects the forces.
 """
 
 from __future__ import annotations

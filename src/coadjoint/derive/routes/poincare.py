@@ -77,10 +77,10 @@ def _advection(setting: Setting, fields: _Fields) -> dict[str, list[Element]]:
     """``da/dt = eta_s X_s a``."""
     field, eta = setting.field, setting.elements(setting.velocities)
 
-    def carried(name: str) -> Element:
+    def advect(name: str) -> Element:
         return field.sum(n * X[name] for n, X in zip(eta, fields, strict=True) if name in X)
 
-    return {each.name: [carried(name) for name in each.components] for each in setting.advected}
+    return {each.name: [advect(name) for name in each.components] for each in setting.advected}
 
 
 def _steps(setting: Setting, forces: list[Element], rates: tuple[Element, ...]) -> tuple[Step, ...]:
