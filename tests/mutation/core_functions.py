@@ -183,11 +183,11 @@ CORE = (
     *core_of(
         "frames",
         "frames",
-        "along bracket structure inertial rates",
+        "along bracket _extend rates",
         systems=(),
         tests=distributions.FRAMES,
         fallacies={
-            "inertial: omit setting in return": "forces of a left-invariant body on a right one"
+            "_extend: omit sign in return": "forces of a left-invariant body on a right one"
         },
     ),
     *core_of(

@@ -61,7 +61,7 @@ def derive(setting: Setting) -> Equations:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it, with slopes
             that are the same at all times.
     """
-    lagrangian, names = setting.lagrangian, _advected_names(setting)
+    lagrangian, names = setting.lagrangian, setting.advected_names
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)
     velocities, momenta = _cyclic(setting)
@@ -93,11 +93,6 @@ def derive(setting: Setting) -> Equations:
         energy=energy,
     )
     return replace(motion, steps=_steps(motion, whole, solved, level))
-
-
-def _advected_names(setting: Setting) -> tuple[str, ...]:
-    """Names of all that is advected, component by component."""
-    return tuple(name for variable in setting.advected for name in variable.components)
 
 
 def _cyclic(setting: Setting) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -122,8 +122,7 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
             algebra.name,
             "a unimodular algebra, or a rational Casimir",
         )
-    advected = [name for variable in setting.advected for name in variable.components]
-    names = dict(zip(algebra.basis, (*setting.momenta, *advected), strict=True))
+    names = dict(zip(algebra.basis, (*setting.momenta, *setting.advected_names), strict=True))
     c = field.adopt(search.generators[0], names)
     slopes = field.gradient(c, setting.state)
     place = next(n for n, slope in enumerate(slopes) if slope)
