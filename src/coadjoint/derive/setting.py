@@ -25,7 +25,7 @@ from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.core.shapes import ELEMENTARY
-from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
+from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpack
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
 from coadjoint.spec.tables import list_formulas
@@ -387,7 +387,7 @@ def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:
     if isinstance(quantity, Variable) and quantity.elements:
         return weigh(parts, quantity.elements)
     form = quantity.form if isinstance(quantity, Variable | Parameter) else ""
-    return unpacked(parts, form) if form in FORMS else shape(parts, quantity.shape)
+    return unpack(parts, form) if form in FORMS else shape(parts, quantity.shape)
 
 
 def weigh(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Value:

@@ -26,7 +26,7 @@ from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_functi
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.model import Symmetry, matrix_size, unpacked
+from coadjoint.spec.model import Symmetry, matrix_size, unpack
 
 #: Components that move, by name.
 Moves = Mapping[str, Element]
@@ -46,7 +46,7 @@ def momentum_maps(setting: Setting, energy: Element | None) -> dict[str, tuple[E
 def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Value:
     """The components of a momentum map as what it is in formulas."""
     if symmetry.form in ("antisymmetric", "symmetric"):
-        return unpacked(components, symmetry.form)
+        return unpack(components, symmetry.form)
     return shape(components, symmetry.shape)
 
 
@@ -77,6 +77,11 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     algebra = symmetry.algebra.over(setting.take_constant)
     sign = 1 if symmetry.side == "left" else -1
     return MomentumMap(algebra, structure, tuple(generators), values, sign)
+
+
+def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:
+    """The components that each basis vector of the algebra moves, as declared."""
+    return [_moves(setting, symmetry, element) for element in _elements(setting, symmetry)]
 
 
 def structure_of(equations: Equations) -> PoissonStructure:
@@ -176,7 +181,7 @@ def _kept_entries(
         "antisymmetric": [rows[i][j] for i in range(size) for j in range(i + 1, size)],
         "symmetric": [rows[i][j] for i in range(size) for j in range(i, size)],
     }.get(form, list(parts))
-    if any(x != y for x, y in zip(entries(unpacked(kept, form)), parts, strict=True)):
+    if any(x != y for x, y in zip(entries(unpack(kept, form)), parts, strict=True)):
         raise _fault(setting, formula, f"the value is not {form}", "Correct the formula.")
     return tuple(kept)
 
@@ -215,7 +220,7 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
     if moves.keys() <= covector.keys():
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())
     formula = next(iter(symmetry.generators.values()), None)
-    if not has_structure(setting):
+    if setting.spec.constraints or not has_structure(setting):
         problem = "the motion has no bracket in which something could generate it"
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
@@ -248,8 +253,9 @@ def _covector(setting: Setting) -> dict[str, Element]:
     pairs = _pairs(setting)
     if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
         return {q: field[p] / weight for q, p, weight in pairs}
-    slopes = mechanics(setting).momenta
-    return dict(zip(setting.positions, slopes, strict=True))
+    slopes = mechanics(setting).momenta  # those of coordinates are the last of a frame
+    own = len(slopes) - len(setting.positions)
+    return dict(zip(setting.positions, slopes[own:], strict=True))
 
 
 def _generator(

@@ -36,7 +36,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     """Claims about actions, their momentum maps, and brackets."""
     first, spec, field, known = motion.equations, motion.spec, motion.field, motion.emitted
     energy = first.exact.energy
-    for symmetry in spec.symmetries:
+    for symmetry in () if spec.constraints else spec.symmetries:
         J = momentum_map(first, symmetry)
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
@@ -118,9 +118,9 @@ def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[E
     """Of each claimed integral, that its Hamiltonian vector field commutes with the motion.
 
     On phase spaces, where no force acts; over an algebra the reduced space has no positions to be
-    moved.
+    moved, and under constraints the bracket does not satisfy the Jacobi identity.
     """
-    if first.spec.algebra is not None or first.spec.is_driven:
+    if first.spec.algebra is not None or first.spec.is_driven or first.spec.constraints:
         return
     for place, claim in enumerate(first.spec.conserved):
         if claim.where or claim.everywhere == "energy":

@@ -151,7 +151,9 @@ class Kinematics:
         return [
             name
             for name, known in field.adjoined.items()
-            if name in present and known.function == "sqrt" and field.function_free(known.argument)
+            if name in present
+            and known.function == "sqrt"
+            and field.is_function_free(known.argument)
         ]
 
     def _rates_of_roots(self) -> list[Definition]:

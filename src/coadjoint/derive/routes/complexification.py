@@ -93,7 +93,7 @@ def _at_real(setting: Setting, h: Element, real: LieAlgebra) -> Element:
     """The Hamiltonian of the real system: h at y = 0."""
     still = dict.fromkeys(setting.momenta[real.dimension :], setting.field.zero)
     real_part = setting.field.substitute(h, still)
-    if not setting.field.function_free(real_part):
+    if not setting.field.is_function_free(real_part):
         raise refusal(
             setting,
             ROUTE,

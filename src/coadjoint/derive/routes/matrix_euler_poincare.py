@@ -30,7 +30,7 @@ from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, add, commutator, product, scale, transpose
 from coadjoint.exact.linear import Span
 from coadjoint.spec.core.faults import list_names
-from coadjoint.spec.model import Variable, unpacked
+from coadjoint.spec.model import Variable, unpack
 
 ROUTE = "matrix-euler-poincare"
 #: A rate and a matrix C whose trace tr(C e) is the torque along e.
@@ -155,7 +155,7 @@ def _as_matrix(setting: Setting, variable: Variable, values: Sequence[Element]) 
     name = setting.actions[variable.name].name
     if name in ("vector", "defining"):
         return tuple((value,) for value in values)
-    return unpacked(values, "symmetric" if name == "symmetric" else "matrix")
+    return unpack(values, "symmetric" if name == "symmetric" else "matrix")
 
 
 def _slope_matrix(setting: Setting, variable: Variable, slopes: Sequence[Element]) -> Matrix:
