@@ -3,7 +3,7 @@
 import pytest
 
 from coadjoint.derive import derive
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.errors import AlgebraError, DerivationError, SpecError
 from coadjoint.prove import prove
 from coadjoint.spec.spatial import spatial_momenta
@@ -18,9 +18,9 @@ PAIRED = RIGID_BODY.replace('"lie-poisson"', '"clebsch"')
 def test_names_that_a_spec_has_taken_are_left_to_it():
     """All names of a route change together, and a whole quantity's name counts too."""
     declared = spec(RIGID_BODY, ("I = {", "Q1 = {}\nI = {"))
-    assert fresh(declared, ["Q1", "Q2"]) == ("Q1_0", "Q2_0")
-    assert fresh(declared, ["Q2", "P2"]) == ("Q2", "P2")
-    assert fresh(declared, ["I"]) == ("I_0",)
+    assert choose_names(declared, ["Q1", "Q2"]) == ("Q1_0", "Q2_0")
+    assert choose_names(declared, ["Q2", "P2"]) == ("Q2", "P2")
+    assert choose_names(declared, ["I"]) == ("I_0",)
 
 
 def test_clebsch_takes_small_letters_beside_a_momentum_p():

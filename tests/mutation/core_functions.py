@@ -156,7 +156,7 @@ CORE = (
             "_forces: drop inertial": "no ad* at all",
             "_forces: drop convected": "a constraint without ds/dt",
             "_forces: flip slope": "a torque of the other sign",
-            "_forces: drop motion": "a moving mass that does not move",
+            "_forces: drop known": "a moving mass that does not move",
             "_forces: flip force in value": "an external force of the other sign",
             "_project_mass: omit b in return": "momenta that B does not project",
             "_project_forces: omit b": "forces that B does not project",
@@ -183,11 +183,11 @@ CORE = (
     *core_of(
         "frames",
         "frames",
-        "along bracket structure inertial rates",
+        "along bracket _extend rates",
         systems=(),
         tests=distributions.FRAMES,
         fallacies={
-            "inertial: omit setting in return": "forces of a left-invariant body on a right one"
+            "_extend: omit sign in return": "forces of a left-invariant body on a right one"
         },
     ),
     *core_of(

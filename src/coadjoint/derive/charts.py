@@ -102,11 +102,11 @@ def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
     relations = [
         Relation(f"{each.in_one_line} = 0", setting.formula(each, known)) for each in chart.where
     ]
-    found = in_chart(setting, chart.name, rates, image, through, relations=relations)
-    assert found.chart is not None, "just made"
+    motion = in_chart(setting, chart.name, rates, image, through, relations=relations)
+    assert motion.chart is not None, "just made"
     lines = write_rates(tuple(rates), rates.values())
     step = write_step("Motion in the chart", "dy/dt = Y(y)", r"\dot y = Y(y)", lines)
-    return replace(found, chart=replace(found.chart, name=chart.name), steps=(step,))
+    return replace(motion, chart=replace(motion.chart, name=chart.name), steps=(step,))
 
 
 def _motion(setting: Setting, chart: DeclaredChart, function: Element) -> dict[str, Element]:

@@ -96,7 +96,7 @@ class Equations:
 
     @cached_property
     def observables(self) -> dict[str, sympy.Expr]:
-        """Scalars emitted beside the dynamics, closed as the rates are."""
+        """Scalars emitted in addition to the rates, closed as the rates are."""
         return {name: self._sympy(value) for name, value in self.exact.observables}
 
     @cached_property

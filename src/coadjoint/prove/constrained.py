@@ -22,7 +22,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.driving import explicit
-from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
+from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.derive.mechanics.sections import section_components
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.exact import Element, element_text
@@ -73,7 +73,7 @@ class ConstrainedRates(Motion):
     @property
     def kept_rows(self) -> list[Row]:
         """``(A, -b)`` of these."""
-        return kept_rows(self.distribution)
+        return self.distribution.kept_rows
 
     @cached_property
     def where(self) -> Ideal:
@@ -332,7 +332,7 @@ def _rank_drops(found: Distribution) -> list[Element]:
 
 def _products(found: Distribution) -> tuple[Row, ...]:
     """``A A^T`` of the constraints that are kept, in the velocities of the state."""
-    field, rows = found.setting.field, [row[:-1] for row in kept_rows(found)]
+    field, rows = found.setting.field, [row[:-1] for row in found.kept_rows]
     return tuple(
         tuple(field.sum(x * y for x, y in zip(a, b, strict=True)) for b in rows) for a in rows
     )

@@ -21,7 +21,7 @@ from functools import partial
 from coadjoint.derive import Equations, Setting
 from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.setting import Declared, whole
+from coadjoint.derive.setting import Declared, assemble
 from coadjoint.exact import Element
 from coadjoint.groups.galilean import (
     Galilean,
@@ -96,5 +96,5 @@ def _with_names(setting: Setting, system: Particles, names: Mapping[str, str]) -
     spec = setting.spec
     quantities: list[Declared] = [*spec.state, *spec.parameters, *spec.driving]
     for quantity in quantities:
-        values[quantity.name] = whole(quantity, values)
+        values[quantity.name] = assemble(quantity, values)
     return Setting(setting.spec, system.field, values)

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from coadjoint.derive.mechanics.driving import turned_by_time
+from coadjoint.derive.mechanics.driving import list_time_reversed
 from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
@@ -63,7 +63,7 @@ def _map_text(motion: Motion, names: Sequence[str]) -> str:
     for each in motion.spec.state:
         turned = [name for name in each.components if name in names]
         shown += [each.name] if len(turned) == len(each.components) else turned
-    shown += turned_by_time(motion.setting)
+    shown += list_time_reversed(motion.setting)
     text = ", ".join(f"{name} -> -{name}" for name in shown)
     return text + " and inputs run backwards" * bool(motion.setting.inputs)
 
@@ -119,7 +119,7 @@ def _kept_defects(motion: Motion) -> dict[str, Element]:
 
 def _back(motion: Motion) -> dict[str, Element]:
     """The map: velocities or momenta turned round, and time."""
-    names = (*motion.fibre, *motion.solved_velocities, *turned_by_time(motion.setting))
+    names = (*motion.fibre, *motion.solved_velocities, *list_time_reversed(motion.setting))
     return {name: -motion.field[name] for name in names}
 
 
@@ -128,7 +128,7 @@ def _back(motion: Motion) -> dict[str, Element]:
 
 def _other_signs(motion: Motion) -> Examined | None:
     """Another change of signs that reverses a free motion; or that none does; else None."""
-    field, time = motion.field, {*turned_by_time(motion.setting)}
+    field, time = motion.field, {*list_time_reversed(motion.setting)}
     parities, is_complete = _parities(motion, time)
     signs = _solve_parities(parities, motion.setting.state)
     if signs is None:

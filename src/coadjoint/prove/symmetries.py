@@ -16,7 +16,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Value, entries
-from coadjoint.derive.mechanics.driving import explicit, turned_by_time
+from coadjoint.derive.mechanics.driving import explicit, list_time_reversed
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
@@ -223,7 +223,7 @@ def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Ele
     setting, field = motion.setting, motion.field
     found = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
-        found |= {name: -field[name] for name in turned_by_time(setting)}
+        found |= {name: -field[name] for name in list_time_reversed(setting)}
     return found | moved_components(setting, transformation.map)
 
 
