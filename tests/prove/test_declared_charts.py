@@ -8,8 +8,7 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError
-from coadjoint.prove import prove
-from tests.specs import RIGID_BODY, spec
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 PLANE = """
 title = "A particle in the plane on a spring"
@@ -104,7 +103,7 @@ rates = { y = "w", w = "0" }
 
 def about(declared, name):
     """Statement and verdict of every claim about a chart."""
-    claims = prove(declared).claims
+    claims = prove_claims(declared).claims
     found = {c.statement: c.verdict.value for c in claims if f"the chart {name}" in c.statement}
     assert found
     return found
@@ -188,4 +187,4 @@ rates = { A = "A", B = "B" }
     declared = spec(COUPLED + chart)
     assert derive(declared).kept
     with pytest.raises(DerivationError, match=r"solved for in the kernel.*or remove the chart"):
-        prove(declared)
+        prove_claims(declared)

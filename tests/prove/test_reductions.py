@@ -6,8 +6,8 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.derive.mechanics import external
 from coadjoint.errors import ClaimError, SpecError
-from coadjoint.prove import Verdict, prove
-from tests.specs import spec
+from coadjoint.prove import Verdict
+from tests.specs import prove_claims, spec
 
 #: Two oscillators with a spring of any kind between them, driven alike, which move as one.
 IN_STEP = """
@@ -64,7 +64,7 @@ LAW = "the energy changes by the power of the forces"
 
 def verdicts(text, *changes):
     """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
 
 
 @pytest.mark.parametrize("text", [IN_STEP, ABOUT_AN_AXIS])
@@ -91,7 +91,7 @@ def test_the_motion_on_the_section_is_typed_by_hand():
 @pytest.mark.parametrize(("text", "change"), [(IN_STEP, FRICTION), (ABOUT_AN_AXIS, TORQUE)])
 def test_a_force_that_leaves_the_section_is_refuted(text, change):
     """With a point; the same motion without that force keeps it."""
-    certificate = prove(spec(text, change))
+    certificate = prove_claims(spec(text, change))
     false = {each.statement for each in certificate.claims if each.verdict is Verdict.REFUTED}
     assert any(each.startswith("the whole motion keeps") for each in false)
     assert any(each.startswith("the motion keeps") for each in false)
