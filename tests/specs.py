@@ -6,12 +6,14 @@ that changes the engine derives for itself.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from coadjoint import pipeline
 from coadjoint.derive import Equations, Setting, derive, make_setting
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
@@ -76,18 +78,30 @@ def lowered(name: str) -> dict[str, Program]:
     return lower(emitted(name))
 
 
-def prove_claims(declared: Spec, routes: Sequence[Equations] = ()) -> Certificate:
-    """The certificate of a spec, for tests that ask neither for integrals nor for measures.
+@contextmanager
+def without_searches() -> Iterator[None]:
+    """Within it proofs look for no integrals and measures, which takes longer than all else.
 
-    They are not searched for, which takes longer than all else. Searches have tests of their own,
-    and `make test-all` searches everywhere.
+    These searches have tests of their own, and `make test-all` searches everywhere.
     """
     with pytest.MonkeyPatch.context() as patch:
         if not SEARCH_EVERYWHERE:
             parts = claims.EXAMINATIONS
             kept = tuple(part for part in parts if part.kind not in ("integrals", "measure"))
             patch.setattr(claims, "EXAMINATIONS", kept)
+        yield
+
+
+def prove_claims(declared: Spec, routes: Sequence[Equations] = ()) -> Certificate:
+    """The certificate of a spec, for tests that ask neither for integrals nor for measures."""
+    with without_searches():
         return prove(declared, routes)
+
+
+def render_claims(declared: Spec) -> pipeline.Rendered:
+    """The files of a spec, for tests that ask for its kernels."""
+    with without_searches():
+        return pipeline.render(declared)
 
 
 def spec(text: str = RIGID_BODY, *changes: tuple[str, str], name: str = "sample") -> Spec:

@@ -9,12 +9,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.errors import KernelArgumentError
 from coadjoint.render.targets import BUILDS
 from coadjoint.solve.system import load_folder
 from tests.sources import textbook
-from tests.specs import shipped
+from tests.specs import render_claims, shipped
 from tests.trees_of_files import ROOT
 
 #: Inputs lie in [1/8, 8], so that sums stay below 2^13 and their rounding errors below 2^-37.
@@ -35,7 +34,7 @@ def built(request, tmp_path_factory):
         return load_folder(ROOT / "generated" / request.param)
     folder = tmp_path_factory.mktemp("built") / request.param
     folder.mkdir()
-    for name, text in pipeline.render(shipped(request.param)).texts.items():
+    for name, text in render_claims(shipped(request.param)).texts.items():
         (folder / name).write_text(text)
     return load_folder(folder)
 
