@@ -7,14 +7,14 @@ section 14); the canonical pair of a rigid body is Holm's (2011, section 2.5.5).
 import pytest
 
 from coadjoint.derive import derive, make_setting
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.agreement import about_equality
 from coadjoint.prove.zero import Decision, Discovery, decide_zero
 from tests.constrained import PARTICLE
 from tests.derive.test_advice import SHIFTED
 from tests.derive.test_configuration import FREE
 from tests.prove.test_reductions import IN_STEP
-from tests.specs import RIGID_BODY, spec
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 PLANE = """
 title = "A particle in the plane on a spring"
@@ -109,7 +109,7 @@ rates = { y = "w", w = "0" }
 
 def about(declared, name):
     """Statement and verdict of every claim about a chart."""
-    claims = prove(declared).claims
+    claims = prove_claims(declared).claims
     found = {c.statement: c.verdict.value for c in claims if f"the chart {name}" in c.statement}
     assert found
     return found
