@@ -339,9 +339,9 @@ MUTANTS = (
     ),
     *of(
         "spec/core/definitions",
-        "_put_in: rewrite argument[1] + isinstance(part, Index) -> 1",
+        "_expand_call: rewrite argument[1] + isinstance(part, Index) -> 1",
         "_component: rewrite replace(_1, name=_2) -> whole",
-        "_put_in: rewrite len(given) != len(definition.arguments) -> not given",
+        "_expand_call: rewrite len(given) != len(definition.arguments) -> not given",
         "_check_arguments: rewrite arguments[:place] -> []",
         "define: rewrite expand(_1, known, _2) -> expand(_1, {}, _2)",
     ),

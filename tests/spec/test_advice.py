@@ -486,7 +486,7 @@ ADVICE = [
     (
         PARTICLES,
         write('matrix     = "A"', 'matrix     = "A"\nform = "matrix"'),
-        "Remove form.",
+        "Remove form, or choose another algebra.",
         write('\nform = "matrix"', ""),
     ),
     (

@@ -18,7 +18,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics import external
 from coadjoint.derive.mechanics.configuration import fault
-from coadjoint.derive.records import Exact, Step, rate, symbol
+from coadjoint.derive.records import Exact, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
@@ -119,33 +119,26 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     setting, route = restriction.setting, restriction.whole.route
-    whole = ((rate(name), value) for name, value in restriction.rates.items())
     return (
-        Step(
+        write_step(
             f"Motion of the whole system by the route {route}",
             "dx/dt = X(x, y),  dy/dt = Y(x, y)",
             r"\dot x = X(x, y), \quad \dot y = Y(x, y)",
-            tuple(whole),
+            write_rates(tuple(restriction.rates), restriction.rates.values()),
         ),
-        Step(
-            "Section that it keeps",
-            "y = s(x)",
-            "y = s(x)",
-            tuple((symbol(name), value) for name, value in restriction.section.items()),
-        ),
-        Step("Hamiltonian on it", "h(x, y)", "h(x, y)", ((symbol("h"), energy),)),
+        write_step("Section that it keeps", "y = s(x)", lines=restriction.section),
+        write_step("Hamiltonian on it", "h(x, y)", lines={"h": energy}),
         *_of_velocities(restriction),
-        Step(
+        write_step(
             "Motion on it",
             "dx/dt = X(x, y)",
             r"\dot x = X(x, y)",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )
 
 
 def _of_velocities(restriction: Restriction) -> Iterator[Step]:
     """The velocities that the spec names, on the section."""
-    lines = tuple((symbol(name), value) for name, value in restriction.velocities.items())
-    if lines:
-        yield Step("Velocities on it", "v(x, y)", "v(x, y)", lines)
+    if restriction.velocities:
+        yield write_step("Velocities on it", "v(x, y)", lines=restriction.velocities)

@@ -27,8 +27,12 @@ from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.linear import Span
-from coadjoint.groups.lifts import cotangent_lift
-from coadjoint.groups.vector_fields import VectorField, exterior_derivative, lie_derivative
+from coadjoint.groups.vector_fields import (
+    VectorField,
+    cotangent_lift,
+    exterior_derivative,
+    lie_derivative,
+)
 from coadjoint.poisson.structure import PoissonStructure
 
 #: A position, its momentum and ``{q, p}``, which is 1 but for entries of symmetric matrices.
@@ -212,7 +216,7 @@ def generating_function(structure: PoissonStructure, X: VectorField) -> Element:
     ``dJ`` solves ``tensor . dJ = X``, and ``J(x) = integral of x . dJ(s x) ds`` from 0 to 1.
 
     Raises:
-        AlgebraError: There is no such function, or this road does not lead to it.
+        AlgebraError: There is no such function, or this method does not find it.
 
     >>> from coadjoint.poisson import canonical
     >>> field = Field(["q", "p"])
@@ -229,7 +233,7 @@ def generating_function(structure: PoissonStructure, X: VectorField) -> Element:
     if span.dependent or result is None:
         raise AlgebraError(
             f"{structure.label}: the bracket is degenerate, so a generator does not say its "
-            "momentum map; expected the map beside the generators.",
+            "momentum map; expected the map together with the generators.",
             found=len(span.dependent),
         )
     slopes = [field.zero + result.get(j, 0) for j in range(len(names))]
@@ -251,10 +255,10 @@ def _degree(field: Field, term: Element, names: Sequence[str]) -> int:
     (written,) = field.quotients(term)
     (monomial,) = written.monomials
     bottom = frozenset[str]().union(*(field.reach(divisor) for divisor, _ in written.divisors))
-    if not field.function_free(term) or bottom & set(names):
+    if not field.is_function_free(term) or bottom & set(names):
         raise AlgebraError(
             f"the generator with {term} is no polynomial of the coordinates; expected the "
-            "momentum map beside it.",
+            "momentum map together with it.",
             found=str(term),
         )
     return sum(power for name, power in monomial.powers if name in names)

@@ -178,7 +178,7 @@ def _write_law(motion: ConstrainedRates, name: str, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     if motion.where.contains(motion.in_state(law)):
         return f"{name} is conserved, by its momentum equation"
-    text = element_text(motion.field, motion.field.normal(motion.equations.close(law)).combined())
+    text = element_text(motion.field, motion.field.normal(motion.equations.close(law)).combine())
     if len(text) > SHOWN:
         text = "Sigma l + <dl/dxi, [xi, Sigma]> + <lambda, A Sigma>"
         text += " + <f, Sigma>" * motion.spec.is_forced

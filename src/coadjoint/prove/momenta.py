@@ -73,7 +73,7 @@ def law_along(equations: Equations, along: Row) -> Element:
 def _statement(motion: Motion, section: Section, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     spec = motion.equations.spec
-    closed = motion.field.normal(motion.equations.close(law)).combined()
+    closed = motion.field.normal(motion.equations.close(law)).combine()
     if motion.where.contains(closed):
         return f"{section.name} is conserved, by its momentum equation"
     text = element_text(motion.field, closed)

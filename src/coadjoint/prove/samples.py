@@ -295,7 +295,7 @@ class Samples:
 
 def leading(element: Element) -> Fraction:
     """The leading coefficient of the numerator, by whose sign functions are written down."""
-    return Fraction(str(element.combined().parts[0].numer.LC))
+    return Fraction(str(element.combine().parts[0].numer.LC))
 
 
 def random_numbers(motion: Motion) -> dict[str, Fraction]:

@@ -25,7 +25,7 @@ from coadjoint.derive.setting import Setting, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
-from coadjoint.exact.regular import certain_minors, witness_regular
+from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec
 

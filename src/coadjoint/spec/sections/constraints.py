@@ -93,12 +93,12 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
     }
-    scope, found = _scope(reading), []
+    scope, constraints = _scope(reading), []
     for name, text in texts.items():
         _check_names_no_reaction(reading, ("constraints", name), text)
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
-        found.append(Constraint(name, left, right, *solved.get(name, ())))
-    return tuple(found)
+        constraints.append(Constraint(name, left, right, *solved.get(name, ())))
+    return tuple(constraints)
 
 
 def _scope(reading: Reading) -> Scope:

@@ -12,11 +12,10 @@ from pydantic import Field
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import ROLES, Formula, Scope, misfit
+from coadjoint.spec.core.formulas import ROLES, Formula, Scope, read_fitting
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles, state_of
@@ -68,11 +67,7 @@ def read_along(
     name = str(key[-1])
     if name not in velocities:
         raise _no_velocity(reading, key, name, velocities)
-    formula = reading.formula(key, text, scope, any_shape=True)
-    wanted = velocities[name].shape
-    if formula.shape != wanted:
-        raise misfit(reading.source, key, formula, f"{words(wanted)}, as {name!r} is")
-    return formula
+    return read_fitting(reading.source, key, text, scope, velocities[name].shape, name)
 
 
 FORCES = Table[dict[str, Formula]](

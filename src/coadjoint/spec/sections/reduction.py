@@ -94,8 +94,8 @@ def _check_alone(reading: Reading) -> None:
         ("claims", "brackets"): file.claims.brackets,
         **{(table,): getattr(file, table) for table in tables},
     }
-    for key, found in alien.items():
-        if found:
+    for key, given in alien.items():
+        if given:
             name = str(key[-1])
             raise reading.source.fault(
                 key,
