@@ -95,6 +95,7 @@ class CandidateSearch(PolynomialFamily):
         self.known = tuple(known)
         self._rates = motion if parameters is None else motion.at(parameters)
         self._decided: dict[Element, Decision] = {}
+        self._bases: dict[Degrees, list[Solution[Exponents]]] = {}
 
     @cached_property
     def reversible(self) -> bool:
@@ -111,13 +112,16 @@ class CandidateSearch(PolynomialFamily):
 
     def integrals(self, members: Sequence[Exponents]) -> list[Solution[Exponents]]:
         """A basis of the integrals among combinations of monomials."""
-        basis, tables = self.independent_places(members), self.tables(members)
-        conditions = (dict(enumerate(rates[n] for n in basis)) for _, rates in tables)
-        return solve([members[n] for n in basis], conditions, self.samples.prime)
+        basis = [members[n] for n in self.independent_places(members)]
+        conditions = ([table[e][1] for e in basis] for table in self.tables(len(members)))
+        return solve(basis, conditions, self.samples.prime)
 
     def found(self, degrees: Degrees) -> list[Solution[Exponents]]:
         """A basis of the integrals up to some degrees."""
-        return [each for members in self.sectors(degrees) for each in self.integrals(members)]
+        if degrees not in self._bases:
+            sectors = map(self.integrals, self.sectors(degrees))
+            self._bases[degrees] = [each for basis in sectors for each in basis]
+        return self._bases[degrees]
 
     def bounded(self, degrees: Degrees) -> bool:
         """Whether there are certainly no more integrals than `found`: all relations are known."""
@@ -147,7 +151,7 @@ class CandidateSearch(PolynomialFamily):
     ) -> tuple[int, list[int]]:
         """The number of independent products, that of constants among them, and their factors."""
         count, prime = len(self.points(len(self.monomials(degrees)) + SPARE)), self.samples.prime
-        values = [[p.value(part) for p in self._points[:count]] for _, part, _ in known]
+        values = [[p.value(part) for p in self.drawn[:count]] for _, part, _ in known]
         span, used = SpanModulo(prime), set[int]()
         for factors in islice(_factors([d for *_, d in known], degrees), PRODUCTS):
             if span.add({p: prod(values[n][p] for n in factors) for p in range(count)}):
@@ -173,7 +177,7 @@ class CandidateSearch(PolynomialFamily):
         parts = (*self.samples.where.relations, *(p for known in self.known for p in known.parts))
         slopes = (map(point.value, self.field.gradient(part, state)) for part in parts)
         span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
-        return span.independent(self.gradient(point, each) for each in found)
+        return span.independent(self.gradient(each) for each in found)
 
     def new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
@@ -215,7 +219,7 @@ def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     """How many integrals there are: proved where bounds from both sides meet, else found."""
     found, scope = search.found(degrees), f"integrals {_scope(search, degrees)}{where}"
     (certain, names), bounded = search.polynomials(degrees), search.bounded(degrees)
-    points = f"ranks at {len(search.values_at)} random points modulo {search.samples.prime}"
+    points = f"ranks at {len(search.drawn)} random points modulo {search.samples.prime}"
     listed = f"polynomials in {', '.join(names)}" if names else "constants"
     size = f"a space of dimension {len(found)} with constants"
     if bounded and certain == len(found):
