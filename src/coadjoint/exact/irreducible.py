@@ -17,10 +17,10 @@ from itertools import combinations
 from math import isqrt
 from typing import Any
 
-from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyElement, PolyRing
+from sympy.polys.rings import PolyElement
 
 from coadjoint.exact.element import Element, remove_factor
+from coadjoint.exact.factors import common_divisor, in_own_symbols
 from coadjoint.exact.field import Field
 
 #: Symbols that are eliminated at a time by the relations of functions, to find factors.
@@ -108,14 +108,12 @@ def find_factors(field: Field, element: Element, known: Sequence[Element] = ()) 
 
 def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
     """The irreducible factors, with the names of their symbols: of those that occur alone."""
-    places = [n for n, degree in enumerate(polynomial.degrees()) if degree > 0]
-    symbols = [polynomial.ring.symbols[n] for n in places]
-    if not symbols:
+    if polynomial.is_ground:
         return
-    small = PolyRing(symbols, polynomial.ring.domain, lex)
-    terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
-    for factor in factors_of(small.from_dict(terms)):
-        yield list(map(str, symbols)), factor
+    (small,), places = in_own_symbols(polynomial)
+    names = [str(polynomial.ring.symbols[n]) for n in places]
+    for factor in factors_of(small):
+        yield names, factor
 
 
 #: A symbol by its place, a power of it, and what that is.
@@ -212,7 +210,7 @@ def _part_content(polynomial: PolyElement, place: int) -> tuple[PolyElement, Pol
     """The greatest factor without a symbol, and the rest."""
     content = polynomial.ring.zero
     for part in _powers(polynomial, place).values():
-        content = content.gcd(part)
+        content = common_divisor(content, part)
     return content, polynomial.exquo(content)
 
 

@@ -20,16 +20,13 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import islice
-from typing import Any
 
 import mpmath
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.linear import SpanModulo, primes, rank_modulo
-from coadjoint.exact.residues import Residue, residue
 from coadjoint.exact.witness import UNDEFINED, Enclosure, enclosure, points_inside
 
 #: Points at which a rank is taken; the largest counts.
@@ -145,24 +142,19 @@ def _sample(
     """
     source = random.Random(1)  # noqa: S311 (not for secrets)
     for prime in islice(primes(), TRIES):
-        point = {name: Residue(source.randrange(1, prime), prime) for name in field.names}
+        point = {name: source.randrange(1, prime) for name in field.names}
         with suppress(ZeroDivisionError):
-            yield prime, _residues(field, rows, point, partial(residue, prime=prime))
+            yield prime, _take_modulo(field, rows, point, prime)
 
 
-def _residues(
-    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, Residue], number: Any
+def _take_modulo(
+    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, int], prime: int
 ) -> list[dict[int, int]]:
     """The matrix at a point."""
-    factors: dict[int, Residue] = {}
+    known = dict[int, int]()
     return [
-        {j: field.evaluate(e, point, number, _no_call, factors).value for j, e in row.items()}
-        for row in rows
+        {j: field.evaluate_modulo(e, point, prime, known) for j, e in row.items()} for row in rows
     ]
-
-
-def _no_call(function: str, argument: Residue) -> Residue:
-    raise AssertionError(f"{function}({argument}) in a function-free element")
 
 
 # -- at real points -------------------------------------------------------------------------------

@@ -22,6 +22,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.residues import residue
 from coadjoint.exact.written import Monomial, Written
 
 Value = TypeVar("Value")
@@ -48,6 +49,7 @@ class Rationals:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
+        self._residues: dict[int, dict[PolyElement, list[tuple[int, list[str]]]]] = {}
 
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]
@@ -181,6 +183,52 @@ class Rationals:
         factors: dict[int, Value] = {}
         quotients = [self._quotient(q, values, number, factors) for q in element.parts]
         return total(quotients) if quotients else number(Fraction(0))
+
+    # -- values modulo a prime ----------------------------------------------------------
+
+    def evaluate_modulo(
+        self, element: Element, values: Mapping[str, int], prime: int, inverses: dict[int, int]
+    ) -> int:
+        """The value of an element modulo a prime, where each generator has a value given.
+
+        Args:
+            element: What to evaluate.
+            values: Residues of the generators that occur.
+            prime: The prime.
+            inverses: Remembers what stands below a bar, for many elements at the same values.
+
+        Raises:
+            ZeroDivisionError: What stands below a bar is zero there.
+        """
+        result = 0
+        for quotient in element.parts:
+            top = self._modulo(quotient.numer, values, prime)
+            for factor, exponent in quotient.powers.items():
+                if factor not in inverses:
+                    below = self._modulo(self._factors.known[factor], values, prime)
+                    if not below:
+                        raise ZeroDivisionError(f"division by zero modulo {prime}")
+                    inverses[factor] = pow(below, -1, prime)
+                for _ in range(exponent):
+                    top = top * inverses[factor] % prime
+            result += top
+        return result % prime
+
+    def _modulo(self, p: PolyElement, values: Mapping[str, int], prime: int) -> int:
+        """The value of a polynomial; its terms modulo the prime are remembered."""
+        self._factors.spend(len(p))
+        known = self._residues.setdefault(prime, {})
+        if p not in known:
+            known[p] = [
+                (residue(each.number, prime).value, [x for x, e in each.powers for _ in range(e)])
+                for each in self._written(p)
+            ]
+        result = 0
+        for value, factors in known[p]:
+            for name in factors:
+                value = value * values[name] % prime
+            result += value
+        return result % prime
 
     # -- parts, for signs and relations -------------------------------------------------
 

@@ -19,7 +19,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice
@@ -49,25 +48,31 @@ TRIES = 2000
 Slopes = list[tuple[str, Element]]
 
 
-@dataclass
-class Point:
-    """One point with the motion there.
+class Point(dict[str, int]):
+    """One point with the motion there: residues of all symbols, and of functions once called.
 
-    Attributes:
+    Args:
         samples: Where it comes from.
-        values: Residues of parameters, state and all that the accelerations need.
+        values: Parameters, state and all that the accelerations need.
         call: Values of the elementary functions.
     """
 
-    samples: Samples
-    values: Values
-    call: FunctionsAtPoint
-    factors: dict[int, Residue] = field(default_factory=dict)
+    def __init__(self, samples: Samples, values: Values, call: FunctionsAtPoint) -> None:
+        super().__init__({name: x.value for name, x in values.items()})
+        self.samples, self.call = samples, call
+        self._inverses = dict[int, int]()
+
+    def __missing__(self, generator: str) -> int:
+        """The value of a function by its generator."""
+        known = self.samples.field.adjoined[generator]
+        argument = Residue(self.value(known.argument), self.samples.prime)
+        self[generator] = self.call(known.function, argument).value
+        return self[generator]
 
     def value(self, element: Element) -> int:
-        """The value of a function."""
-        ring, number = self.samples.field, self.call.number
-        return ring.evaluate(element, self.values, number, self.call, self.factors).value
+        """The value of a function of the symbols."""
+        samples = self.samples
+        return samples.field.evaluate_modulo(element, self, samples.prime, self._inverses)
 
     def differentiate(self, slopes: Slopes) -> int:
         """``dF/dt`` of a function of the state, from its slopes."""
@@ -241,10 +246,11 @@ class Samples:
         call = FunctionsAtPoint(self._experiment)
         call.learn({name: x for name, x in values.items() if name not in velocities})
         point = Point(self, values, call)
-        values |= self._allow(point)
-        call.learn(values)
+        allowed = self._allow(point)
+        point.update({name: x.value for name, x in allowed.items()})
+        call.learn(values | allowed)
         for name, definition in self._needed:
-            values[name] = Residue(point.value(definition), self.prime)
+            point[name] = point.value(definition)
         return point
 
     def _on_sphere(self, variable: Variable) -> list[Residue]:
@@ -275,7 +281,7 @@ class Samples:
         found = {}
         for pivot, row in solved.items():
             others = (
-                value * (point.values[names[n]].value if n < len(names) else 1)
+                value * (point[names[n]] if n < len(names) else 1)
                 for n, value in row.items()
                 if n != pivot
             )
