@@ -154,7 +154,7 @@ MUTANTS = (
     ),
     *of(
         "dense",
-        "determinant: omit 1 j",
+        "_expand: omit 1 j",
         "inverse: omit 1 i j",
         "subtract: use add for sub",
         "hat: flip a3",

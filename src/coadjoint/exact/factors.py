@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from math import isqrt
 from typing import Any
 
@@ -17,6 +18,8 @@ from sympy.polys.rings import PolyElement, PolyRing
 #: Largest polynomial that is factored: terms and degree.
 LARGEST_FACTORED = 40
 LARGEST_DEGREE = 16
+#: Polynomials whose factors are remembered.
+REMEMBERED = 1000
 #: Primes up to here are split off numbers.
 PRIMES = 1000
 #: A factor: a prime, -1, or a monic polynomial.
@@ -78,11 +81,18 @@ def factors_of(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
     content, result = p.ring.domain.one, [(p, 1)]
     if small and len(p) > 1:
         (own,), places = in_own_symbols(p)
-        content, parts = own.factor_list()
+        content, parts = _factor_list(own)
         result = [(in_ring(p.ring, factor, places), exponent) for factor, exponent in parts]
     for factor, exponent in result:
         content *= factor.LC**exponent
     return content, [*gens, *((f.monic(), e) for f, e in result if not f.is_ground)]
+
+
+@lru_cache(REMEMBERED)
+def _factor_list(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
+    """The factors of a polynomial, remembered: the same functions occur in many elements."""
+    content, factors = p.factor_list()
+    return content, factors
 
 
 def exact(number: Any) -> Fraction:

@@ -279,8 +279,13 @@ class Field(Rationals):
         """The element with symbols replaced by elements; symbols not named stay."""
         if not self.reach(element) & values.keys():
             return element
-        known = {name: values.get(name, self[name]) for name in self.names}
-        return self.evaluate(element, known, self.number, self.call)
+        new = {name: values[name] for name in self.names if name in values}
+        for generator in self._calls_in(element):
+            known = self.adjoined[generator]
+            argument = self.substitute(known.argument, values)
+            if argument is not known.argument:
+                new[generator] = self.call(known.function, argument)
+        return self._replace(element, new)
 
     def reach(self, element: Element) -> frozenset[str]:
         """Symbols that occur in an element or in the arguments of its functions."""

@@ -184,6 +184,35 @@ class Rationals:
         quotients = [self._quotient(q, values, number, factors) for q in element.parts]
         return total(quotients) if quotients else number(Fraction(0))
 
+    def _replace(self, element: Element, values: Mapping[str, Element]) -> Element:
+        """An element with generators replaced; the others stay together, as they are."""
+        places = {self._position[name]: value for name, value in values.items()}
+        factors = dict[int, Element]()
+        parts = list[Element]()
+        for quotient in element.parts:
+            top = self._replace_in(quotient.numer, places)
+            for n in quotient.powers:
+                if n not in factors:
+                    factors[n] = self._replace_in(self._factors.known[n], places)
+            below = [factors[n] for n, e in quotient.powers.items() for _ in range(e)]
+            parts.append(top / reduce(mul, below) if below else top)
+        return self.sum(parts)
+
+    def _replace_in(self, p: PolyElement, values: Mapping[int, Element]) -> Element:
+        """A polynomial with generators replaced, by their places."""
+        self._factors.spend(len(p))
+        groups: dict[tuple[tuple[int, int], ...], dict[tuple[int, ...], Any]] = {}
+        for exponents, number in p.terms():
+            moved = tuple((n, exponents[n]) for n in values if exponents[n])
+            rest = list(exponents)
+            for n, _ in moved:
+                rest[n] = 0
+            groups.setdefault(moved, {})[tuple(rest)] = number
+        return self.sum(
+            reduce(mul, (values[n] ** e for n, e in moved), self._element(self._ring.from_dict(g)))
+            for moved, g in groups.items()
+        )
+
     # -- values modulo a prime ----------------------------------------------------------
 
     def evaluate_modulo(

@@ -110,10 +110,10 @@ class ConstrainedRates(Motion):
         slopes = zip(self.field.gradient(function, names), names, strict=True)
         return own + self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
-    @cached_property
+    @property
     def written_rates(self) -> dict[str, Element]:
         """The rates in the state, without accelerations."""
-        return {name: self.rate(self.field[name]) for name in self.setting.state}
+        return self.decidable_rates
 
     def write(self, function: Element) -> Element:
         """A function of the state alone."""
@@ -156,7 +156,12 @@ class ConstrainedRates(Motion):
             *((*row, k) for row, k in zip(block.matrix, block.known, strict=True)),
             (*c, field.zero),
         )
-        return -determinant(bordered) / determinant(tuple(map(tuple, block.matrix)))
+        return -determinant(bordered) / self._determinants[block.names[0]]
+
+    @cached_property
+    def _determinants(self) -> dict[str, Element]:
+        """The determinant of every solve, by the name of its first unknown."""
+        return {solve.names[0]: determinant(solve.matrix) for solve in self.solves}
 
     def _weights(self, block: Solve, direction: Mapping[str, Element]) -> Iterator[Row]:
         """Combinations of the equations of a block that are worth a trial."""
@@ -210,7 +215,7 @@ class ConstrainedRates(Motion):
         rates, field = self.rates, self.field
         parts = [field.derivative(rates[name], name) for name in self.positions]
         for solve in self.solves:
-            whole = determinant(tuple(map(tuple, solve.matrix)))
+            whole = self._determinants[solve.names[0]]
             for place, name in enumerate(solve.names):
                 velocity = next((v for v in self.fibre if rates[v] == field[name]), None)
                 if velocity is None:  # a multiplier

@@ -21,6 +21,7 @@ from coadjoint.derive.mechanics.configuration import (
 )
 from coadjoint.derive.mechanics.legendre import known_side
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.regular import witness_regular
@@ -175,6 +176,12 @@ def in_velocities(equations: Equations, elements: Iterable[Element]) -> list[Ele
     closed = [equations.close(element) for element in elements]
     if not equations.kept:
         return closed
-    pairs = zip(equations.setting.velocities, LegendreMap(equations).momenta.items(), strict=True)
-    momenta = {mu: slope for xi, (mu, slope) in pairs if xi in equations.kept}
+    momenta = _solved_momenta(equations)
     return [equations.setting.field.substitute(element, momenta) for element in closed]
+
+
+@once
+def _solved_momenta(equations: Equations) -> dict[str, Element]:
+    """The momenta of the velocities that the kernel solves for, in velocities."""
+    pairs = zip(equations.setting.velocities, LegendreMap(equations).momenta.items(), strict=True)
+    return {mu: slope for xi, (mu, slope) in pairs if xi in equations.kept}
