@@ -237,10 +237,15 @@ def inverse(a: Matrix) -> Matrix:
     share = quotient(1, _expand(a, size, size, known))
     if len(a) == 1:
         return ((share,),)
-
-    def cofactor(i: int, j: int) -> Any:
-        return (-1) ** (i + j) * _expand(
-            a, size[:i] + size[i + 1 :], size[:j] + size[j + 1 :], known
+    return tuple(
+        tuple(
+            (-1) ** (i + j) * _expand(a, _skip(size, j), _skip(size, i), known) * share
+            for j in size
         )
+        for i in size
+    )
 
-    return tuple(tuple(cofactor(j, i) * share for j in size) for i in size)
+
+def _skip(places: tuple[int, ...], place: int) -> tuple[int, ...]:
+    """All places but one, of as many as there are."""
+    return places[:place] + places[place + 1 :]
