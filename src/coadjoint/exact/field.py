@@ -262,11 +262,12 @@ class Field(Rationals):
             factors: Remembers the factors of denominators, for many elements at the same values.
         """
         factors = {} if factors is None else factors
-        known = dict(values)
-        for generator in self._calls_in(element):
+        calls = self._calls_in(element)
+        known = dict(values) if calls else values
+        for generator in calls:
             argument = self.adjoined[generator].argument
             inner = self.evaluate(argument, known, number, call, factors)
-            known[generator] = call(self.adjoined[generator].function, inner)
+            known[generator] = call(self.adjoined[generator].function, inner)  # type: ignore[index]
         quotients = [self._quotient(q, known, number, factors) for q in element.parts]
         return total(quotients) if quotients else number(Fraction(0))
 

@@ -49,6 +49,7 @@ class Rationals:
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
+        self._occurring: dict[PolyElement, frozenset[str]] = {}
         self._residues: dict[int, dict[PolyElement, list[tuple[int, list[str]]]]] = {}
 
     def __getitem__(self, name: str) -> Element:
@@ -126,13 +127,19 @@ class Rationals:
 
     def names_in(self, element: Element) -> frozenset[str]:
         """Names of the generators that occur in an element."""
-        return frozenset(
-            name
-            for quotient in element.parts
-            for part in (quotient.numer, *map(self._factors.known.__getitem__, quotient.powers))
-            for monomial in self._written(part)
-            for name, _ in monomial.powers
-        )
+        found = frozenset[str]()
+        for quotient in element.parts:
+            found |= self._names_of(quotient.numer)
+            for factor in quotient.powers:
+                found |= self._names_of(self._factors.known[factor])
+        return found
+
+    def _names_of(self, p: PolyElement) -> frozenset[str]:
+        """The same of a polynomial, remembered."""
+        if p not in self._occurring:
+            pairs = zip(self._names, p.degrees(), strict=True)
+            self._occurring[p] = frozenset(name for name, degree in pairs if degree > 0)
+        return self._occurring[p]
 
     def _quotient(
         self,

@@ -25,6 +25,7 @@ from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
 from coadjoint.derive.mechanics.sections import section_components
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import determinant, dot
 from coadjoint.exact.ranks import generic_rank, source_of_ranks
@@ -259,6 +260,7 @@ class ConstrainedRates(Motion):
         return self.value(self._differentiate(self.close(balance.energy)) - balance.power)
 
 
+@once
 def motion_of(equations: Equations) -> Motion:
     """The motion of Equations, whatever binds it."""
     return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)

@@ -17,7 +17,7 @@ Read next: `coadjoint.prove.zero`.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -84,6 +84,20 @@ class Branch:
     rest: tuple[Element, ...] = ()
     nonzero: tuple[Element, ...] = ()
     regular: tuple[Element, ...] = ()
+
+
+class Numbers(dict[str, Any]):
+    """A point in numbers of one kind.
+
+    Args:
+        values: Its coordinates.
+        number: Takes a rational number into this kind.
+    """
+
+    def __init__(self, values: Mapping[str, Any], number: Callable[[Any], Any]) -> None:
+        super().__init__(values)
+        self.number = number
+        self.factors: dict[int, Any] = {}  # of denominators, once they are evaluated
 
 
 class Points:
@@ -190,17 +204,21 @@ class Points:
             ZeroDivisionError: A pole.
             ValueError: A function is not defined there.
         """
-        values = dict(free)
+        numbers, found = self._numbers(free), Values()
         for name, element in (*self.branch.solved.items(), *self.definitions.items()):
-            values[name] = self.value(element, values)
-        return values
+            numbers[name] = found[name] = self.value(element, numbers)
+        return {**free, **found}
 
     def value(self, element: Element, values: Mapping[str, Any]) -> Any:
         """The value of an element: exact at exact points without functions, else a real number."""
+        at = values if isinstance(values, Numbers) else self._numbers(values)
+        return self.ring.evaluate(element, at, at.number, real_function, at.factors)
+
+    def _numbers(self, values: Mapping[str, Any]) -> Numbers:
+        """A point as `value` reads it, for many elements."""
         if self.plain and all(map(_is_rational, values.values())):
-            return self.ring.evaluate(element, values, Fraction, real_function)
-        numbers = {name: real(value) for name, value in values.items()}
-        return self.ring.evaluate(element, numbers, real, real_function)
+            return Numbers(values, Fraction)
+        return Numbers({name: real(value) for name, value in values.items()}, real)
 
     def _list_violated(self, free: Mapping[str, Any]) -> list[Element]:
         """What fails at a point; where functions are not defined, their arguments alone.
@@ -208,7 +226,7 @@ class Points:
         Raises:
             ZeroDivisionError: A pole.
         """
-        values, failed = self._as_far_as_defined(free), list[Element]()
+        values, failed = self._numbers(self._as_far_as_defined(free)), list[Element]()
         for element, strict in self._required:
             if not self.ring.reach(element) <= values.keys():
                 continue
@@ -258,7 +276,7 @@ class Points:
         """Whether all that is assumed holds, and no divisor and no determinant vanishes."""
         if self._list_violated(free):
             return False
-        values = self.complete(free)
+        values = self._numbers(self.complete(free))
         for each in self._defined:
             self.value(each, values)
         least = ON_BRANCH if self.branch.rest else 0
@@ -355,7 +373,7 @@ class Points:
         needed = self._reachable(each for each, _ in wanted)
 
         def values(at: Values) -> list[Any]:
-            whole = at if needed <= free.keys() else self.complete(at)
+            whole = self._numbers(at if needed <= free.keys() else self.complete(at))
             return [target - self.value(each, whole) for each, target in wanted]
 
         here = values(free)
