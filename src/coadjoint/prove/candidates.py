@@ -99,7 +99,7 @@ class CandidateSearch(PolynomialFamily):
 
     @cached_property
     def reversible(self) -> bool:
-        """Whether the motion runs back when its velocities are turned round."""
+        """Whether the motion runs backwards when its velocities change their signs."""
         defects = reversal_defects(self.motion)
         return all(map(self.field.is_zero, defects.values()))
 
@@ -116,15 +116,15 @@ class CandidateSearch(PolynomialFamily):
         conditions = ([table[e][1] for e in basis] for table in self.tables(len(members)))
         return solve(basis, conditions, self.samples.prime)
 
-    def found(self, degrees: Degrees) -> list[Solution[Exponents]]:
+    def find(self, degrees: Degrees) -> list[Solution[Exponents]]:
         """A basis of the integrals up to some degrees."""
         if degrees not in self._bases:
             sectors = map(self.integrals, self.sectors(degrees))
             self._bases[degrees] = [each for basis in sectors for each in basis]
         return self._bases[degrees]
 
-    def bounded(self, degrees: Degrees) -> bool:
-        """Whether there are certainly no more integrals than `found`: all relations are known."""
+    def is_bounded(self, degrees: Degrees) -> bool:
+        """Whether there are certainly no more integrals than `find` gives."""
         sectors = ((e, len(self.independent_places(e))) for e in self.sectors(degrees))
         return all(
             count + self.count_relations(members, degrees) == len(members)
@@ -179,14 +179,14 @@ class CandidateSearch(PolynomialFamily):
         span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
         return span.independent(self.gradient(each) for each in found)
 
-    def new(self, degrees: Degrees) -> Iterator[Element]:
+    def find_new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
 
         They are known from then on. Coefficients modulo the prime that are those of no small
         fractions give functions that no proof holds for, and these are passed over.
         """
         for lower in (d for d in STEPS if d[0] <= degrees[0] and d[1] <= degrees[1]):
-            found = self.found(lower)
+            found = self.find(lower)
             for place in self.independent(found):
                 numbers = found[place].lift()
                 if numbers is None:
@@ -205,11 +205,11 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
         yield _pass_over(search)
         return
     degrees = affordable(search)
-    if search.independent(search.found(degrees)):
+    if search.independent(search.find(degrees)):
         at_numbers = CandidateSearch(motion, known, default_numbers(motion.equations.spec))
         if not at_numbers.samples.obstacle:
             search, where = at_numbers, _at_defaults(motion)
-            for element in search.new(degrees):
+            for element in search.find_new(degrees):
                 text = f"{describe(motion.field, element)} is conserved{where.lstrip(',')}"
                 yield text, "integrals", partial(search.drift, element)
     yield _count(search, degrees, where)
@@ -217,8 +217,8 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
 
 def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     """How many integrals there are: proved where bounds from both sides meet, else found."""
-    found, scope = search.found(degrees), f"integrals {_scope(search, degrees)}{where}"
-    (certain, names), bounded = search.polynomials(degrees), search.bounded(degrees)
+    found, scope = search.find(degrees), f"integrals {_scope(search, degrees)}{where}"
+    (certain, names), bounded = search.polynomials(degrees), search.is_bounded(degrees)
     points = f"ranks at {len(search.drawn)} random points modulo {search.samples.prime}"
     listed = f"polynomials in {', '.join(names)}" if names else "constants"
     size = f"a space of dimension {len(found)} with constants"

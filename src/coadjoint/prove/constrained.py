@@ -1,4 +1,4 @@
-r"""Constrained motions: what is claimed of constraints, of both roads and of the energy.
+r"""Constrained motions: what is claimed of constraints, of two routes and of the energy.
 
 Comes in: Equations with a distribution. Goes out: claims for the certificate. A rate is affine in
 the accelerations, which solve :math:`\mathcal{M} x = k`; its value is written with

@@ -122,7 +122,7 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
 
 
 def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Discovery:
-    """Every coefficient depends on what is emitted, and nothing of that is there in vain.
+    """Every coefficient depends on what is emitted, which is independent.
 
     That the emitted ones are independent is certain, that the others depend on them is not.
     """

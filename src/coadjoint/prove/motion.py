@@ -101,7 +101,7 @@ class Motion:
     # -- rates ----------------------------------------------------------------------------
 
     def close(self, element: Element) -> Element:
-        """An element in what equations know by name, the parameters put in where they have numbers.
+        """An element in what equations know by name, with the numbers of the parameters if given.
 
         With constraints that is the state and the accelerations.
         """

@@ -7,7 +7,7 @@ moved: by Newton's method onto the branch, and to where the conditions that fail
 where nothing has to be solved for are rational, all others have the working precision of mpmath.
 The sequence is the same in every run.
 
-`coadjoint.exact.witness` has points of its own, which lie strictly inside a domain, as intervals
+`coadjoint.exact.witness` has other points, which lie strictly inside a domain, as intervals
 prove. Here a point may lie where a value is 0 that need not be positive, it has to satisfy the
 bounds of `Region` with the definitions that these name, and it moves along all that fails at once:
 a level set leaves no room for one step after another.
@@ -51,16 +51,16 @@ SCALES = (1, 1, 10, 100, 1000)
 SMALL = Fraction(1, 16)
 #: Parts of a default by which points near it differ from it.
 NEAR = (Fraction(0), Fraction(1, 3), Fraction(1, 30), Fraction(1, 300))
-#: Size of the last step of Newton's method, beside which a point counts as one of the zero set.
+#: Size of the last step of Newton's method, below which a point counts as one of the zero set.
 ARRIVED = mpmath.mpf(10) ** (15 - DIGITS)
-#: Size of a further step, with more digits and slopes of its own, beside which it is one.
+#: Size of a further step, with more digits and new slopes, below which it is one.
 STAYED = 1000 * ARRIVED
 #: Size below which a value counts as zero at points of a zero set found by iteration.
 ON_BRANCH = mpmath.mpf(10) ** -20
 #: How far a value must be from zero to have a sign, where functions occur.
 SIGNED = mpmath.mpf(10) ** -30
 
-#: What is added to slopes that may not be independent, beside the square of what is left.
+#: What is added to slopes that may not be independent, relative to the square of what is left.
 DAMPING = mpmath.mpf(10) ** -6
 
 Values = dict[str, Any]
@@ -135,12 +135,12 @@ class Points:
 
     @cached_property
     def _conditions(self) -> tuple[Condition, ...]:
-        """What is assumed of the symbols beside their signs."""
+        """What is assumed of the symbols in addition to their signs."""
         return (*self.ring.region.conditions, *self.ring.region.bounds)
 
     @cached_property
     def definitions(self) -> dict[str, Element]:
-        """What the conditions name beside symbols, in an order in which it can be computed."""
+        """What the conditions name other than symbols, in an order in which it can be computed."""
         region, found = self.ring.region, dict[str, Element]()
         own = (
             self._reachable((*self.elements, *self._defined, *self._roots))

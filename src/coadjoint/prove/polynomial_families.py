@@ -68,7 +68,7 @@ class PolynomialFamily:
 
     Args:
         motion: The motion.
-        others: Functions that will be evaluated beside it.
+        others: Other functions that will be evaluated.
         parameters: Numbers for the parameters; by default they are random.
 
     Attributes:

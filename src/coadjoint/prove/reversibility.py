@@ -1,4 +1,4 @@
-r"""Time reversal: whether the motion runs back when signs of the state are turned round.
+r"""Time reversal: whether the motion runs backwards when signs of the state change.
 
 The map :math:`(\eta, z) \mapsto (-\eta, z)` of velocities or momenta takes a motion to its reverse
 if and only if their rates are even and rates of positions odd in them, and constraints that are
@@ -120,7 +120,7 @@ def _kept_defects(motion: Motion) -> dict[str, Element]:
 
 
 def _back(motion: Motion) -> dict[str, Element]:
-    """The map: velocities or momenta turned round, and time."""
+    """The map: the signs of velocities or momenta change, and that of time."""
     names = (*motion.fibre, *motion.solved_velocities, *turned_by_time(motion.setting))
     return {name: -motion.field[name] for name in names}
 

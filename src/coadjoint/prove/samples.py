@@ -93,7 +93,7 @@ class Samples:
     Args:
         motion: The motion.
         parameters: Values of the parameters; by default random ones, the same at all points.
-        others: Functions that will be evaluated beside the motion.
+        others: Other functions that will be evaluated at the points.
 
     Attributes:
         prime: The prime; another than `PRIME` where that has not the square roots of some numbers.
@@ -113,7 +113,7 @@ class Samples:
         self._parameters = Values()
 
     def points(self) -> Iterator[Point]:
-        """Points, as many as are asked for, but none beside an obstacle.
+        """Points, as many as are asked for; none where there is an obstacle.
 
         Poles, and points without the square roots, are passed over.
         """
