@@ -215,7 +215,8 @@ class Field(Rationals):
 
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
-        result = element.diff(self._position[name])
+        here = name in self.names_in(element)
+        result = element.diff(self._position[name]) if here else self.zero
         for generator in self._calls_in(element):
             result += self.slope(element, generator) * self._derivative_of(
                 self.adjoined[generator], name

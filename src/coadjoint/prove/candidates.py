@@ -44,7 +44,7 @@ from coadjoint.prove.completeness import describe
 from coadjoint.prove.motion import Motion, vector_names
 from coadjoint.prove.polynomial_families import SPARE, Degrees, PolynomialFamily
 from coadjoint.prove.reversibility import reversal_defects
-from coadjoint.prove.samples import Samples
+from coadjoint.prove.samples import Samples, samples_of
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
 
@@ -263,7 +263,7 @@ def known_integrals(motion: Motion) -> list[Known]:
 
     What changes at a random point is none; what does not is proved where a proof rests on it.
     """
-    setting, spec, where = motion.setting, motion.spec, Samples(motion).where
+    setting, spec, where = motion.setting, motion.spec, samples_of(motion).where
     names, energy = motion.emitted, motion.equations.exact.energy
     stated = {} if energy is None else {"energy": [motion.close(energy)]}
     for claim in spec.conserved:
@@ -291,8 +291,10 @@ def known_integrals(motion: Motion) -> list[Known]:
 
 def _changes(motion: Motion, parts: Sequence[Element]) -> bool:
     """Whether functions certainly change along the motion, or have no values at its points."""
-    samples = Samples(motion, None, parts)
-    point = next(samples.points(), None)
+    samples = samples_of(motion)
+    if not samples.serves(parts):
+        samples = Samples(motion, None, parts)
+    point = samples.first
     return point is None or any(point.differentiate(samples.slopes(part)) for part in parts)
 
 

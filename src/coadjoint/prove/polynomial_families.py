@@ -24,7 +24,7 @@ from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
 from coadjoint.exact.packed import PackedSpan
 from coadjoint.exact.residues import residue
 from coadjoint.exact.written import Written
-from coadjoint.prove.densities import Measure
+from coadjoint.prove.densities import measure_of
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import Point, Samples, Slopes, leading
 
@@ -174,7 +174,7 @@ class PolynomialFamily:
     @property
     def _solved(self) -> list[Element]:
         """The kept constraints solved for velocities: what is a common factor of them is gone."""
-        allowed = Measure(self.motion).allowed.items()
+        allowed = measure_of(self.motion).allowed.items()
         return [self.field.normal(self.field[name] - root) for name, root in allowed]
 
     def _holds(self, relation: Element) -> bool:

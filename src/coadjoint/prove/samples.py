@@ -23,7 +23,8 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import islice
 
-from coadjoint.exact import Element
+from coadjoint.derive.setting import once
+from coadjoint.exact import Element, Field
 from coadjoint.exact.linear import PRIME, echelon_modulo, primes
 from coadjoint.exact.residues import Residue, residue
 from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
@@ -130,6 +131,11 @@ class Samples:
         return None
 
     @cached_property
+    def first(self) -> Point | None:
+        """The first point; None where there is none."""
+        return next(self.points(), None)
+
+    @cached_property
     def functions(self) -> Functions:
         """The elementary functions of the motion, with what is known of relations between them."""
         parameters = self.motion.equations.setting.parameters
@@ -152,13 +158,13 @@ class Samples:
     @cached_property
     def _long_numbers(self) -> set[int]:
         """Numerators and denominators that a prime might divide."""
-        written = [q for e in self._evaluated for q in self.field.quotients(e)]
-        divisors = [d for quotient in written for d, _ in quotient.divisors]
-        written += [q for divisor in divisors for q in self.field.quotients(divisor)]
-        numbers = {m.number for quotient in written for m in quotient.monomials}
-        numbers |= {*(self._given or {}).values()}
-        parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
-        return {part for part in parts if part >= SMALL}
+        return _long_numbers(self.field, self._evaluated, (self._given or {}).values())
+
+    def serves(self, others: Iterable[Element]) -> bool:
+        """Whether the points serve functions that they were not made for."""
+        elements = list(others)
+        plain = all(map(self.field.function_free, elements))
+        return plain and not _long_numbers(self.field, elements)
 
     @cached_property
     def obstacle(self) -> str:
@@ -297,6 +303,24 @@ class Samples:
         """The definitions on which the rates rest, in order."""
         equations = self.motion.equations
         return equations.definitions_of(equations.exact.rates)
+
+
+def _long_numbers(
+    field: Field, elements: Iterable[Element], others: Iterable[Fraction] = ()
+) -> set[int]:
+    """Numerators and denominators in elements, and of other numbers, that a prime might divide."""
+    written = [q for element in elements for q in field.quotients(element)]
+    divisors = [d for quotient in written for d, _ in quotient.divisors]
+    written += [q for divisor in divisors for q in field.quotients(divisor)]
+    numbers = {m.number for quotient in written for m in quotient.monomials} | {*others}
+    parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
+    return {part for part in parts if part >= SMALL}
+
+
+@once
+def samples_of(motion: Motion) -> Samples:
+    """The points of a motion at random parameters, made for its equations alone."""
+    return Samples(motion)
 
 
 def leading(element: Element) -> Fraction:
