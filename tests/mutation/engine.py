@@ -366,6 +366,12 @@ MUTANTS = (
         "_section_defects: flip name",
         "on_section: let return = restriction.setting.field.zero",
     ),
+    *of(
+        "packed",
+        "_add: rewrite (prime - entry) * other -> entry * other",
+        "nullspace: rewrite prime - share -> share",
+    ),
+    *of("rationals", "_replace_in: rewrite values[n] ** e -> values[n]"),
     *of("linear", "nullspace_modulo: use equations[1:] for equations in SpanModulo"),
     *of("ansatz", "solve_with_right_side: deny last"),
     *of(
