@@ -123,9 +123,8 @@ Elimination = tuple[int, int, PolyElement]
 def _eliminations(relation: PolyElement) -> Iterator[Elimination]:
     """The symbols x of which a relation has ``x`` or ``x^2`` alone, times a number: the root last.
 
-    >>> from sympy import QQ
-    >>> ring = PolyRing(["x", "h"], QQ, lex)
-    >>> x, h = ring.gens
+    >>> from sympy import QQ, ring
+    >>> _, x, h = ring("x, h", QQ)
     >>> list(_eliminations(h**2 - x**2 - 1))
     [(0, 2, h**2 - 1), (1, 2, x**2 + 1)]
     """
@@ -147,9 +146,8 @@ def _eliminate(polynomial: PolyElement, elimination: Elimination) -> PolyElement
 def factors_of(polynomial: PolyElement) -> list[PolyElement]:
     """The irreducible factors of a polynomial with whole coefficients, each once.
 
-    >>> from sympy import QQ
-    >>> ring = PolyRing(["x", "y"], QQ, lex)
-    >>> x, y = ring.gens
+    >>> from sympy import QQ, ring
+    >>> _, x, y = ring("x, y", QQ)
     >>> factors_of(x**2 * (x - y) * (x + y) / 2)
     [x, x - y, x + y]
     """
