@@ -1,8 +1,8 @@
-"""Draw docs/pictures anew, and write the schema and all derivations to build/docs.
+"""Draw docs/pictures, and write the schema and all derivations to build/docs.
 
     python docs/make.py        (or `make docs`)
 
-Only commands of coadjoint are used, so what stands here is what a reader can type.
+It runs commands of coadjoint that a reader can type as well.
 """
 
 from __future__ import annotations

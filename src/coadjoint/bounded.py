@@ -41,10 +41,10 @@ def read_bounded(
         CoadjointError: What `coadjoint.read_spec` raises.
         ResourceError: The child ran out of time or memory.
     """
-    (found,) = read_all_bounded([fspath(path)], seconds=seconds, memory=memory)
-    if isinstance(found, CoadjointError):
-        raise found
-    return found
+    (record,) = read_all_bounded([fspath(path)], seconds=seconds, memory=memory)
+    if isinstance(record, CoadjointError):
+        raise record
+    return record
 
 
 def derive_bounded(
@@ -99,14 +99,14 @@ def _run(
     target: str, argument: Mapping[str, Any], seconds: float | None, memory: int
 ) -> dict[str, Any]:
     """A function of one spec in a bounded child."""
-    found: dict[str, Any] = run_bounded(
+    record: dict[str, Any] = run_bounded(
         target,
         argument,
         seconds=allowed_seconds(seconds),
         memory=memory,
         subject=str(argument["path"]),
     )
-    return found
+    return record
 
 
 def read_all_bounded(
@@ -130,7 +130,7 @@ def read_all_bounded(
         done = number
 
     try:
-        found = run_bounded(
+        records = run_bounded(
             "coadjoint.bounded:read_records",
             list(paths),
             seconds=allowed,
@@ -144,7 +144,7 @@ def read_all_bounded(
         parts = (paths[:done], paths[done : done + 1], paths[done + 1 :])
         again = [read_all_bounded(part, seconds=allowed, memory=memory) for part in parts if part]
         return [each for part in again for each in part]
-    return [from_record(each["error"]) if "error" in each else each for each in found]
+    return [from_record(each["error"]) if "error" in each else each for each in records]
 
 
 def read_records(paths: Sequence[str]) -> list[dict[str, Any]]:
@@ -196,8 +196,8 @@ def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
     report_progress("prove", 0, 1)
     certificate = prove(read_spec(Path(argument["path"])))
     entries = {
-        name: [entry.as_record() | {"seconds": entry.seconds} for entry in found]
-        for name, found in (("claims", certificate.claims), ("findings", certificate.findings))
+        name: [entry.as_record() | {"seconds": entry.seconds} for entry in group]
+        for name, group in (("claims", certificate.claims), ("findings", certificate.findings))
     }
     return {
         "system": certificate.system,

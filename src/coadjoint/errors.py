@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import resource
 from collections.abc import Mapping
 from typing import Any, ClassVar, Final
@@ -154,6 +155,17 @@ _REFUSALS: Final = {
     errno.ENOMEM: "Free some memory.",
     errno.EAGAIN: "Raise the limit of processes (ulimit -u), or close some programs.",
 }
+#: The words for them of linkers, of the loader of libraries, and of drivers of compilers, which
+#: also name the signal that ended a program.
+_WORDS: Final = {
+    "out of file descriptors": errno.EMFILE,
+    f"cannot open shared object file: Error {errno.EMFILE}": errno.EMFILE,
+    "file too big": errno.EFBIG,
+    "File size limit exceeded": errno.EFBIG,
+    "memory exhausted": errno.ENOMEM,
+    "out of memory": errno.ENOMEM,
+    "Killed": errno.ENOMEM,
+}
 
 
 #: Bytes that Python writes into each folder when it looks for one for temporary files.
@@ -162,7 +174,7 @@ _TRIAL: Final = 4
 
 def system_error(error: OSError | ImportError) -> OutputError | None:
     """A refusal of the operating system as an error that says what it is; None for other faults."""
-    number, help_with = _number(error), remedy_for(error)
+    number, help_with = errno_of(error), remedy_for(error)
     reason = getattr(error, "strerror", None) or str(error)
     if number == errno.ENOENT and "temporary directory" in str(error):
         reason, help_with = str(error), "Set TMPDIR to a folder that you can write to."
@@ -177,16 +189,23 @@ def system_error(error: OSError | ImportError) -> OutputError | None:
     return OutputError(f"{place}{reason}. {help_with}", path=place.removesuffix(": "), found=reason)
 
 
-def remedy_for(error: OSError | ImportError) -> str:
-    """What helps against a refusal of the operating system; "" for other faults."""
-    return _REFUSALS.get(_number(error), "")
+def remedy_for(refusal: OSError | ImportError | str) -> str:
+    """What helps against a refusal of the operating system; "" for other faults.
+
+    Args:
+        refusal: The error, or the whole output of a program that ended with one.
+    """
+    return _REFUSALS.get(errno_of(refusal), "")
 
 
-def _number(error: OSError | ImportError) -> int:
-    """Which refusal it is; of a library that did not load, the loader tells it in words alone."""
-    if isinstance(error, OSError):
-        return error.errno or 0
-    return next((number for number in _REFUSALS if os.strerror(number) in str(error)), 0)
+def errno_of(refusal: OSError | ImportError | str) -> int:
+    """The errno of a refusal: the one that it carries, else the first one that its words name."""
+    if isinstance(refusal, OSError) and refusal.errno:
+        return refusal.errno
+    words = {os.strerror(number): number for number in _REFUSALS} | _WORDS
+    longest_first = sorted(words, key=len, reverse=True)  # one of them begins with another
+    match = re.search("|".join(map(re.escape, longest_first)), str(refusal))
+    return words[match[0]] if match else 0
 
 
 def _has_working_folder() -> bool:

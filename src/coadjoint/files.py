@@ -66,9 +66,9 @@ def read_object(path: Path) -> dict[str, Any]:
 def parse_object(content: bytes) -> dict[str, Any]:
     """The JSON object that bytes hold; an empty one if they hold none."""
     with suppress(ValueError, RecursionError):
-        found = json.loads(content)
-        if isinstance(found, dict):
-            return found
+        value = json.loads(content)
+        if isinstance(value, dict):
+            return value
     return {}
 
 
@@ -78,25 +78,25 @@ def read_certificate(path: Path) -> dict[str, Any]:
     Programs index what comes back, so each known key holds what it should: texts, tables of texts,
     and claims that have at least a statement, a verdict and a method.
     """
-    found = read_object(path)
+    certificate = read_object(path)
     for key in ("title", "source", "description"):
-        if not isinstance(found.get(key), str):
-            found.pop(key, None)
-    for key in ("docs", "definitions", "constraints", "domain"):
-        if not is_table_of_texts(found.get(key)):
-            found.pop(key, None)
+        if not isinstance(certificate.get(key), str):
+            certificate.pop(key, None)
+    for key in ("docs", "definitions", "observables", "constraints", "domain"):
+        if not is_table_of_texts(certificate.get(key)):
+            certificate.pop(key, None)
     for key in ("casimirs", "routes"):
-        if not _is_list_of(found.get(key), str):
-            found.pop(key, None)
+        if not _is_list_of(certificate.get(key), str):
+            certificate.pop(key, None)
     for key, needed in (
         ("claims", ("statement", "verdict", "method")),
         ("findings", ("statement", "method")),
     ):
-        if not _is_list_of(found.get(key), dict) or not all(
-            isinstance(entry.get(part), str) for entry in found[key] for part in needed
+        if not _is_list_of(certificate.get(key), dict) or not all(
+            isinstance(entry.get(part), str) for entry in certificate[key] for part in needed
         ):
-            found.pop(key, None)
-    return found
+            certificate.pop(key, None)
+    return certificate
 
 
 def is_table_of_texts(value: Any) -> bool:

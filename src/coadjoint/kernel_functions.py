@@ -15,11 +15,7 @@ from typing import Final
 from coadjoint.declared import KernelFunction
 
 _ENTRIES: Final = (
-    KernelFunction(
-        name="rhs",
-        summary="Time derivative of the state",
-        shape="(n, *batch)",
-    ),
+    KernelFunction(name="rhs", summary="Time derivative of the state", shape="(n, *batch)"),
     KernelFunction(
         name="jacobian",
         summary="Derivative of rhs by the state, one row for each rate",
@@ -40,11 +36,7 @@ _ENTRIES: Final = (
         doc="Only systems with parameters have it.",
         by="parameters",
     ),
-    KernelFunction(
-        name="energy",
-        summary="Energy",
-        shape="batch",
-    ),
+    KernelFunction(name="energy", summary="Energy", shape="batch"),
     KernelFunction(
         name="observables",
         summary="Observables, one row for each component",

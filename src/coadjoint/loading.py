@@ -17,10 +17,7 @@ from coadjoint.solve.system import System, load_folder
 
 
 def load(
-    path: str | PathLike[str],
-    *,
-    seconds: float | None = None,
-    progress: Progress = lambda *_: None,
+    path: str | PathLike[str], *, seconds: float | None = None, progress: Progress = lambda *_: None
 ) -> System:
     """Derive, prove, compile and load the system of a spec file.
 

@@ -186,7 +186,7 @@ def check(
     differences = [
         difference
         for difference in compare_tree(fresh, output)
-        if complete or _concerns(difference.path, records)
+        if complete or _is_concerned(difference.path, records)
     ]
     if differences:
         extra = any(each.kind == "extra" for each in differences)
@@ -221,7 +221,7 @@ def _is_row(record: Any) -> bool:
     return texts and numbers and isinstance(record["system"], str)
 
 
-def _concerns(path: str, records: Mapping[str, Any]) -> bool:
+def _is_concerned(path: str, records: Mapping[str, Any]) -> bool:
     """Whether a path belongs to the systems at hand or to the tree as a whole."""
     return "/" not in path or path.split("/")[0] in records
 
@@ -267,7 +267,7 @@ def _refuse_early(output: Path, pending: Sequence[_Source], keep: set[str] | Non
 def _is_current(output: Path, names: set[str] | None) -> bool:
     """Whether the manifest speaks of these systems and of the templates as they are."""
     manifest = read_manifest(output)
-    if any(not _holds(output / file, text) for file, text in PACKAGE.items()):
+    if any(not _has_text(output / file, text) for file, text in PACKAGE.items()):
         return False
     if any(leftovers(output)):
         return False
@@ -275,7 +275,7 @@ def _is_current(output: Path, names: set[str] | None) -> bool:
     return bool(same and manifest["templates"] == template_hashes())
 
 
-def _holds(path: Path, text: str) -> bool:
+def _has_text(path: Path, text: str) -> bool:
     """Whether a file has exactly this text."""
     with suppress(OSError):
         return read_regular(path) == text.encode()
@@ -287,10 +287,10 @@ def _unchanged_row(source: _Source, output: Path) -> Row | None:
 
     What was verified is remembered in the private cache of this machine, by fingerprint.
     """
-    found = read_object(_stamp(source))
+    kept = read_object(_stamp(source))
     entry = read_manifest(output)["systems"].get(source.name)
-    row: Any = found.get("row")
-    if not _is_row(row) or entry is None or found.get("entry") != entry:
+    row: Any = kept.get("row")
+    if not _is_row(row) or entry is None or kept.get("entry") != entry:
         return None  # a damaged stamp is no stamp
     if not is_intact(output, source.name):
         return None

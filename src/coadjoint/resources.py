@@ -38,15 +38,15 @@ def reserved_words() -> dict[str, str]:
     >>> reserved_words()["restrict"]
     'a keyword of C'
     """
-    found: dict[str, str] = {}
+    words: dict[str, str] = {}
     for path in sorted(targets_folder().glob("*/reserved.txt")):
         kind = ""
         for line in path.read_text(encoding="ascii").splitlines():
             if line.startswith("# "):
                 kind = line.removeprefix("# ")
             else:
-                found |= {word: kind for word in line.split() if word not in found}
-    return found
+                words |= {word: kind for word in line.split() if word not in words}
+    return words
 
 
 def derivations_folder() -> Path:

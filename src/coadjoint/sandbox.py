@@ -28,13 +28,7 @@ from threading import Lock, Timer
 from typing import IO, Any
 
 from coadjoint.budget import VARIABLE
-from coadjoint.errors import (
-    CoadjointError,
-    InternalError,
-    ResourceError,
-    from_record,
-    system_error,
-)
+from coadjoint.errors import CoadjointError, InternalError, ResourceError, from_record, system_error
 from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
 
 #: Called with stage, number of stages done, number of stages.
@@ -155,7 +149,7 @@ def run_bounded(
             _kill(process)
         if last is None:
             errors.seek(0)
-            raise task.lost(process.returncode, errors.read())
+            raise task.explain_loss(process.returncode, errors.read())
     if "error" in last:
         raise from_record(last["error"])
     return last["result"]
@@ -217,26 +211,26 @@ def _reap(process: subprocess.Popen[str]) -> float:
 def _kill(process: subprocess.Popen[str]) -> None:
     """Kill a child and whatever it started, in sessions of their own too."""
     if process.returncode is None:
-        for started in _frozen(process.pid):
+        for started in _freeze(process.pid):
             with suppress(ProcessLookupError, PermissionError):
                 os.kill(started, signal.SIGKILL)
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
 
 
-def _frozen(ancestor: int) -> set[int]:
+def _freeze(ancestor: int) -> set[int]:
     """A process and all below it, stopped: what runs could start another meanwhile."""
-    frozen, found = set[int](), {ancestor}
-    while found:
-        for each in found:
+    frozen, running = set[int](), {ancestor}
+    while running:
+        for each in running:
             with suppress(ProcessLookupError, PermissionError):
                 os.kill(each, signal.SIGSTOP)
-        frozen |= found
+        frozen |= running
         for _ in range(250):  # half a second, where a kernel thread waits for a disk
             if not any(map(_is_active, frozen)):
                 break
             time.sleep(0.002)
-        found = set(_descendants(ancestor)) - frozen
+        running = set(_descendants(ancestor)) - frozen
     return frozen
 
 
@@ -256,12 +250,12 @@ def _descendants(ancestor: int) -> list[int]:
         with suppress(OSError, ValueError, IndexError):  # it may have ended meanwhile
             parent = path.read_text(errors="replace").rpartition(")")[2].split()[1]
             below.setdefault(int(parent), []).append(int(path.parent.name))
-    found, waiting = [], [ancestor]
+    descendants, waiting = [], [ancestor]
     while waiting:
         children = below.get(waiting.pop(), [])
-        found += children
+        descendants += children
         waiting += children
-    return found
+    return descendants
 
 
 def _processor_limit(seconds: float) -> int:
@@ -279,7 +273,7 @@ class _Task:
         self.subject, self.seconds, self.wall, self.memory = subject, seconds, wall, memory
         self.stage, self.used, self.expired = "", 0.0, False
 
-    def lost(self, status: int, errors: bytes) -> ResourceError:
+    def explain_loss(self, status: int, errors: bytes) -> ResourceError:
         """The error of a child that ended without a final message."""
         if status == -signal.SIGXCPU:
             message, limit = self._out_of_time(), float(self.seconds)
@@ -320,10 +314,10 @@ class _Task:
 
     def _explain_end(self, status: int, errors: bytes) -> str:
         """A signal or an exit that nobody here has asked for."""
-        found = signal.Signals(-status).name if status < 0 else f"exit status {status}"
+        end = signal.Signals(-status).name if status < 0 else f"exit status {status}"
         tail = errors.decode(errors="replace").strip()[-400:]
         return (
-            f"lost{self._where} ({found}, after {self.used:.1f} s of processor time; limit of "
+            f"lost{self._where} ({end}, after {self.used:.1f} s of processor time; limit of "
             f"memory {self.memory // 2**20} MiB). Simplify the spec, or check whether something "
             f"ended the process. {tail}".rstrip()
         )

@@ -113,6 +113,70 @@ def test_an_error_of_the_compiler_is_shown(tmp_path):
         compile_kernel(find_compiler(), folder, "exact")
 
 
+LINKER = (
+    "ld: plugin framework: out of file descriptors. Try using fewer objects/archives\n"
+    "collect2: error: ld returned 1 exit status"
+)
+#: What compilers and their linkers say under limits of the session, and what helps.
+LIMITS = {
+    LINKER: "ulimit -n",
+    "x" * 2000 + "\nld: cannot open libm.so: Too many open files": "ulimit -n",
+    "as: error while loading shared libraries: libbfd.so: cannot open shared object file: "
+    "Error 24": "ulimit -n",
+    "cc: fatal error: cannot open a file: Too many open files in system": "Close some programs",
+    "ld: final link failed: file too big": "ulimit -f",
+    "cc: fatal error: File size limit exceeded signal terminated program as": "ulimit -f",
+    "ld: kernel.so: No space left on device\nld: Permission denied": "Free some space",
+    "cc: fork: Resource temporarily unavailable": "ulimit -u",
+    "cc1: out of memory allocating 65536 bytes": r"Free some memory\..* 2 GiB",
+    "cc: fatal error: Killed signal terminated program cc1": "Free some memory",
+}
+
+
+@pytest.mark.parametrize(("said", "remedy"), LIMITS.items(), ids=range(len(LIMITS)))
+def test_a_limit_that_a_compiler_met_is_named_with_its_remedy(tmp_path, said, remedy):
+    """Wherever it stands in the output, and without a second attempt that blames an option."""
+    (tmp_path / "said").write_text(said)
+    fake = script(tmp_path, "poor", "echo run >> runs; cat said; exit 1")
+    with pytest.raises(CompilerError, match=f"(?s)with status 1: .*{remedy}") as caught:
+        compile_kernel(Compiler((str(fake),), "poor 1.0"), sources(tmp_path), "exact")
+    assert "another compiler" not in str(caught.value)
+    assert (tmp_path / "runs").read_text() == "run\n"
+
+
+def test_a_limit_that_a_compiler_met_is_named_however_it_ended(monkeypatch, tmp_path):
+    """By a signal and in silence, when asked for its version, and when it hangs."""
+    poor = Compiler((str(script(tmp_path, "poor", "kill -KILL $$")),), "poor 1.0")
+    with pytest.raises(CompilerError, match=r"with status 137: no output\. Free some memory"):
+        compile_kernel(poor, sources(tmp_path), "exact")
+    said = "echo Too many open files"
+    monkeypatch.setenv("CC", str(script(tmp_path, "mute", f"{said}; exit 3")))
+    with pytest.raises(CompilerError, match=r"expected a version\. .*ulimit -n"):
+        find_compiler()
+    slow = Compiler((str(script(tmp_path, "slow", f"{said}; sleep 61")),), "slow 1.0")
+    monkeypatch.setattr(compiler._run, "__defaults__", (60, 0.5))
+    with pytest.raises(CompilerError, match=r"did not finish in 0\.5 s: .*ulimit -n"):
+        compile_kernel(slow, sources(tmp_path), "exact")
+
+
+@pytest.mark.parametrize(
+    "said", ["error: unknown option", "kernel.c:3: error: expected a semicolon", ""]
+)
+def test_a_compiler_that_met_no_limit_is_to_be_replaced(tmp_path, said):
+    """Its own errors lead to another compiler."""
+    fake = script(tmp_path, "bad", f"echo '{said}'; exit 1" if said else "kill -SEGV $$")
+    with pytest.raises(CompilerError, match=r"Set CC to another compiler\."):
+        compile_kernel(Compiler((str(fake),), "bad 1.0"), sources(tmp_path), "exact")
+
+
+def test_a_limit_of_processor_time_of_the_session_is_named(monkeypatch, tmp_path):
+    """Where it is below ours, the message names it and how to raise it."""
+    fake = script(tmp_path, "loop", "kill -XCPU $$")
+    monkeypatch.setattr(compiler.resource, "getrlimit", lambda kind: (1, 1))
+    with pytest.raises(CompilerError, match=r"in 1 s of processor time: .*ulimit -t"):
+        compile_kernel(Compiler((str(fake),), "loop 1.0"), sources(tmp_path), "exact")
+
+
 def test_a_warning_is_an_error(tmp_path):
     """An unused variable stops the build."""
     unused = SIMPLE["kernel.c"].replace("return", "int y;\n    return")

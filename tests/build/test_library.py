@@ -33,14 +33,15 @@ def load():
 
 
 def test_a_bound_call_computes_what_the_function_does(cache):
-    """Arguments converted once or at each call: the same numbers."""
+    """Arguments packed once, all of them or all but members, state and result."""
     state, parameters = np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0])
-    plain, bound = np.zeros(3), np.zeros(3)
-    addresses = (1, state.ctypes.data, 1, parameters.ctypes.data, 0)
-    load().function("rhs")(*addresses, plain.ctypes.data, 1)
-    load().bind("rhs", *addresses, bound.ctypes.data, 1)()
+    bound, two = np.zeros(3), np.zeros((3, 2))
+    arguments = (1, state.ctypes.data, 1, parameters.ctypes.data, 0, bound.ctypes.data, 1)
+    load().bind("rhs", *arguments)()
+    load().bind_at("rhs", *arguments)(2, np.outer(state, [1.0, 2.0]).ctypes.data, two.ctypes.data)
     # dPi1/dt = (1/I3 - 1/I2) Pi2 Pi3 and cyclic, exact in these numbers
-    assert plain.tolist() == bound.tolist() == [-1.5, 2.25, -1.0]
+    assert bound.tolist() == [-1.5, 2.25, -1.0]
+    assert two.tolist() == [[-1.5, -6.0], [2.25, 9.0], [-1.0, -4.0]]
 
 
 def test_an_object_of_another_run_is_refused(cache):
@@ -75,7 +76,7 @@ def test_an_object_of_another_build_is_refused_and_replaced(cache):
 def test_a_function_that_is_not_there_is_named(cache):
     """Neither an AttributeError nor a crash."""
     with pytest.raises(CompilerError, match="has no function nothing"):
-        load().function("nothing")
+        load().bind("nothing", *[0] * 7)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="an option of ELF linkers")
@@ -107,11 +108,11 @@ def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
         library._key(replace(compiler, version="another"), SOURCES, "exact"),
         library._key(replace(compiler, command=("/bin/true",)), SOURCES, "exact"),
     ]
-    for name in ("__version__", "_processor"):
+    for name in ("__version__", "_processor", "SUPPORT"):
         with monkeypatch.context() as patch:
-            patch.setattr(library, name, "another" if name == "__version__" else lambda: "another")
+            patch.setattr(library, name, (lambda: "another") if name == "_processor" else "another")
             keys.append(library._key(compiler, SOURCES, "exact"))
-    assert len(set(keys)) == len(keys) == 8
+    assert len(set(keys)) == len(keys) == 9
     assert library._key(compiler, SOURCES, "exact") == keys[0]
 
 

@@ -77,7 +77,7 @@ def test_a_folder_that_is_swept_before_it_is_locked_is_made_anew(monkeypatch, tm
             remove(path)
         return whole(path)
 
-    monkeypatch.setattr(workplace, "_locked", swept_once)
+    monkeypatch.setattr(workplace, "_lock", swept_once)
     with work_folder(tmp_path) as folder:
         assert folder.is_dir()
         assert folder != taken[0]

@@ -1,5 +1,7 @@
 """Observables: scalars, vectors and matrices are emitted by component, in their declared order."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -78,6 +80,15 @@ def test_definitions_are_told_in_documents(rendered):
     assert '"square(a)": "dot(a, a)"' in rendered.texts["certificate.json"]
     plain = render(spec())
     assert "definitions" not in certificate_json(spec(), plain.certificate)
+
+
+def test_the_certificate_keeps_the_texts_of_observables(rendered):
+    """Claims name them; a system without any has no such key."""
+    kept = json.loads(rendered.texts["certificate.json"])["observables"]
+    assert list(kept) == list(dict.fromkeys(each.name for each in spec(SHAPED).observables))
+    assert kept["S"] in SHAPED
+    plain = render(spec())
+    assert "observables" not in certificate_json(spec(), plain.certificate)
 
 
 @pytest.mark.parametrize(

@@ -67,10 +67,10 @@ def test_a_span_modulo_a_prime_keeps_independent_rows_alone():
     """A row in the span changes nothing, and the rank is that of all rows at once."""
     rows = [{0: 1, 3: 2}, {1: 5}, {0: 2, 1: 5, 3: 4}, {3: 1}, {0: 7}, {}]
     span = SpanModulo(PRIME)
-    assert span.independent(rows) == [0, 1, 3]
+    assert span.add_independent(rows) == [0, 1, 3]
     assert span.rank == rank_modulo(rows) == 3
     assert not span.add({0: PRIME})
-    assert SpanModulo(7, [{0: 7, 1: 1}]).independent([{1: 3}, {0: 1}]) == [1]
+    assert SpanModulo(7, [{0: 7, 1: 1}]).add_independent([{1: 3}, {0: 1}]) == [1]
 
 
 def test_whole_numbers_have_no_common_factor_and_keep_signs():

@@ -5,7 +5,7 @@ import random
 import pytest
 
 from coadjoint.exact import Field
-from coadjoint.exact.regular import certain_minors, witness_regular
+from coadjoint.exact.ranks import certain_minors, witness_regular
 
 
 def outer(field, rank, size, functions):

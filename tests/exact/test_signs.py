@@ -161,8 +161,8 @@ def test_symbols_are_measured_from_their_bounds(text, expected):
     q, v = field["q"], field["v"]
     conditions = [Condition(q - 3, strict=True), Condition(-v - 1, strict=True)]
     element = written(field, text)
-    assert Signs(field, strict=True, more=conditions).of(element.combined()) == expected
-    assert Signs(field, strict=True).of(element.combined()) == 0
+    assert Signs(field, strict=True, more=conditions).of(element.combine()) == expected
+    assert Signs(field, strict=True).of(element.combine()) == 0
 
 
 def test_numerators_vanish_nowhere_by_their_terms_or_as_factors():

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from coadjoint.exact import Field
-from coadjoint.groups.lifts import cotangent_lift, jacobian
+from coadjoint.groups.vector_fields import cotangent_lift, jacobian
 from coadjoint.theory.vector_fields import compose, tangent_lift
 
 

@@ -5,7 +5,14 @@ import pytest
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.poisson import canonical, declared, frozen, lie_poisson, magnetic, nambu
+from coadjoint.poisson import (
+    canonical,
+    declare_bracket,
+    freeze_bracket,
+    lie_poisson,
+    magnetic,
+    nambu,
+)
 
 PAIRS = [(f"r{n}", f"v{n}") for n in (1, 2, 3)]
 
@@ -102,7 +109,7 @@ def test_frozen_brackets_are_constant_and_take_a_cocycle():
     """{x_i, x_j} = -c_ij^k p_k + w_ij."""
     algebra = algebra_by_name("so(3)")
     field = Field(algebra.basis)
-    structure = frozen(algebra, field, algebra.basis, [0, 0, 5], cocycle={(1, 2): 2})
+    structure = freeze_bracket(algebra, field, algebra.basis, [0, 0, 5], cocycle={(1, 2): 2})
     assert [structure.tensor[i][j] for i, j in ((0, 1), (0, 2), (1, 2))] == [-5, 0, 2]
     structure.check_jacobi()
 
@@ -112,7 +119,7 @@ def test_a_declared_pair_stands_once(brackets):
     """A pair given twice or with itself is refused by name."""
     field = Field(["q", "p"])
     with pytest.raises(AlgebraError, match=r"\{p, [pq]\} is declared (twice|with itself)"):
-        declared(field, field.names, {pair: field.number(n) for pair, n in brackets.items()})
+        declare_bracket(field, field.names, {pair: field.number(n) for pair, n in brackets.items()})
 
 
 def test_lie_poisson_wants_a_coordinate_for_each_generator():

@@ -11,9 +11,9 @@ from coadjoint.exact import Field, element_text
 from coadjoint.exact.linear import PRIME
 from coadjoint.exact.ranks import generic_rank
 from coadjoint.limits import MONOMIALS
-from coadjoint.poisson import PoissonStructure, declared, lie_poisson, nambu
+from coadjoint.poisson import PoissonStructure, declare_bracket, lie_poisson, nambu
 from coadjoint.poisson.casimirs import casimirs
-from coadjoint.poisson.polynomials import Polynomial, read_polynomial
+from coadjoint.poisson.polynomials import primitive, read_terms
 from coadjoint.poisson.search import independent_polynomials
 from coadjoint.poisson.summands import restrict_algebra, summands
 
@@ -52,7 +52,7 @@ DEGREES = {
 
 def degree(structure, element):
     """The degree of a polynomial element."""
-    return read_polynomial(structure.field, element, structure.names).degree
+    return max(map(sum, read_terms(structure.field, element, structure.names)))
 
 
 def check_casimirs(structure, generators):
@@ -191,10 +191,10 @@ def test_a_term_between_the_summands_joins_them():
     x1, y1, z1, x2, y2, z2 = (field[f"{letter}{n}"] for n in (1, 2) for letter in "xyz")
     names = ("x1", "y1", "z1", "x2", "y2", "z2")
     entries = {(0, 1): z1, (1, 2): x1, (0, 2): -y1, (3, 4): z2, (4, 5): x2, (3, 5): -y2}
-    apart = declared(field, names, entries)
+    apart = declare_bracket(field, names, entries)
     assert summands(apart) == [(0, 1, 2), (3, 4, 5)]
     square = x1**2 + y1**2 + z1**2
-    joined = declared(
+    joined = declare_bracket(
         field, names, {pair: e * square if pair[0] > 2 else e for pair, e in entries.items()}
     )
     assert summands(joined) == [tuple(range(6))]
@@ -216,7 +216,7 @@ def test_a_search_refuses_parameters_and_quotients_and_functions():
     z, a = field["z"], field["a"]
     root = field.call("sqrt", z)
     for entry, found in ((a * z, "'a'"), (1 / z, "quotient"), (root, "'sqrt'")):
-        structure = declared(field, ("x", "y", "z"), {(0, 1): entry})
+        structure = declare_bracket(field, ("x", "y", "z"), {(0, 1): entry})
         with pytest.raises(AlgebraError, match=found):
             casimirs(structure, 2)
 
@@ -243,5 +243,5 @@ def test_both_signs_of_the_bracket_have_the_same_casimirs():
 
 def test_a_prime_among_coefficients_does_not_hide_independence():
     """X + y and x + (1 + p) y agree modulo the first prime p, and are independent."""
-    first, second = (Polynomial({(1, 0): 1, (0, 1): 1 + n}) for n in (0, PRIME))
+    first, second = (primitive({(1, 0): 1, (0, 1): 1 + n}) for n in (0, PRIME))
     assert independent_polynomials([first, first, second], 2, 2) == [first, second]

@@ -7,7 +7,14 @@ import pytest
 from coadjoint.algebra import algebra_by_name, from_brackets
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.poisson import PoissonStructure, canonical, declared, frozen, lie_poisson, nambu
+from coadjoint.poisson import (
+    PoissonStructure,
+    canonical,
+    declare_bracket,
+    freeze_bracket,
+    lie_poisson,
+    nambu,
+)
 from coadjoint.poisson.structure import antisymmetric, compatible_sum
 
 NAMES = ["so(3)", "se(3)", "so(4)", "sp(4)", "g(3)", "bargmann", "su(3)", "so(2,1)", "h(2)"]
@@ -80,7 +87,7 @@ def test_a_violation_names_the_triple_and_what_is_left():
     with pytest.raises(
         AlgebraError, match=r"\{x, \{y, z\}\} \+ cyclic = x\^2 \+ y \+ z;"
     ) as caught:
-        declared(field, field.names, {(0, 1): z, (1, 2): x**2 + y, (2, 0): y + z}, "mine")
+        declare_bracket(field, field.names, {(0, 1): z, (1, 2): x**2 + y, (2, 0): y + z}, "mine")
     assert caught.value.triple == ["x", "y", "z"]
     assert "mine" in str(caught.value)
     assert caught.value.defect in str(caught.value)
@@ -103,7 +110,9 @@ def test_constants_with_parameters_are_read_off():
     """[e1, e2] = a e3 and cyclic with parameters satisfies Jacobi for all values."""
     field = Field(["x", "y", "z", "a", "b"])
     x, y, z, a, b = (field[name] for name in field.names)
-    structure = declared(field, ("x", "y", "z"), {(0, 1): a * z, (1, 2): b * x, (2, 0): y / a})
+    structure = declare_bracket(
+        field, ("x", "y", "z"), {(0, 1): a * z, (1, 2): b * x, (2, 0): y / a}
+    )
     assert structure.lie_algebra().dimension == 3
     assert structure.generic_rank() == 2
     assert structure.is_casimir(b * x**2 + y**2 / a + a * z**2)
@@ -113,7 +122,7 @@ def test_constants_with_parameters_are_read_off():
 def test_constant_terms_stand_with_a_central_generator():
     """The affine bracket {q, p} = 1 + q is read as an algebra with one more generator."""
     field = Field(["q", "p"])
-    structure = declared(field, field.names, {(0, 1): 1 + field["q"]})
+    structure = declare_bracket(field, field.names, {(0, 1): 1 + field["q"]})
     assert structure.lie_algebra().basis == ("q", "p", "1")
 
 
@@ -167,7 +176,7 @@ def test_a_compatible_sum_is_poisson():
     for sign in (-1, 1):
         first = lie_poisson(algebra, field, algebra.basis, sign)
         point = [field[p] for p in parameters]
-        total = first + frozen(algebra, field, algebra.basis, point, sign)
+        total = first + freeze_bracket(algebra, field, algebra.basis, point, sign)
         assert (
             total.bracket(field["E12"], field["E13"])
             == first.bracket(field["E12"], field["E13"]) + sign * -field["p3"]
@@ -177,8 +186,8 @@ def test_a_compatible_sum_is_poisson():
 def test_an_incompatible_sum_is_refused():
     """{x, y} = z and {y, z} = y are Poisson one by one, their sum is not."""
     field = Field(["x", "y", "z"])
-    first = declared(field, field.names, {(0, 1): field["z"]})
-    second = declared(field, field.names, {(1, 2): field["y"]}, "other")
+    first = declare_bracket(field, field.names, {(0, 1): field["z"]})
+    second = declare_bracket(field, field.names, {(1, 2): field["y"]}, "other")
     with pytest.raises(AlgebraError, match=r"other: the bracket violates .* cyclic = z;"):
         compatible_sum(first, second)
 

@@ -123,8 +123,91 @@ def test_a_double_bracket_acts_on_the_whole():
     assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.REFUTED
 
 
+#: The oscillators with momenta of coordinates, whose velocities follow, and friction by R.
+RAYLEIGH = (
+    ('routes = ["canonical", "poisson"]', 'routes = ["canonical"]'),
+    ('[poisson]\ncanonical = [["q1", "p1"], ["q2", "p2"]]\n', ""),
+    ('p1 = { role = "coordinate" }', 'p1 = { role = "momentum", of = "q1" }'),
+    (
+        'p2 = { role = "coordinate" }',
+        'p2 = { role = "momentum", of = "q2" }\nv1 = { role = "velocity", of = "q1" }\n'
+        'v2 = { role = "velocity", of = "q2" }',
+    ),
+    ('p1 = "-c*p1 + u*sin(t)"', 'v1 = "u*sin(t)"'),
+    ('p2 = "-c*p2 + u*sin(t)"', 'v2 = "u*sin(t)"\n[dissipation]\nR = "c*(v1^2 + v2^2)/2"'),
+    ("(p1^2 + p2^2)/2 +", "(p1^2 + p2^2)/(2*m) +"),
+    ("[inputs]", "m = { positive = true, default = 2 }\n[inputs]"),
+)
+QUARTIC = ("c*(v1^2 + v2^2)/2", "c*(v1^4 + v2^4)/4")
+UNEVEN = ("c*(v1^2 + v2^2)/2", "c*(v1^2 + 2*v2^2)/2")
+LOST = f"{LAW} and -2 R"
+
+
+@pytest.mark.parametrize(
+    ("more", "law", "friction"),
+    [((), LOST, "c*v"), ((QUARTIC,), f"{LAW} and -<dR/dxi, xi>", "c*v**3")],
+)
+def test_rayleighs_function_acts_on_the_whole(more, law, friction):
+    """By velocities that momenta give: ``q' = v, p' = -q - dR/dv + u sin t``, with v = p/m."""
+    declared = spec(IN_STEP, *RAYLEIGH, *more)
+    found = {claim.statement: claim.verdict for claim in prove(declared).claims}
+    assert set(found.values()) == {Verdict.PROVED}
+    assert law in found
+    q, p, m, u, t = sympy.symbols("q1 p1 m u t")
+    equations = derive(declared)
+    lost = sympy.sympify(friction).subs("v", p / m)
+    wanted = [p / m, -q - lost + u * sympy.sin(t)]
+    assert [sympy.expand(a - b) for a, b in zip(equations.rates, wanted, strict=True)] == [0, 0]
+    assert [equations.observables[name] - p / m for name in ("v1", "v2")] == [0, 0]
+
+
+def test_a_body_about_an_axis_with_friction_in_its_bearing():
+    """Velocities over an algebra: ``I3 w' = -c w``."""
+    velocities = 'w = { role = "velocity", block = ["J3"] }\n'
+    velocities += 'turn = { role = "velocity", block = ["J1", "J2"] }\n'
+    bearing = ('[forces]\nalong = "-c*along"', '[dissipation]\nR = "c*w^2/2 + c*dot(turn, turn)"')
+    declared = spec(ABOUT_AN_AXIS, ("[parameters]", f"{velocities}[parameters]"), bearing)
+    found = {claim.statement: claim.verdict for claim in prove(declared).claims}
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "the energy changes by -2 R" in found
+    along, c, inertia = sympy.symbols("along c I3")
+    assert list(derive(declared).rates) == [-c * along / inertia]
+
+
+def test_uneven_friction_leaves_the_section():
+    """Friction of one oscillator alone parts them; the balance there fails with it."""
+    certificate = prove(spec(IN_STEP, *RAYLEIGH, UNEVEN))
+    false = {each.statement for each in certificate.claims if each.verdict is Verdict.REFUTED}
+    assert {"the motion keeps q2 = q1, p2 = p1", LOST} <= false
+
+
+@pytest.mark.parametrize("factor", [0, 2, -1])
+def test_spoiled_friction_breaks_the_balance_on_the_section(factor, monkeypatch):
+    """R is taken from the spec, not from what the route has added."""
+    added = external.added_rates
+    spoiled = lambda setting: [factor * force for force in added(setting)]  # noqa: E731
+    monkeypatch.setattr(external, "added_rates", spoiled)
+    assert verdicts(IN_STEP, *RAYLEIGH)[LOST] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('section = { q2 = "q1", p2 = "p1" }', 'section = { q2 = "q1", v2 = "p1" }'), "variable"),
+        (('p2 = "p1" }', 'p2 = "m*v1" }'), "'v1' is a velocity"),
+        (('"p1 - p2"]', '"v1 - v2"]'), "'v1' is a velocity"),
+        (("[hamiltonian]", '[lagrangian]\nl = "v1^2"\n[hamiltonian]'), "spec of the whole system"),
+    ],
+)
+def test_a_section_is_over_the_state(change, said):
+    """Velocities follow from it, on the section too."""
+    routes = ('routes = ["canonical"]', 'routes = ["canonical", "euler-lagrange"]')
+    with pytest.raises(SpecError, match=said):
+        spec(IN_STEP, *RAYLEIGH, *([routes] if "lagrangian" in change[1] else []), change)
+
+
 def test_friction_by_rayleighs_function_leads_to_forces():
-    """A restricted motion has no velocities; the advice names what works, as above."""
+    """Where no velocities are declared the advice names what works, as above."""
     rayleigh = ("[forces]", '[dissipation]\nR = "p1^2"\n[forces]')
     with pytest.raises(SpecError, match=r"names no velocity.*along a momentum in \[forces\]"):
         spec(IN_STEP, rayleigh)

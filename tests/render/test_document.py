@@ -15,7 +15,9 @@ from coadjoint.derive.document import ADDENDS, document, formula, formula_line
 from coadjoint.derive.records import symbol
 from coadjoint.exact import Field
 from coadjoint.render.document import FORMATS, WIDTH, latex_escaped, render_document
-from tests.specs import shipped
+from tests.constrained import PARTICLE
+from tests.prove.test_declared_charts import PLANE, RATES
+from tests.specs import RIGID_BODY, shipped, spec
 
 ESCAPED = {"text": str, "latex": latex_escaped, "html": escape}
 HOSTILE = (
@@ -208,3 +210,47 @@ def test_paragraphs_of_the_text_fit_whatever_their_line_breaks():
     assert max(map(len, text.splitlines())) <= WIDTH
     assert text.count("words") == 80
     assert "\n      words" in text  # the law, under itself
+
+
+def sections(text, *changes):
+    """The sections of a document by their titles: lines as text, then words."""
+    found = document(derive(spec(text, *changes))).sections
+    return {each.title: ([line.text for line in each.lines], each.words) for each in found}
+
+
+def test_observables_are_shown():
+    """As they are declared, with their units; momentum maps and momenta by their values."""
+    declared = (
+        '[observables]\nspin = { expression = "Pi3", unit = "kg m^2/s" }\nt2 = "dot(Pi, Pi)"\n'
+    )
+    lines, words = sections(RIGID_BODY, ("[claims]", f"{declared}[claims]"))["Observables"]
+    assert lines == []
+    assert words == (
+        ("casimir1", "= dot(Pi, Pi)"),
+        ("spin", "= Pi3 (kg m^2/s)"),
+        ("t2", "= dot(Pi, Pi)"),
+    )
+    lines, words = sections(PARTICLE + '[momenta]\nalong = { section = { u = "1" } }\n')[
+        "Observables"
+    ]
+    assert (lines, words) == (["along = y*w*m + u*m"], ())
+    assert "Observables" not in sections(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', ""))
+
+
+def test_declared_charts_are_shown():
+    """The map, what is zero in the chart, and its motion, in every format."""
+    shown = sections(PLANE, ("MOTION", f'where = ["r*L - L*r"]{RATES}'))
+    lines, words = shown["Chart polar"]
+    assert lines == [
+        "x1 = r*cos(phi)",
+        "x2 = r*sin(phi)",
+        "p1 = pr*cos(phi) - L*sin(phi)/r",
+        "p2 = pr*sin(phi) + L*cos(phi)/r",
+    ]
+    assert words == (("r*L - L*r = 0", "throughout"),)
+    assert shown["Motion in the chart"][0][:2] == ["dr/dt = pr/m", "dphi/dt = L/(m*r^2)"]
+    spoiled = sections(PLANE, ("MOTION", RATES.replace("pr/m", "2*pr/m")))
+    assert spoiled["Motion in the chart"][0][0] == "dr/dt = 2*pr/m"
+    whole = asdict(document(derive(spec(PLANE, ("MOTION", RATES)))))
+    for form in FORMATS:
+        assert "Chart polar" in render_document(whole, form)

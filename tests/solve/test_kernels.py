@@ -1,8 +1,11 @@
 """Kernels: who computes, in which pieces, and how a stand-in is announced."""
 
+import gc
 import shutil
 import stat
 import warnings
+import weakref
+from functools import partial
 from time import process_time
 
 import numpy as np
@@ -11,10 +14,12 @@ import pytest
 from coadjoint.build import compiler
 from coadjoint.build.compiler import CompilerWarning, find_compiler
 from coadjoint.errors import OutputError
+from coadjoint.render.targets import BUILDS
 from coadjoint.render.targets.c import loader
+from coadjoint.render.targets.protocol import FEW
 from coadjoint.solve import kernels
 from coadjoint.solve.system import load_folder
-from coadjoint.systems import heavy_top, kirchhoff, rigid_body
+from coadjoint.systems import heavy_top, kirchhoff, quadrotor, rigid_body
 from tests.solve.systems import pendulum
 
 
@@ -95,6 +100,73 @@ def test_large_batches_are_computed_in_pieces(monkeypatch, size):
         out = np.zeros_like(expected)
         kirchhoff.bind("jacobian", state, parameters, out=out)()
         assert np.array_equal(out, expected)
+
+
+@pytest.mark.parametrize("target", list(BUILDS))
+@pytest.mark.parametrize("system", [heavy_top.system, quadrotor.system], ids=lambda s: s.name)
+def test_a_ready_state_gives_what_the_checks_give(system, target):
+    """The second call of each function with defaults takes the short way: the same bits."""
+    source = np.random.default_rng(2)
+    for function in system.functions:
+        for batch in ((), (1,), (7,), (2, 3)):
+            state = source.uniform(0.5, 2.0, (system.rows(function).size, *batch))
+            evaluate = partial(getattr(system, function), target=target)
+            expected = evaluate(state, system.pack())
+            evaluate(state)
+            ready = system._kernels.ready[function, target](state)
+            assert (ready is None) == (batch == (2, 3))
+            assert np.array_equal(evaluate(state), expected, equal_nan=True)
+            assert ready is None or np.array_equal(ready, expected, equal_nan=True)
+            assert evaluate(state) is not evaluate(state)
+
+
+@pytest.mark.parametrize(
+    "state",
+    [
+        [1.0, 2.0, 3.0],
+        np.ones(3, dtype=np.float32),
+        np.ones(3, dtype=">f8"),
+        np.ones(6)[::2],
+        np.ones((4, 3)).T,
+        np.broadcast_to(np.ones((3, 1)), (3, 2)),
+        np.ones((3, 0)),
+        np.ones((3, FEW + 1)),
+        np.ones((3, 1, 2)),
+        np.ones((1, 3)),
+        np.ones(4),
+        np.float64(1.0),
+        np.ma.masked_array(np.ones(3)),
+        np.ones(3).view(np.matrix),
+        None,
+    ],
+    ids=str,
+)
+def test_the_short_way_is_for_ready_arrays_alone(state):
+    """Whatever else is passed goes through the checks, and is converted or refused there."""
+    rigid_body.rhs(np.ones(3))
+    ready = rigid_body.system._kernels.ready["rhs", "c"]
+    assert ready(state) is None
+    assert ready(np.ones(3)).tolist() == rigid_body.rhs([1.0, 1.0, 1.0]).tolist()
+
+
+def test_a_kernel_that_is_loaded_anew_is_what_the_short_way_calls(fresh):
+    """Nothing of the kernel before stays."""
+    system = fresh(rigid_body)
+    system.rhs(np.ones(3), target="numpy")
+    assert system._kernels.ready
+    system.load_kernels(["numpy"])
+    assert not system._kernels.ready
+
+
+def test_a_short_call_keeps_no_batch_alive():
+    """A first call with a large batch leaves nothing of it behind."""
+    state = np.ones((6, 100_001))
+    before = weakref.ref(state)
+    kirchhoff.energy(state)
+    del state
+    gc.collect()
+    assert before() is None
+    assert ("energy", "c") in kirchhoff.system._kernels.ready
 
 
 def test_one_call_is_short_enough_to_be_interrupted():

@@ -9,7 +9,14 @@ import pytest
 from coadjoint.algebra import algebra_by_name, from_brackets, semidirect_product
 from coadjoint.algebra.catalogue import representation_by_name
 from coadjoint.exact import Field
-from coadjoint.poisson import PoissonStructure, canonical, declared, lie_poisson, magnetic, nambu
+from coadjoint.poisson import (
+    PoissonStructure,
+    canonical,
+    declare_bracket,
+    lie_poisson,
+    magnetic,
+    nambu,
+)
 from coadjoint.poisson.casimirs import casimirs
 from coadjoint.poisson.structure import antisymmetric
 from tests.sources.bodies import rigid_body_rates
@@ -267,7 +274,7 @@ def test_c_4_momentum_bracket_of_sp2():
     assert plane.bracket(named[1], named[2]) == -2 * named[1]
     assert plane.bracket(named[2], named[0]) == -2 * named[0]
     reduced = {(0, 1): 4 * X[2], (1, 2): -2 * X[1], (2, 0): -2 * X[0]}
-    structure = declared(field, triples("X"), reduced)
+    structure = declare_bracket(field, triples("X"), reduced)
     (found,) = casimirs(structure).generators
     assert found == X[0] * X[1] - X[2] ** 2
     assert not structure.is_casimir(X[0] * X[1] + X[2] ** 2)
@@ -283,7 +290,7 @@ def test_c_4_a_momentum_bracket_with_another_sign_has_another_casimir():
     field = Field(triples("X"))
     X = symbols(field, "X")[0]
     brackets = {(0, 1): -4 * X[2], (1, 2): -2 * X[1], (2, 0): -2 * X[0]}
-    assert not declared(field, field.names, brackets).is_casimir(X[0] * X[1] - X[2] ** 2)
+    assert not declare_bracket(field, field.names, brackets).is_casimir(X[0] * X[1] - X[2] ** 2)
 
 
 def test_3_1_39_monopole():

@@ -1,9 +1,12 @@
 """Complex rigid bodies, Holm (2011), appendix C.1.2: the book's formulas, then spoiled."""
 
+from dataclasses import replace
+
 import pytest
 import sympy
 
 from coadjoint.derive import derive
+from coadjoint.derive.routes import complexification
 from coadjoint.prove import prove
 from tests.sources.components import cross, dot, plus, times
 from tests.specs import shipped, spec
@@ -128,3 +131,24 @@ def test_C_1_2_another_level_of_c_is_another_motion():
     other = spec(TEXT, ("dot(y, y) - 1", "dot(y, y) - 2"), ("dot(x, x) - 1)/", "dot(x, x) - 2)/"))
     assert prove(other).holds
     assert not same([rate.subs(BOOK) for rate in derive(other).rates], book_rates())
+
+
+@pytest.mark.parametrize("route", ["lie-poisson", "complexification"])
+def test_C_1_2_right_invariance_runs_the_other_way(route, monkeypatch):
+    """dL/dt = KL x L from the right, at complex momenta; a route that forgets the side is found."""
+    right = spec(WHOLE, ('invariance       = "left"', 'invariance       = "right"'))
+    rates = derive(right, route).rates
+    L = [x + sympy.I * y for x, y in zip(X, Y, strict=True)]
+    moved = [sympy.expand(-z) for z in cross(L, by(K, L))]
+    found = [a + sympy.I * b for a, b in zip(rates[:3], rates[3:], strict=True)]
+    assert [sympy.expand(a - b) for a, b in zip(found, moved, strict=True)] == [0, 0, 0]
+    assert prove(right).holds
+    follow = complexification.derive
+
+    def forgetful(setting):
+        whole = follow(setting)
+        turned = replace(whole.exact, rates=tuple(-rate for rate in whole.exact.rates))
+        return replace(whole, exact=turned)
+
+    monkeypatch.setattr(complexification, "derive", forgetful)
+    assert not prove(right).holds

@@ -14,8 +14,13 @@ from coadjoint.algebra import algebra_by_name
 from coadjoint.exact import Field
 from coadjoint.exact.dense import add, apply, cross, dot, product, scale, subtract, transpose
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.lifts import cotangent_lift, jacobian
-from coadjoint.groups.vector_fields import VectorField, exterior_derivative, lie_derivative
+from coadjoint.groups.vector_fields import (
+    VectorField,
+    cotangent_lift,
+    exterior_derivative,
+    jacobian,
+    lie_derivative,
+)
 from coadjoint.theory.charts import (
     chart_velocity,
     north_chart,

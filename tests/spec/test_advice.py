@@ -32,6 +32,19 @@ x = { role = "coordinate", shape = [3] }
 L = "hat(x)"
 M = "hat(vector(x1, 2*x2, 3*x3))"
 """
+#: A velocity in a state that a Hamiltonian moves.
+MASSLESS = """
+title = "An oscillator whose bracket is declared"
+routes = ["poisson"]
+[poisson]
+canonical = [["q", "v"]]
+[variables]
+q = { role = "coordinate" }
+v = { role = "velocity", of = "q" }
+[hamiltonian]
+h = "v^2/2 + q^2/2"
+[claims]
+"""
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
 ONE = 'routes = ["euler-poincare"]'
@@ -175,6 +188,29 @@ ADVICE = [
         write("[hamiltonian]", '[dissipation]\nR = "dot(Pi, Pi)"\n[hamiltonian]'),
         "Write what acts along a momentum in [forces].",
         write('[dissipation]\nR = "dot(Pi, Pi)"', '[forces]\nPi = "-Pi"'),
+    ),
+    (
+        PARTICLE,
+        before_claims(
+            '[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\ngenerators = { x = "s" }\ntime = "s"'
+        ),
+        "Remove time: the balance of the energy is proved of every motion.",
+        write('\ntime = "s"', ""),
+    ),
+    (
+        MASSLESS,
+        write(END, '[forces]\nv = "-v"\n[claims]'),
+        'Write v = { role = "coordinate" } in [variables], and in [forces] what is added to its',
+        write('"velocity", of = "q"', '"coordinate"'),
+    ),
+    (
+        MASSLESS,
+        write(END, '[dissipation]\nR = "v^2"\n[claims]'),
+        'Write v = { role = "coordinate" } in [variables], and in [forces] what is added to its',
+        [
+            ('"velocity", of = "q"', '"coordinate"'),
+            ('[dissipation]\nR = "v^2"', '[forces]\nv = "-v"'),
+        ],
     ),
     (
         MOMENTA_ONLY,
@@ -447,7 +483,7 @@ ADVICE = [
     (
         PARTICLES,
         write('matrix     = "A"', 'matrix     = "A"\nform = "matrix"'),
-        "Remove form.",
+        "Remove form, or choose another algebra.",
         write('\nform = "matrix"', ""),
     ),
     (

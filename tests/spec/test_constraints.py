@@ -195,7 +195,6 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
     assert list_names(["euler-poincare", "lie-poisson"]) in str(caught.value)
 
 
-SYMMETRY = '[symmetries.J]\nalgebra = "R"\nvector = "c"\ngenerators = { v = "c*k" }'
 KEPT = ('"w == y*u"', '"2*w == y*u"')
 
 
@@ -204,11 +203,10 @@ KEPT = ('"w == y*u"', '"2*w == y*u"')
     [
         (PARTICLE, (KEPT,), 'casimirs = ["k*m"]', "claims of Casimirs"),
         (PARTICLE, (KEPT,), 'brackets = { "{u, v}" = "k" }', "claims of brackets"),
-        (SLEIGH, (), SYMMETRY, "[symmetries]"),
     ],
 )
 def test_what_rests_on_a_bracket_is_refused(text, changes, table, found):
-    """Casimirs and brackets where constraints give no velocity, symmetries; [momenta] is named."""
+    """Casimirs and brackets where constraints give no velocity; [momenta] is named."""
     with pytest.raises(SpecError, match="with \\[constraints\\]") as caught:
         spec(text + table, *changes)
     assert f"there are {found} with [constraints]" in str(caught.value)

@@ -26,7 +26,7 @@ def test_a_pair_is_read():
         (('"M + lambda*diag(a)^2"', '"dot(a, a)"'), "lax.L", "a scalar", "a square matrix"),
         (('"M + lambda*diag(a)^2"', '"a"'), "lax.L", "a 4-vector", "a square matrix"),
         (('"Omega + lambda*diag(a)"', '"hat(rows(a, a)*a)"'), "lax.M", "", "hat"),
-        (('"Omega + lambda*diag(a)"', '"diag(rows(a, a)*a)"'), "lax.M", "2 by 2", "of one size"),
+        (('"Omega + lambda*diag(a)"', '"diag(rows(a, a)*a)"'), "lax.M", "2 by 2", "as L is"),
         (('"M + lambda*diag(a)^2"', '"Omega + M"'), "lax.L", "Omega", "is a velocity"),
         (('"Omega + lambda*diag(a)"', '"Omega + mu*M"'), "lax.M", "mu", "not declared"),
         (('= "lambda"', '= "Omega"'), "lax.spectral", "Omega", "spectral parameter"),

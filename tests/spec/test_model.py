@@ -6,7 +6,7 @@ from itertools import combinations
 import pytest
 
 from coadjoint.exact import Field
-from coadjoint.spec.model import FORMS, Variable, component_names, matrix_size, unpacked
+from coadjoint.spec.model import FORMS, Variable, component_names, matrix_size, unpack
 
 
 @pytest.mark.parametrize("size", range(2, 13))
@@ -43,28 +43,28 @@ def check_symmetric(rows):
 def test_unpacked_matrices_have_the_form(count):
     """Above the diagonal, or with it, row by row; the components' names say the same places."""
     values = [Fraction(n + 1, 7) for n in range(count)]
-    check_antisymmetric(unpacked(values, "antisymmetric"))
+    check_antisymmetric(unpack(values, "antisymmetric"))
     for form in ("antisymmetric", "symmetric"):
-        rows = unpacked(values, form)
+        rows = unpack(values, form)
         for name, value in zip(component_names("M", (count,), form), values, strict=True):
             assert rows[int(name[1]) - 1][int(name[2]) - 1] == value
     if count > 1:
-        check_symmetric(unpacked(values, "symmetric"))
+        check_symmetric(unpack(values, "symmetric"))
     with pytest.raises(AssertionError):
-        check_antisymmetric(unpacked(values, "symmetric"))
+        check_antisymmetric(unpack(values, "symmetric"))
     if count > 1:
         with pytest.raises(AssertionError):
-            check_symmetric(unpacked(values, "antisymmetric"))
+            check_symmetric(unpack(values, "antisymmetric"))
 
 
 def test_unpacking_takes_any_values():
     """Elements of a field, whose zero stands on the diagonal, and a matrix row by row."""
     field = Field(["a", "b", "c"])
-    rows = unpacked(field.vector([field["a"], field["b"], field["c"]]), "antisymmetric")
+    rows = unpack(field.vector([field["a"], field["b"], field["c"]]), "antisymmetric")
     check_antisymmetric(rows)
     assert rows[2][0] == -field["b"]
     assert rows[1][1] == field.zero
-    assert unpacked([1, 2, 3, 4], "matrix") == ((1, 2), (3, 4))
+    assert unpack([1, 2, 3, 4], "matrix") == ((1, 2), (3, 4))
 
 
 def test_names_of_packed_components():

@@ -10,9 +10,9 @@ import pytest
 
 from coadjoint.spec.core.names import (
     NAME,
-    better,
     derived_names,
     refusal,
+    suggest_name,
     system_refusal,
 )
 from coadjoint.spec.core.shapes import FUNCTIONS
@@ -122,7 +122,7 @@ def test_rates_have_names_of_their_own():
 @pytest.mark.parametrize("name", ["state", "M_PI", "casimir1", "int", "norm", "lambda"])
 def test_better_name_is_free(name):
     """A suggestion is never refused in turn."""
-    assert refusal(better(name)) is None
+    assert refusal(suggest_name(name)) is None
 
 
 def test_system_names():

@@ -20,7 +20,7 @@ from coadjoint.derive.interpret import interpret
 from coadjoint.errors import CoadjointError, LimitError, SpecError, plain
 from coadjoint.exact import Field
 from coadjoint.resources import derivations_folder
-from coadjoint.spec import read_spec, read_spec_text, unpacked
+from coadjoint.spec import read_spec, read_spec_text, unpack
 from tests.sources.textbook import PARAMETERS, STATES
 from tests.specs import RIGID_BODY, shipped
 
@@ -208,7 +208,7 @@ def check_casimirs(spec):
         parts = field.vector(field[c] for c in quantity.components)
         values[quantity.name] = parts if quantity.shape else parts[0]
         if getattr(quantity, "form", ""):
-            values[quantity.name] = unpacked(parts, quantity.form)
+            values[quantity.name] = unpack(parts, quantity.form)
     places = [place for variable in spec.state for place in variable.block]
     components = [c for variable in spec.state for c in variable.components]
     named = dict(zip(places, components, strict=True))

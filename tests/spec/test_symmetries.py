@@ -77,7 +77,7 @@ def test_the_form_of_a_momentum_map():
         (('q = "A*q"', 'q = "A"'), "a 3 by 3 matrix", "as 'q' is"),
         (('q = "A*q"', 'x = "A*q"'), "'x'", "q, p, S"),
         (('matrix     = "A"', 'matrix     = "m"'), "'m'", "nothing else has"),
-        (('matrix     = "A"', 'form = "matrix"\nmatrix = "A"'), "3 components", "as many"),
+        (('matrix     = "A"', 'form = "matrix"\nmatrix = "A"'), "3 components", "n^2"),
         (('matrix     = "A"', ""), "symmetries.J", "vector or matrix"),
         (("[symmetries.J]", "[symmetries.q]"), "'q'", "differ"),
         (('["q", "p"]\n[trans', '["q"]\n[trans'), "3 components", "6 components"),

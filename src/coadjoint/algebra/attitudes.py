@@ -11,8 +11,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
-from coadjoint.algebra.matrices import Matrix, kronecker, size
-from coadjoint.algebra.representation import Representation, defining
+from coadjoint.algebra.matrices import size
+from coadjoint.algebra.representation import Representation, defining, two_sided
 from coadjoint.errors import AlgebraError
 
 #: [e1, e2] = e3 and cyclic: so(3), and su(2) in the basis of half the Pauli matrices.
@@ -33,14 +33,10 @@ def attitude(algebra: LieAlgebra, invariance: str = "left") -> Representation:
     12
     """
     matrices = defining(algebra, "attitude").matrices
-    n = size(matrices)
     if invariance == "right":
-        acting = tuple(kronecker(X, _identity(n), n) for X in matrices)
-        return Representation(algebra, "attitude", n * n, acting)
-    ones = _identity(n - 1 if has_fixed_row(algebra) else n)
-    turned = ({(c, r): -x for (r, c), x in X.items()} for X in matrices)
-    acting = tuple(kronecker(ones, X, n) for X in turned)
-    return Representation(algebra, "attitude", len(ones) * n, acting)
+        return two_sided(algebra, "attitude", matrices, ())
+    height = size(matrices) - has_fixed_row(algebra)
+    return two_sided(algebra, "attitude", (), matrices, height)
 
 
 def has_fixed_row(algebra: LieAlgebra) -> bool:
@@ -102,7 +98,3 @@ def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:
         unit = {(1 + axis, 0): 1, (0, 1 + axis): -1, (k, j): side, (j, k): -side}
         acting[place] = {entry: half * x for entry, x in unit.items()}
     return Representation(algebra, "quaternion", 4, tuple(acting))
-
-
-def _identity(n: int) -> Matrix:
-    return {(i, i): 1 for i in range(n)}

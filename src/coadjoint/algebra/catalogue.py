@@ -131,7 +131,7 @@ def algebra_by_name(name: str, most: int = GENERATORS) -> LieAlgebra:
         if result:
             sizes = tuple(map(int, result.groups()))
             _check_sizes(name, family, sizes, most)
-            return _built(family, sizes)
+            return _build(family, sizes)
     near = get_close_matches(name, (*CATALOGUE, *ALIASES), n=3)
     hint = "Declare it by brackets or matrices."
     if near:
@@ -145,7 +145,7 @@ def algebra_by_name(name: str, most: int = GENERATORS) -> LieAlgebra:
 
 
 @cache
-def _built(family: Family, sizes: tuple[int, ...]) -> LieAlgebra:
+def _build(family: Family, sizes: tuple[int, ...]) -> LieAlgebra:
     return family.build(*sizes)
 
 

@@ -52,7 +52,7 @@ def _rotations(n: int) -> Generators:
 
 
 def _columns(letter: str, n: int, column: int) -> Generators:
-    """``e_i`` in one column beside an n x n block."""
+    """``e_i`` in one column next to an n x n block."""
     return ((f"{letter}{i + 1}", unit(i, column)) for i in range(n))
 
 

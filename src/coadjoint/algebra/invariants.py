@@ -80,9 +80,7 @@ class Invariants:
                     "constants. Put numbers for the parameters with `over`.",
                     found=str(c),
                 )
-        squares = _diagonal(self.killing_form())
-        plus, minus = sum(x > 0 for x in squares), sum(x < 0 for x in squares)
-        return plus, minus, self.dimension - plus - minus
+        return signature(self.killing_form())
 
     # -- ideals ---------------------------------------------------------------------------
 
@@ -217,6 +215,17 @@ class Invariants:
                 rows[i][j] = rows[i].get(j, 0) + c * mu[k]
             largest = max(largest, rank_modulo(rows, prime) if rational else Span(rows).rank)
         return largest
+
+
+def signature(form: Sequence[Sequence[Any]]) -> tuple[int, int, int]:
+    """How many squares of a symmetric form are positive, negative and zero.
+
+    >>> signature([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
+    (1, 1, 1)
+    """
+    squares = _diagonal(form)
+    plus = sum(x > 0 for x in squares)
+    return plus, len(squares) - plus, len(form) - len(squares)
 
 
 def _diagonal(form: Sequence[Sequence[Any]]) -> list[Any]:

@@ -58,8 +58,8 @@ def semidirect_product(
             the product with their direct sum.
         name: Name of the product; by default ``g (s) R^n``.
 
-    The matrices are affine, ``[[rho(xi), u], [0, 0]]``, with those of g beside them if rho alone
-    does not tell all of g apart.
+    The matrices are affine, ``[[rho(xi), u], [0, 0]]``, with those of g as a further block
+    if rho alone does not tell all of g apart.
 
     Raises:
         AlgebraError: A representation is one of another algebra.
@@ -95,7 +95,7 @@ def semidirect_sum(
         name: Name of the sum.
 
     Matrices are affine where g2 is abelian, else the adjoint representation of the sum, with those
-    of g1 beside it if need be; where the center of g2 spoils this, there are none.
+    of g1 as a further block if need be; where the center of g2 spoils this, there are none.
 
     Raises:
         AlgebraError: The action is not one of g1 on g2, or not by derivations:
@@ -125,8 +125,8 @@ def semidirect_sum(
         ) from error
     if ideal.is_abelian:
         return with_matrices(whole, _affine(acting, [action]))
-    beside = (*acting.matrices, *_zeros(ideal.dimension))
-    own = block_diagonal([beside, adjoint(whole).matrices]) if acting.matrices else ()
+    padded = (*acting.matrices, *_zeros(ideal.dimension))
+    own = block_diagonal([padded, adjoint(whole).matrices]) if acting.matrices else ()
     return with_matrices(whole, first_faithful([adjoint(whole).matrices, own]))
 
 
@@ -177,8 +177,8 @@ def _affine(
         zeros = _zeros(before), _zeros(extra - before - n)
         parts.append((*representation.matrices, *zeros[0], *moves, *zeros[1]))
         before += n
-    beside = (*algebra.matrices, *_zeros(extra))
-    wider = [*parts, beside] if algebra.matrices else parts
+    padded = (*algebra.matrices, *_zeros(extra))
+    wider = [*parts, padded] if algebra.matrices else parts
     return first_faithful(block_diagonal(blocks) for blocks in (parts, wider))
 
 

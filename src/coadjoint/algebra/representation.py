@@ -137,11 +137,7 @@ def defining(algebra: LieAlgebra, name: str = "vector") -> Representation:
 
 def columns(algebra: LieAlgebra) -> Representation:
     """``A -> X A`` on n x n matrices A, row by row: n copies of the defining representation."""
-    vectors = defining(algebra, "columns")
-    n = vectors.dimension
-    identity = {(i, i): 1 for i in range(n)}
-    matrices = tuple(kronecker(X, identity, n) for X in vectors.matrices)
-    return Representation(algebra, "columns", n * n, matrices)
+    return two_sided(algebra, "columns", defining(algebra, "columns").matrices, ())
 
 
 def rows(algebra: LieAlgebra) -> Representation:
@@ -157,6 +153,7 @@ def two_sided(
     name: str,
     left: Sequence[SparseMatrix],
     right: Sequence[SparseMatrix],
+    height: int = 0,
 ) -> Representation:
     """``A -> L A - A R`` on matrices A, row by row: how ``A = A1^-1 A2`` sees both bodies turn.
 
@@ -165,13 +162,14 @@ def two_sided(
         name: Name of the representation.
         left: L of each basis vector, or none: A is square then.
         right: R of each basis vector, or none.
+        height: Rows of A where there is no L; by default as many as R has.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> turn = algebra_by_name("so(2)").matrices
     >>> two_sided(algebra_by_name("so(2)"), "both", turn, turn).act([1], [1, 0, 0, 1])
     (0, 0, 0, 0)
     """
-    height, width = size(left or right), size(right or left)
+    height, width = height or size(left or right), size(right or left)
     ones = {n: {(i, i): 1 for i in range(n)} for n in (height, width)}
     matrices: list[Matrix] = [{} for _ in algebra.basis]
     for matrix, L in zip(matrices, left, strict=False):

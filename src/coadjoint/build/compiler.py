@@ -7,8 +7,10 @@ waits for them: at once on Ctrl-C, and when this process is killed (`coadjoint.b
 
 from __future__ import annotations
 
+import errno
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -24,10 +26,11 @@ from pathlib import Path
 from threading import Lock
 
 from coadjoint.build import warden
-from coadjoint.errors import CompilerError, remedy_for
+from coadjoint.errors import CompilerError, errno_of, remedy_for
 from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
 
 CANDIDATES = ("cc", "gcc", "clang")
+ANOTHER = "Set CC to another compiler."
 HOW_TO_GET_ONE = "Install one: `apt install gcc`, or `pip install 'coadjoint[c]'` anywhere."
 #: What ``CC`` may be: a name or path; a leading - or @ would be an option of another program.
 _PLAIN_PROGRAM = re.compile(r"[A-Za-z0-9_./+][A-Za-z0-9_./+-]*")
@@ -48,9 +51,55 @@ _GNU = (
 )
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
-#: A second file of every object: the name of its build, which the loader reads.
-LABEL = "coadjoint_build"
-_LABEL = 'extern const char {label}[];\nconst char {label}[] = "{build}";\n'
+#: Names in the second file of every object: of its build, and of the two ways to call a kernel.
+LABEL, CALL, CALL_AT = "coadjoint_build", "coadjoint_call", "coadjoint_call_at"
+#: That file. Converting one argument takes ctypes less time than converting seven or more, so that
+#: arguments are packed: function, number of arrays, members, then place and stride of each array,
+#: the state first and the result last (docs/decisions/loading.md has the figures).
+SUPPORT = """#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+typedef const double *in;
+typedef void kernel3(size_t, in, size_t, in, size_t, double *, size_t);
+typedef void kernel4(size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
+typedef void kernel5(size_t, in, size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
+
+extern const char coadjoint_build[];
+const char coadjoint_build[] = "BUILD";
+
+void coadjoint_call(const uintptr_t *);
+void coadjoint_call_at(const uintptr_t *, size_t, in, double *);
+
+void coadjoint_call(const uintptr_t *c)
+{
+    const uintptr_t *a = c + 3;
+    switch (c[1]) {
+    case 3:
+        ((kernel3 *)c[0])(c[2], (in)a[0], a[1], (in)a[2], a[3], (double *)a[4], a[5]);
+        break;
+    case 4:
+        ((kernel4 *)c[0])(
+            c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (double *)a[6], a[7]);
+        break;
+    default:
+        ((kernel5 *)c[0])(
+            c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (in)a[6], a[7],
+            (double *)a[8], a[9]);
+    }
+}
+
+/* The same at another state of so many members, with another result. */
+void coadjoint_call_at(const uintptr_t *c, size_t members, in state, double *out)
+{
+    uintptr_t own[13], last = 2 * c[1] + 1;
+    memcpy(own, c, (last + 2) * sizeof *own);
+    own[2] = own[4] = own[last + 1] = members;
+    own[3] = (uintptr_t)state;
+    own[last] = (uintptr_t)out;
+    coadjoint_call(own);
+}
+"""
 #: What a driver says of a program that ran out of processor time.
 _OUT_OF_TIME = "CPU time limit exceeded"
 #: Seconds in which a compiler tells its version.
@@ -159,9 +208,10 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     """
     status, output = _run((*command, "--version"), Path("/"), VERSION_SECONDS, VERSION_SECONDS)
     if status != 0 or not output.strip():
+        said = _with_signal(output, status)
         raise CompilerError(
             f"{' '.join(command)} --version ended with status {status} and said "
-            f"{output.strip()[:200]!r}; expected a version. Set CC to a working compiler.",
+            f"{output.strip()[:200]!r}; expected a version. {_advise(said)}",
             found=command[0],
             status=status,
         )
@@ -180,10 +230,11 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
         CompilerError: The compiler failed, hung, or made no shared object.
     """
     result = folder / "kernel.so"
-    label = _LABEL.format(label=LABEL, build=build)
-    (folder / "build.c").write_text(label, encoding="ascii")
+    (folder / "build.c").write_text(SUPPORT.replace("BUILD", build), encoding="ascii")
     status, output = _attempt(compiler, folder, build, native=True)
-    if status != 0 and _attempt(compiler, folder, build, native=False)[0] == 0:
+    said = _with_signal(output, status)
+    failed_itself = status != 0 and not errno_of(said)  # and met no limit
+    if failed_itself and _attempt(compiler, folder, build, native=False)[0] == 0:
         status = 0  # some compilers and machines do not know -march=native
         warnings.warn(
             f"{compiler.command[0]} refuses {_NATIVE}; kernels are compiled without it, which may "
@@ -194,14 +245,13 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
     if status != 0:
         raise CompilerError(
             f"{compiler.command[0]} failed on kernel.c with status {status}: "
-            f"{output.strip()[:600] or 'no output'}. Set CC to another compiler.",
+            f"{output.strip()[:600] or 'no output'}. {_advise(said)}",
             found=compiler.command[0],
             status=status,
         )
     if not result.is_file() or result.read_bytes()[:4] not in _MAGIC:
         raise CompilerError(
-            f"{compiler.command[0]} exited with status 0 but produced no shared object. "
-            "Set CC to another compiler.",
+            f"{compiler.command[0]} exited with status 0 but produced no shared object. {ANOTHER}",
             found=compiler.command[0],
             status=0,
         )
@@ -295,8 +345,9 @@ def _run(
             _running.add(process)
         try:
             output = process.communicate(timeout=wall_seconds)[0].decode(errors="replace")
-        except subprocess.TimeoutExpired:
-            raise _timeout_error(command, wall_seconds, "") from None
+        except subprocess.TimeoutExpired as error:
+            said = (error.output or b"").decode(errors="replace")
+            raise _timeout_error(command, wall_seconds, "", _advise(said)) from None
         finally:
             with _lock:
                 _running.discard(process)
@@ -305,8 +356,7 @@ def _run(
             raise _interruption_error(command)
     except OSError as error:
         raise CompilerError(
-            f"{command[0]} could not be started: {error.strerror}. "
-            f"{remedy_for(error) or 'Set CC to another compiler.'}",
+            f"{command[0]} could not be started: {error.strerror}. {remedy_for(error) or ANOTHER}",
             found=command[0],
         ) from error
     finally:
@@ -314,15 +364,35 @@ def _run(
             if end >= 0:
                 os.close(end)
     if process.returncode == 128 + signal.SIGXCPU or _OUT_OF_TIME in output:
-        raise _timeout_error(command, seconds, " of processor time")
+        most = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        kind, advice = " of processor time", ANOTHER
+        if 0 <= most < seconds:  # RLIM_INFINITY is -1 on some systems
+            seconds, advice = most, "Raise the limit of processor time (ulimit -t)."
+        raise _timeout_error(command, seconds, kind, advice)
     return process.returncode, output
 
 
-def _timeout_error(command: tuple[str, ...], seconds: int, kind: str) -> CompilerError:
+def _with_signal(output: str, status: int) -> str:
+    """What a compiler said, and the name of the signal that ended it."""
+    return f"{output}\n{signal.strsignal(status - 128)}" if status > 128 else output
+
+
+def _advise(said: str) -> str:
+    """What to do: against the limit that a compiler spoke of, else take another compiler."""
+    if errno_of(said) == errno.ENOMEM:
+        most = COMPILE_BYTES / 2**30
+        return (
+            f"{remedy_for(said)} A compiler may take {most:.3g} GiB; a smaller system needs less."
+        )
+    return remedy_for(said) or ANOTHER
+
+
+def _timeout_error(
+    command: tuple[str, ...], seconds: float, kind: str, advice: str
+) -> CompilerError:
     """The compiler took too long."""
     return CompilerError(
-        f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped. "
-        "Set CC to another compiler.",
+        f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped. {advice}",
         found=command[0],
         limit=seconds,
     )

@@ -12,7 +12,7 @@ import hashlib
 import json
 import platform
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
@@ -20,15 +20,19 @@ from typing import Any
 
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
-from coadjoint.build.compiler import LABEL, Compiler, compile_kernel, find_compiler
-from coadjoint.errors import CompilerError, OutputError
+from coadjoint.build.compiler import (
+    ANOTHER,
+    CALL,
+    CALL_AT,
+    LABEL,
+    SUPPORT,
+    Compiler,
+    compile_kernel,
+    find_compiler,
+)
+from coadjoint.errors import CompilerError, OutputError, remedy_for, system_error
 
 _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
-#: An array: where it is, and its stride.
-_ARRAY = (_ADDRESS, _SIZE)
-#: count, state, state_stride, parameters, parameters_stride, out, out_stride; inputs and time, with
-#: their strides, before out.
-_LEAST = 7
 
 
 class Library:
@@ -50,53 +54,56 @@ class Library:
         try:
             # CDLL, not PyDLL: calls release the interpreter lock.
             self._handle = ctypes.CDLL(str(path))
-            carried = {
-                what: self._text(symbol, expected)
-                for what, symbol, expected in (
-                    ("id", f"{name}_id", identity),
-                    ("build", LABEL, build),
-                )
-            }
-        except (OSError, ValueError) as error:
+            labels = [("id", f"{name}_id", identity), ("build", LABEL, build)]
+            carried = [(what, self._text(each, wanted), wanted) for what, each, wanted in labels]
+            self._call, self._call_at = self._handle[CALL], self._handle[CALL_AT]
+        except (OSError, ValueError, AttributeError) as error:
             raise CompilerError(
                 f"the compiled kernel of {name} cannot be loaded: {error}. "
-                "Set CC to another compiler.",
+                f"{remedy_for(str(error)) or ANOTHER}",
                 found=str(error),
             ) from error
-        for what, expected in (("id", identity), ("build", build)):
-            if carried[what] != expected:
+        for what, label, expected in carried:
+            if label != expected:
                 raise CompilerError(
-                    f"the compiled kernel of {name} carries the {what} {carried[what]!r}; expected "
+                    f"the compiled kernel of {name} carries the {what} {label!r}; expected "
                     f"{expected!r}. Run `coadjoint regenerate`.",
-                    found=carried[what],
+                    found=label,
                     expected=expected,
                 )
+        self._call.restype = self._call_at.restype = None
+        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS]
 
     def _text(self, symbol: str, expected: str) -> str:
         """A string of the object, no further than one character beyond what is expected."""
-        found = (ctypes.c_char * (len(expected) + 1)).in_dll(self._handle, symbol)
-        return bytes(found).split(b"\0")[0].decode("ascii", "replace")
-
-    def function(self, function: str) -> Callable[..., None]:
-        """One function of the kernel by its bare name, for plain integers."""
-        self.symbol(function)
-
-        def call(*arguments: int) -> None:
-            self.bind(function, *arguments)()
-
-        return call
+        characters = (ctypes.c_char * (len(expected) + 1)).in_dll(self._handle, symbol)
+        return bytes(characters).split(b"\0")[0].decode("ascii", "replace")
 
     def bind(self, function: str, *arguments: int) -> Callable[[], None]:
-        """A call of a function with its arguments, converted once.
+        """A call of a function with its arguments, packed once.
 
-        ctypes passes values of its own types as they are; without ``argtypes`` it does not look
-        at them again, which saves 60 of 540 nanoseconds a call (docs/decisions/loading.md).
+        Args:
+            function: Its bare name.
+            arguments: Members, then place and stride of each array: state, parameters, inputs and
+                time where there are some, result.
         """
-        found: Any = self.symbol(function)
-        found.restype = None
-        assert len(arguments) >= _LEAST, len(arguments)
-        pairs = zip((_SIZE, *_ARRAY * (len(arguments) // 2)), arguments, strict=True)
-        return partial(found, *(kind(value) for kind, value in pairs))
+        return partial(self._call, self._pack(function, arguments))
+
+    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any], None]:
+        """The same for other members: their number, state and result are given at each call.
+
+        State and result are passed as `ctypes.byref` makes them, without gaps between the rows.
+        """
+        return partial(self._call_at, self._pack(function, arguments))
+
+    def _pack(self, function: str, arguments: Sequence[int]) -> Any:
+        """A pointer to packed arguments, as the second file of an object takes them."""
+        arrays, rest = divmod(len(arguments), 2)
+        assert rest == 1, len(arguments)
+        assert 3 <= arrays <= 5, len(arguments)
+        place = ctypes.cast(self.symbol(function), _ADDRESS).value or 0
+        words = (place, arrays, *arguments)
+        return ctypes.byref((_SIZE * len(words))(*words))
 
     def symbol(self, function: str) -> Any:
         """A function of the object by its bare name, as ctypes has it.
@@ -145,8 +152,9 @@ def load_library(
                 (work / file).write_bytes(content)
             fresh = compile_kernel(compiler, work, build)
         except (OSError, OutputError) as error:
+            reason = (isinstance(error, OSError) and system_error(error)) or error
             raise CompilerError(
-                f"the kernel of {name} cannot be compiled here: {error}", found=str(error)
+                f"the kernel of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error
         library = Library(fresh, name, identity, build, source)
         verify(library)
@@ -178,6 +186,7 @@ def _key(compiler: Compiler, sources: dict[str, bytes], build: str) -> str:
         "command": [shutil.which(compiler.command[0]), *compiler.command[1:]],
         "version": compiler.version,
         "flags": compiler.flags(build),
+        "support": SUPPORT,
         "engine": __version__,
         "machine": [platform.system(), platform.machine(), _processor()],
     }

@@ -67,20 +67,17 @@ Keys of --format json:
     show_default=True,
     help="Largest number of generators to accept.",
 )
-@click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="File to write, in place of the terminal."
+)
 @seconds_option
 def command(
-    algebra: str,
-    form: str,
-    degree: int,
-    generators: int,
-    output: Path | None,
-    seconds: int | None,
+    algebra: str, form: str, degree: int, generators: int, output: Path | None, seconds: int | None
 ) -> None:
-    """Show brackets, invariants and Casimirs of a Lie algebra, proved.
+    """Show and prove invariants and Casimirs of a Lie algebra.
 
-    NAME is an algebra such as so(4), se(3) or "sl(2,R)"; SPEC is a shipped system or the path of a
-    spec, whose algebra together with the duals of its advected quantities is shown.
+    NAME is an algebra such as so(4), se(3) or "sl(2,R)". SPEC is a shipped system or the path of a
+    spec; its advected quantities are included.
     """
     from coadjoint.errors import ResourceError
     from coadjoint.sandbox import run_bounded
@@ -125,8 +122,8 @@ def examination_record(request: Mapping[str, Any]) -> dict[str, Any]:
 
     word, most, degree = request["algebra"], request["generators"], request["degree"]
     report_progress("examine", 0, 1)
-    found = examine(_algebra(word, most, degree), degree)
-    return found.as_record() if request["form"] == "json" else asdict(found.document())
+    examination = examine(_algebra(word, most, degree), degree)
+    return examination.as_record() if request["form"] == "json" else asdict(examination.document())
 
 
 def _algebra(word: str, most: int, degree: int) -> LieAlgebra:

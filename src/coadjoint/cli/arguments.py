@@ -105,6 +105,6 @@ system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete
 seconds_option = click.option(
     "--seconds",
     type=click.IntRange(1, MOST),
-    help="Processor time that deriving one system may take. Default: COADJOINT_SECONDS, else "
+    help="Processor seconds for the derivation of one system. Default: COADJOINT_SECONDS, else "
     f"{WORKER_SECONDS}.",
 )

@@ -27,12 +27,12 @@ from coadjoint.errors import OutputError
     type=click.IntRange(1, 10_000_000),
     default=200_000,
     show_default=True,
-    help="Minimum number of points at which NumPy and C are compared bit by bit.",
+    help="Least number of points at which NumPy and C are compared bit for bit.",
 )
 @seconds_option
 @json_option
 def command(system: str, points: int, seconds: int | None, as_json: bool) -> None:
-    """Check the generated kernels against 50 digits and each other."""
+    """Compare kernels with 50 digits and with each other."""
     from coadjoint.sandbox import run_bounded
 
     path, folder = spec_path(system), load_system(system, seconds).folder
@@ -101,7 +101,7 @@ def _print(report: Mapping[str, Any]) -> None:
                     f"{figures['k']:.2f}",
                     f"{figures['ulp']:.3g}",
                     str(figures["points"]),
-                    _with_numpy(report, function, target),
+                    _compare_with_numpy(report, function, target),
                 )
             )
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
@@ -111,7 +111,7 @@ def _print(report: Mapping[str, Any]) -> None:
     say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
 
 
-def _with_numpy(report: Mapping[str, Any], function: str, target: str) -> str:
+def _compare_with_numpy(report: Mapping[str, Any], function: str, target: str) -> str:
     """Where a target and NumPy agree: bit for bit, or within k with functions beyond sqrt."""
     equal = report["equal"].get(function, {}).get(target, 0)
     together = report["together"].get(function, {}).get(target, 0)

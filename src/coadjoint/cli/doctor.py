@@ -30,16 +30,7 @@ from coadjoint.errors import CoadjointError, CompilerError, OutputError
 from coadjoint.limits import WORKER_BYTES, WORKER_SECONDS
 from coadjoint.resources import systems_folder
 
-PACKAGES: Final = (
-    "sympy",
-    "numpy",
-    "scipy",
-    "mpmath",
-    "jinja2",
-    "pydantic",
-    "click",
-    "rich",
-)
+PACKAGES: Final = ("sympy", "numpy", "scipy", "mpmath", "jinja2", "pydantic", "click", "rich")
 #: Packages of each optional extra.
 EXTRAS: Final = {"plot": ("matplotlib",), "data": ("xarray", "h5netcdf", "h5py"), "c": ("ziglang",)}
 
@@ -79,9 +70,9 @@ class Finding:
 @click.command("doctor")
 @json_option
 def command(as_json: bool) -> int:
-    """Look for compiler, cache, packages and damaged files.
+    """Check compiler, cache, packages, limits and generated files.
 
-    What is missing is shown with the way to get it; exit status 1 if something does not work.
+    Shows what to do about each problem. The exit status is 1 if something does not work.
     """
     findings = list(examine())
     if as_json:
@@ -123,10 +114,10 @@ def _package(package: str) -> Finding:
 
 def _extra(extra: str, packages: tuple[str, ...]) -> Finding:
     """An optional extra."""
-    found = {}
+    versions = {}
     for package in packages:
         try:
-            found[package] = version(package)
+            versions[package] = version(package)
         except PackageNotFoundError:
             return Finding(
                 f"extra {extra}",
@@ -134,7 +125,7 @@ def _extra(extra: str, packages: tuple[str, ...]) -> Finding:
                 f"{package} is not installed",
                 f"pip install 'coadjoint[{extra}]'",
             )
-    return Finding(f"extra {extra}", "ok", ", ".join(f"{n} {v}" for n, v in found.items()))
+    return Finding(f"extra {extra}", "ok", ", ".join(f"{n} {v}" for n, v in versions.items()))
 
 
 def _attempt(what: str, look: Callable[[], str]) -> Finding:
@@ -154,10 +145,10 @@ def _attempt(what: str, look: Callable[[], str]) -> Finding:
 def _limits() -> str:
     """Limits of this session and settings that would end a derivation early."""
     low = [
-        f"{name} allows {found} {unit}; expected {least} or more"
+        f"{name} allows {allowed} {unit}; expected {least} or more"
         for kind, name, unit, least in LEAST
-        if (found := resource.getrlimit(kind)[0]) not in (resource.RLIM_INFINITY, -1)
-        and found < least
+        if (allowed := resource.getrlimit(kind)[0]) not in (resource.RLIM_INFINITY, -1)
+        and allowed < least
     ]
     if low:
         raise OutputError(f"{'; '.join(low)}. Raise the limits of the shell.", found=low)
@@ -188,7 +179,7 @@ def _children() -> str:
     from coadjoint.sandbox import run_bounded
 
     run_bounded("coadjoint.fingerprint:digest", [], seconds=allowed_seconds(), memory=WORKER_BYTES)
-    return "started, limited and heard"
+    return "started, limited and answered"
 
 
 def _compiler() -> str:
@@ -237,9 +228,9 @@ def _cache_state() -> Iterator[Finding]:
         yield Finding("cache", "heals", problem, "repaired at its next use")
     folder = chosen_folder()
     for path in list_kept(folder / SYSTEMS) if folder is not None else ():
-        for found in _tree("own system", path, is_shipped=False):
-            heals = found.remedy.startswith("coadjoint regenerate")
-            yield Finding(found.what, "heals", found.found, _RELOAD) if heals else found
+        for finding in _tree("own system", path, is_shipped=False):
+            heals = finding.remedy.startswith("coadjoint regenerate")
+            yield Finding(finding.what, "heals", finding.found, _RELOAD) if heals else finding
 
 
 def _tree_state() -> Iterator[Finding]:

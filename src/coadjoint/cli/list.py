@@ -16,7 +16,7 @@ import click
 
 from coadjoint.cli.arguments import seconds_option
 from coadjoint.cli.output import json_option, print_json, print_table
-from coadjoint.cli.regenerate import folders, proved_cell, spec_paths, with_folders
+from coadjoint.cli.regenerate import add_folder_options, folders, proved_cell, spec_paths
 from coadjoint.errors import CoadjointError
 from coadjoint.files import read_certificate
 
@@ -48,13 +48,13 @@ class Entry:
 
 
 @click.command("list")
-@with_folders
+@add_folder_options
 @seconds_option
 @json_option
 def command(
     derivations: Path | None, output: Path | None, seconds: int | None, as_json: bool
 ) -> None:
-    """List systems and the state of their certificates."""
+    """List systems, claims proved and the state of their files."""
     from coadjoint.bounded import read_all_bounded
 
     source, target = folders(derivations, output)

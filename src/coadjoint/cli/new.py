@@ -17,11 +17,11 @@ STARTER: Final = """\
 # A free rigid body, to edit into a system of your own. Try it as it stands:
 #     coadjoint prove {name}.toml
 #     coadjoint simulate {name}.toml --plot {name}.png
-# `coadjoint schema > spec.schema.json` writes a schema, by which editors complete and check
-# this file: make its first line  #:schema spec.schema.json
+# An editor completes and checks this file after `coadjoint schema > spec.schema.json`, with the
+# first line  #:schema spec.schema.json
 
 title = "My system"
-source = "where the equations can be looked up"
+source = "book or paper with the equations"
 routes = ["euler-poincare", "lie-poisson"] # the first is emitted, the others are proved equal
 
 [algebra]
@@ -42,10 +42,10 @@ I = {{ shape = [3], positive = true, default = [1, 2, 3], unit = "kg m^2", doc =
 [lagrangian] # quadratic in the velocities
 l = "dot(Omega, diag(I)*Omega)/2"
 
-[observables] # scalars of your own, emitted beside energy, Casimirs and velocities
+[observables] # further quantities to compute
 spin = {{ expression = "norm(Omega)", unit = "1/s" }}
 
-[claims] # proved at every regeneration; a false one is refuted with a counter-example
+[claims] # proved at every regeneration, or refuted with a counterexample
 casimirs = ["dot(Pi, Pi)"]
 conserved = ["energy"]
 """
@@ -78,4 +78,4 @@ def command(name: str) -> None:
             "Change to a folder that you can write to.",
             path=str(path),
         ) from error
-    say(f"{path} written; try `coadjoint prove {path}`")
+    say(f"{path} written. Next: `coadjoint prove {path}`")

@@ -46,10 +46,10 @@ def say(text: str = "", *, err: bool = False, end: str = "\n") -> None:
         raise
     except OSError as error:
         if not err:  # of standard error there is nowhere to complain
-            raise unwritten(error) from error
+            raise explain_unwritten(error) from error
 
 
-def unwritten(error: OSError) -> OutputError:
+def explain_unwritten(error: OSError) -> OutputError:
     """What to say of a standard output that takes no text; what was left of it is dropped."""
     with suppress(OSError, ValueError):  # so that the end of the program does not try again
         handle = os.open(os.devnull, os.O_WRONLY)
@@ -95,15 +95,15 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
 
 def print_json(value: Any) -> None:
     """A record on standard output, as JSON; what is not finite becomes null, as JSON has it."""
-    say(json.dumps(_finite(value), indent=2, allow_nan=False))
+    say(json.dumps(_replace_infinities(value), indent=2, allow_nan=False))
 
 
-def _finite(value: Any) -> Any:
+def _replace_infinities(value: Any) -> Any:
     """JSON values without infinities and NaNs."""
     if isinstance(value, dict):
-        return {key: _finite(entry) for key, entry in value.items()}
+        return {key: _replace_infinities(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(entry) for entry in value]
+        return [_replace_infinities(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -29,7 +29,7 @@ from typing import Any, Final
 import click
 
 from coadjoint import __version__
-from coadjoint.cli.output import say, unwritten
+from coadjoint.cli.output import explain_unwritten, say
 from coadjoint.errors import CoadjointError, OutputError, shorten, system_error
 
 #: Commands in the order of the help; each is the object ``command`` of the module of its name.
@@ -81,7 +81,7 @@ class Commands(click.Group):
         try:
             return super().main(args, *rest, **options)
         except OSError as error:  # from click's own output, e.g. that of --help
-            say(f"error: {unwritten(error)}", err=True)
+            say(f"error: {explain_unwritten(error)}", err=True)
             sys.exit(OutputError.exit_status)
 
     def invoke(self, ctx: click.Context) -> None:
@@ -108,8 +108,8 @@ class Commands(click.Group):
                 fault = shorten(f"{type(error).__name__}: {error}")
                 self._report(
                     ctx,
-                    f"error: a fault of coadjoint itself: {fault}. "
-                    f"Please report it with what `{again}` shows.",
+                    f"error: an internal error of coadjoint: {fault}. "
+                    f"Please report it with the output of `{again}`.",
                 )
         ctx.exit(status or 0)
 
@@ -134,7 +134,7 @@ def _flush() -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise unwritten(error) from error
+        raise explain_unwritten(error) from error
 
 
 def _refusal(error: OSError | ImportError) -> OutputError | None:
@@ -144,7 +144,7 @@ def _refusal(error: OSError | ImportError) -> OutputError | None:
         return refused
     # Files that are written have names; what has none is the output, e.g. of --help, by click.
     nameless = error.filename is None and error.errno != errno.ENOENT
-    return unwritten(error) if refused is not None and nameless else refused
+    return explain_unwritten(error) if refused is not None and nameless else refused
 
 
 def _open_closed_streams() -> None:
@@ -170,8 +170,8 @@ def _open_closed_streams() -> None:
 @click.version_option(__version__, prog_name="coadjoint")
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 def main(**_: Any) -> None:
-    """Turn declared mechanical systems into proved equations and verified NumPy and C kernels.
+    """Turn declared mechanical systems into proved equations and verified kernels.
 
     SYSTEM is the name of a shipped system, as `coadjoint list` shows them; SPEC is the path of a
-    .toml file. Exit status: 0 all is well, 1 a check failed, 2 the input was wrong.
+    .toml file. Exit status: 0 success, 1 a check failed, 2 wrong input.
     """

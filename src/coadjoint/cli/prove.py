@@ -1,7 +1,7 @@
-"""Command ``prove``: the verdict on every claim about a system, and what was found out about it.
+"""Command ``prove``: the verdict on every claim about a system, and the findings.
 
 Comes in: a spec. Goes out: its certificate, with the time that each proof took, and a
-counter-example for what is false. Read next: `coadjoint.prove.claims`.
+counterexample for what is false. Read next: `coadjoint.prove.claims`.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _print(record: Mapping[str, Any]) -> None:
         for each in record["findings"]
     ]
     if findings:
-        print_table(("found", "method", "scope", "error", ">time"), findings)
+        print_table(("finding", "method", "scope", "error", ">time"), findings)
 
 
 def _verdict(claim: Mapping[str, Any]) -> str:

@@ -32,12 +32,12 @@ folder_options = (
     click.option(
         "--output",
         type=click.Path(path_type=Path),
-        help="Generated folder. Default: `generated` beside the folder of specs.",
+        help="Generated folder. Default: `generated` next to the folder of specs.",
     ),
 )
 
 
-def with_folders(function: Any) -> Any:
+def add_folder_options(function: Any) -> Any:
     """Add ``--derivations`` and ``--output`` to a command."""
     for option in reversed(folder_options):
         function = option(function)
@@ -46,7 +46,11 @@ def with_folders(function: Any) -> Any:
 
 @click.command("regenerate")
 @click.argument("names", nargs=-1, metavar="[SYSTEM]...")
-@click.option("--check", is_flag=True, help="Write nothing; compare with a fresh run, 1 on drift.")
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Write nothing; compare with a fresh run. Exit status 1 if files differ.",
+)
 @click.option(
     "--jobs",
     type=click.IntRange(1),
@@ -55,7 +59,7 @@ def with_folders(function: Any) -> Any:
     help="Number of systems processed in parallel.",
 )
 @seconds_option
-@with_folders
+@add_folder_options
 @json_option
 def command(
     names: tuple[str, ...],
@@ -78,12 +82,7 @@ def command(
         with progress_bars() as progress:
             if check:
                 outcome = engine.check(
-                    paths,
-                    target,
-                    jobs=jobs,
-                    complete=complete,
-                    seconds=seconds,
-                    progress=progress,
+                    paths, target, jobs=jobs, complete=complete, seconds=seconds, progress=progress
                 )
             else:
                 outcome = engine.regenerate(
@@ -142,23 +141,24 @@ def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
     Raises:
         SpecError: There is none, or none of a given name.
     """
-    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    if not found:
+    by_name = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    if not by_name:
         raise SpecError(
             f"{folder}: no specs found; expected files ending in .toml. "
             "Write one with `coadjoint new`, or name the folder with --derivations.",
             path=str(folder),
         )
     for name in names:
-        if name not in found:
-            near = get_close_matches(name, found, n=1)
+        if name not in by_name:
+            near = get_close_matches(name, by_name, n=1)
             hint = f" Did you mean {near[0]!r}?" if near else ""
+            known = ", ".join(by_name)
             raise SpecError(
-                f"{folder}: no spec is called {name!r}; expected one of {', '.join(found)}.{hint}",
+                f"{folder}: no spec is called {name!r}; expected one of {known}.{hint}",
                 path=str(folder),
                 found=name,
             )
-    return [found[name] for name in dict.fromkeys(names)] if names else list(found.values())
+    return [by_name[name] for name in dict.fromkeys(names or by_name)]
 
 
 def report_failures(failures: Mapping[str, CoadjointError]) -> int:

@@ -25,7 +25,9 @@ from coadjoint.cli.output import say, write_text
     show_default=True,
     help="latex is a complete file, html one self-contained page.",
 )
-@click.option("--output", type=click.Path(path_type=Path), help="File to write instead.")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="File to write, in place of the terminal."
+)
 @seconds_option
 def command(
     system: str, route: str | None, form: str, output: Path | None, seconds: int | None

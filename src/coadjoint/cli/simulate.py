@@ -51,7 +51,7 @@ def _assignments(
     metavar="NAME=NUMBERS",
     callback=_assignments,
     multiple=True,
-    help="A parameter, e.g. I=1,2,3; the others have their defaults. Repeatable.",
+    help="A parameter, e.g. I=1,2,3. Default: that of the spec. Repeatable.",
 )
 @click.option(
     "--input",
@@ -59,29 +59,37 @@ def _assignments(
     metavar="NAME=NUMBERS",
     callback=_assignments,
     multiple=True,
-    help="A constant input, e.g. u=0.5; the others have their defaults. Repeatable.",
+    help="A constant input, e.g. u=0.5. Default: that of the spec. Repeatable.",
 )
 @click.option(
     "--state",
     metavar="NAME=NUMBERS",
     callback=_assignments,
     multiple=True,
-    help="Initial value of a quantity or component, e.g. Pi=1,0,0, or of the whole state without "
-    "a name. Default: what the spec says, else each vector of unit length along (1, 2, 3, ...), "
-    "each scalar 1, then moved onto the constraints. Repeatable.",
+    help="Initial value of a variable or component, e.g. Pi=1,0,0, or of the whole state, e.g. "
+    "1,0,0. Default: that of the spec, else 1 for scalars and unit vectors, projected onto the "
+    "constraints. Repeatable.",
 )
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long.")
-@click.option("--method", default="auto", show_default=True, help="auto is DOP853.")
+@click.option(
+    "--time", type=float, default=10.0, show_default=True, help="Length of the simulation."
+)
+@click.option(
+    "--method", default="auto", show_default=True, help="Integrator of SciPy; auto is DOP853."
+)
 @click.option("--rtol", type=float, default=1e-10, show_default=True, help="Relative tolerance.")
 @click.option(
     "--samples",
     type=click.IntRange(2, 10_000_000),
     default=1001,
     show_default=True,
-    help="Evenly spaced samples.",
+    help="Number of evenly spaced samples.",
 )
 @click.option(
-    "--max-steps", type=click.IntRange(1), default=1_000_000, show_default=True, help="Most steps."
+    "--max-steps",
+    type=click.IntRange(1),
+    default=1_000_000,
+    show_default=True,
+    help="Largest number of steps.",
 )
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option(
@@ -89,7 +97,12 @@ def _assignments(
     type=click.Path(path_type=Path),
     help="Picture of the path of (x, y) on the plane to write, e.g. trace.png.",
 )
-@click.option("--csv", "table", type=click.Path(path_type=Path), help="Trajectory to write.")
+@click.option(
+    "--csv",
+    "table",
+    type=click.Path(path_type=Path),
+    help="Table of the trajectory to write, e.g. top.csv.",
+)
 @seconds_option
 @json_option
 def command(
@@ -209,7 +222,7 @@ def trajectory_csv(system: System, solution: Solution) -> str:
 
 
 def _print(system: System, solution: Solution) -> None:
-    """Where it began and ended, and what became of the invariants."""
+    """First and last values, and the drift of the invariants."""
     end = f"t = {solution.time_reached:g}"
     print_table(
         ("state", ">t = 0", f">{end}", "unit"),

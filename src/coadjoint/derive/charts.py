@@ -16,11 +16,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.solver import Definition
-from coadjoint.derive.records import Chart, Exact, Relation, Step, rate
+from coadjoint.derive.records import Chart, Exact, Relation, write_rates, write_step
 from coadjoint.derive.setting import Setting, shape
 from coadjoint.derive.symmetries import moved_components
 from coadjoint.errors import DerivationError
@@ -94,7 +94,7 @@ def declared_charts(first: Equations) -> list[Equations]:
 
 def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
     """The motion that one chart declares."""
-    known = dict[str, Quantity]()
+    known = dict[str, Value]()
     for v in chart.variables:
         parts = setting.elements(v.components)
         known |= {**dict(zip(v.components, parts, strict=True)), v.name: shape(parts, v.shape)}
@@ -115,8 +115,8 @@ def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
     ]
     found = in_chart(setting, chart.name, rates, image, through, relations=relations)
     assert found.chart is not None, "just made"
-    lines = tuple(zip(map(rate, rates), rates.values(), strict=True))
-    step = Step("Motion in the chart", "dy/dt = Y(y)", r"\dot y = Y(y)", lines)
+    lines = write_rates(tuple(rates), rates.values())
+    step = write_step("Motion in the chart", "dy/dt = Y(y)", r"\dot y = Y(y)", lines)
     return replace(found, chart=replace(found.chart, name=chart.name), steps=(step,))
 
 

@@ -7,12 +7,13 @@ of a format must escape. Read next: `coadjoint.render.document`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import sympy
 from sympy.printing.mathml import mathml
 
+from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.records import Left, Step, is_of_kernel, symbol
 from coadjoint.exact import Element, Field, element_text
@@ -70,13 +71,45 @@ class Document:
 
 
 def document(equations: Equations) -> Document:
-    """The document of a derivation, ending with the closed equations of motion."""
+    """The document of a derivation: its steps, what is emitted as well, and declared charts."""
     spec = equations.spec
     sections = [_section(equations, step) for step in equations.steps]
     if spec.definitions:
         sections.insert(0, _definitions(spec.definitions))
+    sections += _observables(equations)
+    if equations.chart is None and equations.route == spec.routes[0]:
+        sections += [part for chart in declared_charts(equations) for part in _chart(chart)]
     about = f"System {spec.name}, route {equations.route}."
     return Document(spec.title, about, spec.source, spec.description, tuple(sections))
+
+
+def _observables(equations: Equations) -> Iterator[Section]:
+    """Observables and Casimirs as they are declared, and the values of momentum maps."""
+    spec, field = equations.spec, equations.setting.field
+    words = [(f"casimir{n}", f"= {each.in_one_line}") for n, each in enumerate(spec.casimirs, 1)]
+    for each in spec.observables:
+        unit = f" ({each.unit})" * (each.unit != "1")
+        words.append((each.name, f"= {each.formula.in_one_line}{unit}"))
+    named = {each.name for each in spec.symmetries} | {each.name for each in spec.sections}
+    lines = [
+        formula_line(field, symbol(name), value)
+        for each in equations.exact.emitted
+        if each.name in named
+        for name, value in zip(each.components, each.values, strict=True)
+    ]
+    if words or lines:
+        yield Section("Observables", "emitted with the motion", "", tuple(lines), tuple(words))
+
+
+def _chart(chart: Equations) -> Iterator[Section]:
+    """The map of a declared chart to the state, what is zero in it, and its motion."""
+    own, field = chart.chart, chart.setting.field
+    assert own is not None, "declared as one"
+    pairs = zip(chart.setting.state, own.state, strict=True)
+    lines = tuple(formula_line(field, symbol(name), value) for name, value in pairs)
+    where = tuple((each.text, "throughout") for each in own.relations)
+    yield Section(f"Chart {own.name}", "x = x(y)", "x = x(y)", lines, where)
+    yield from (_section(chart, step) for step in chart.steps)
 
 
 def _definitions(definitions: Sequence[Definition]) -> Section:

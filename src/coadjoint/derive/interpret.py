@@ -34,12 +34,12 @@ from coadjoint.exact.witness import is_nonzero
 from coadjoint.spec.core import tree
 
 #: An element, a tuple of elements or a tuple of tuples of elements.
-Quantity = Any
+Value = Any
 
 SINGULAR = "the inverse of a singular matrix is asked for; expected det != 0."
 
 
-def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> Quantity:
+def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Value:
     """The value of a tree.
 
     Args:
@@ -50,7 +50,7 @@ def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> 
     Raises:
         DerivationError: Division by zero or the inverse of a singular matrix.
     """
-    found: dict[int, Quantity] = {}
+    found: dict[int, Value] = {}
     for part in tree.walk_up(node):  # definitions put into each other may be 1000 levels deep
         below = [found[id(child)] for child in tree.children(part)]
         match part:
@@ -66,9 +66,7 @@ def interpret(node: tree.Node, values: Mapping[str, Quantity], field: Field) -> 
     return found[id(node)]
 
 
-def _value(
-    node: tree.Node, below: list[Quantity], values: Mapping[str, Quantity], field: Field
-) -> Quantity:
+def _value(node: tree.Node, below: list[Value], values: Mapping[str, Value], field: Field) -> Value:
     """The value of one node from those of its children."""
     match node:
         case tree.Number(value=value):
@@ -103,21 +101,21 @@ def _value(
     raise AssertionError(node)
 
 
-def _component(value: Quantity, indices: Iterable[int]) -> Quantity:
+def _component(value: Value, indices: Iterable[int]) -> Value:
     """A component counted from 1; of a matrix with one index, a row."""
     for index in indices:
         value = value[index - 1]
     return value
 
 
-def entries(value: Quantity) -> tuple[Element, ...]:
+def entries(value: Value) -> tuple[Element, ...]:
     """The components of a value of any shape, row by row."""
     if isinstance(value, tuple):
         return tuple(entry for part in value for entry in entries(part))
     return (value,)
 
 
-def _multiply(a: Quantity, b: Quantity) -> Quantity:
+def _multiply(a: Value, b: Value) -> Value:
     """Scalar times anything, matrix times vector, matrix times matrix."""
     if not isinstance(a, tuple):
         return scale(a, b)
@@ -143,7 +141,7 @@ def check_divisor(divisor: Element, field: Field) -> None:
     )
 
 
-def _diag(a: Quantity) -> Quantity:
+def _diag(a: Value) -> Value:
     """A vector as a diagonal matrix; the diagonal of a matrix as a vector."""
     if isinstance(a[0], tuple):
         return tuple(row[i] for i, row in enumerate(a))
@@ -159,7 +157,7 @@ def _checked_inverse(a: Matrix, field: Field) -> Matrix:
     return inverse(a)
 
 
-def _power(base: Quantity, exponent: int, field: Field) -> Quantity:
+def _power(base: Value, exponent: int, field: Field) -> Value:
     if not isinstance(base, tuple):
         if exponent < 0:
             check_divisor(base, field)
@@ -172,12 +170,12 @@ def _power(base: Quantity, exponent: int, field: Field) -> Quantity:
     return result
 
 
-_BINARY: dict[str, Callable[..., Quantity]] = {
+_BINARY: dict[str, Callable[..., Value]] = {
     "+": add,
     "-": subtract,
     "*": _multiply,
 }
-_TENSOR_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
+_TENSOR_FUNCTIONS: dict[str, Callable[..., Value]] = {
     "dot": dot,
     "cross": cross,
     "hat": hat,

@@ -7,6 +7,7 @@ equations as field elements, and charts. Read next: `coadjoint.derive.equations`
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache
@@ -14,7 +15,7 @@ from functools import cache
 import sympy
 from sympy.printing.mathml import mathml
 
-from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.setting import shape
 from coadjoint.exact import Element
@@ -114,6 +115,35 @@ class Step:
     lines: tuple[tuple[Left, Element], ...] = ()
 
 
+#: Right sides by left sides, or by the names whose symbols are these.
+Lines = Mapping[str, Element] | Iterable[tuple[str | Left, Element]]
+
+
+def write_step(title: str, text: str, latex: str = "", lines: Lines = ()) -> Step:
+    """A step with its lines; the law in LaTeX is the plain text unless it is given."""
+    pairs = lines.items() if isinstance(lines, Mapping) else lines
+    written = ((symbol(a) if isinstance(a, str) else a, value) for a, value in pairs)
+    return Step(title, text, latex or text, tuple(written))
+
+
+def write_rates(names: Sequence[str], values: Iterable[Element]) -> Iterator[tuple[Left, Element]]:
+    """Lines for time derivatives."""
+    return zip(map(rate, names), values, strict=True)
+
+
+def write_slopes(
+    function: str, names: Sequence[str], values: Iterable[Element]
+) -> Iterator[tuple[Left, Element]]:
+    """Lines for the derivatives of a function by some names."""
+    return zip((partial(function, name) for name in names), values, strict=True)
+
+
+def write_entries(name: str, matrix: Sequence[Sequence[Element]]) -> Iterator[tuple[str, Element]]:
+    """Lines for the entries of a symmetric matrix on and above the diagonal, without zeros."""
+    for i, row in enumerate(matrix, 1):
+        yield from ((f"{name}_{i}{j}", entry) for j, entry in enumerate(row, 1) if j >= i and entry)
+
+
 class Kept(Enum):
     """When the motion conserves a quantity, as far as the spec and its kind tell."""
 
@@ -143,10 +173,10 @@ class Emitted:
     unit: str
     values: tuple[Element, ...]
     kept: Kept = Kept.UNKNOWN
-    form: Quantity | None = None
+    form: Value | None = None
 
     @property
-    def whole(self) -> Quantity:
+    def whole(self) -> Value:
         """What its name stands for in formulas."""
         return shape(self.values, self.shape) if self.form is None else self.form
 

@@ -10,13 +10,15 @@ that route for the whole system in a field of its own. What must hold for it is 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics import external
-from coadjoint.derive.records import Exact, Step, rate, symbol
+from coadjoint.derive.mechanics.configuration import fault
+from coadjoint.derive.records import Exact, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
@@ -37,8 +39,9 @@ class Restriction:
         self.setting, self.whole = setting, whole
         self.section: dict[str, Element] = {}
         for variable in setting.spec.defined:
-            values = entries(setting.value(reduction.section[variable.name]))
-            self.section |= dict(zip(variable.components, values, strict=True))
+            if variable.name in reduction.section:
+                values = entries(setting.value(reduction.section[variable.name]))
+                self.section |= dict(zip(variable.components, values, strict=True))
 
     def __call__(self, function: Element) -> Element:
         """A function of the whole state."""
@@ -51,6 +54,13 @@ class Restriction:
         """Rates of the whole state, by name."""
         pairs = zip(self.whole.setting.state, self.whole.exact.rates, strict=True)
         return {name: self(value) for name, value in pairs}
+
+    @cached_property
+    def velocities(self) -> dict[str, Element]:
+        """Velocities of the whole system, by name."""
+        named = {x for v in self.whole.spec.defined for x in v.components}
+        own = self.whole.exact.definitions
+        return {name: self(value) for name, value in own if name in named}
 
 
 def restrict(setting: Setting, route: str) -> Equations:
@@ -65,27 +75,27 @@ def restrict(setting: Setting, route: str) -> Equations:
     energy = restriction(whole.exact.energy)
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
-    section = tuple(restriction.section.items())
-    exact = Exact(section, kept, energy, list_emitted(setting, energy), None)
+    defined = (*restriction.section.items(), *restriction.velocities.items())
+    exact = Exact(defined, kept, energy, list_emitted(setting, energy), None)
     return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
 
 
 def _check_regular(restriction: Restriction, energy: Element) -> None:
     """The section does not lie where the motion of the whole system has a pole."""
     field = restriction.setting.field
-    for name, value in {"the energy": energy, **restriction.rates}.items():
+    values = {f"the rate of {name}": value for name, value in restriction.rates.items()}
+    values |= {f"the velocity {name}": value for name, value in restriction.velocities.items()}
+    for what, value in {"the energy": energy, **values}.items():
         try:
             field.substitute(value, restriction.section)
         except ZeroDivisionError as error:
-            what = name if name == "the energy" else f"the rate of {name}"
-            raise refusal(
-                restriction.setting,
-                restriction.whole.route,
-                f"{what} has a pole everywhere on the section",
-                what,
-                "a section on which the motion of the whole system is defined",
-                "Correct [reduction], or the Hamiltonian.",
-            ) from error
+            formula = restriction.setting.spec.hamiltonian
+            assert formula is not None, "the reader asks for a Hamiltonian"
+            message = (
+                f"{what} has a pole everywhere on the section; expected a section on which the "
+                "motion of the whole system is defined. Correct [reduction], or the Hamiltonian."
+            )
+            raise fault(restriction.setting, formula, message, what) from error
 
 
 def whole_equations(setting: Setting, route: str) -> Equations:
@@ -109,25 +119,26 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     setting, route = restriction.setting, restriction.whole.route
-    whole = ((rate(name), value) for name, value in restriction.rates.items())
     return (
-        Step(
+        write_step(
             f"Motion of the whole system by the route {route}",
             "dx/dt = X(x, y),  dy/dt = Y(x, y)",
             r"\dot x = X(x, y), \quad \dot y = Y(x, y)",
-            tuple(whole),
+            write_rates(tuple(restriction.rates), restriction.rates.values()),
         ),
-        Step(
-            "Section that it keeps",
-            "y = s(x)",
-            "y = s(x)",
-            tuple((symbol(name), value) for name, value in restriction.section.items()),
-        ),
-        Step("Hamiltonian on it", "h(x, y)", "h(x, y)", ((symbol("h"), energy),)),
-        Step(
+        write_step("Section that it keeps", "y = s(x)", lines=restriction.section),
+        write_step("Hamiltonian on it", "h(x, y)", lines={"h": energy}),
+        *_of_velocities(restriction),
+        write_step(
             "Motion on it",
             "dx/dt = X(x, y)",
             r"\dot x = X(x, y)",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )
+
+
+def _of_velocities(restriction: Restriction) -> Iterator[Step]:
+    """The velocities that the spec names, on the section."""
+    if restriction.velocities:
+        yield write_step("Velocities on it", "v(x, y)", lines=restriction.velocities)

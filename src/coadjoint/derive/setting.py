@@ -18,19 +18,19 @@ from typing import Any, Protocol, TypeVar, cast
 
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
-from coadjoint.derive.interpret import Quantity, entries, interpret
+from coadjoint.derive.interpret import Value, entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.core.shapes import ELEMENTARY
-from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpacked
+from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpack
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
 from coadjoint.spec.tables import list_formulas
 
-Value = TypeVar("Value")
+Built = TypeVar("Built")
 #: What has a name in formulas.
 Declared = Variable | Parameter | Input | Time
 #: The functions for which the field needs room; the others are sums and products.
@@ -51,7 +51,7 @@ class Setting:
 
     spec: Spec
     field: Field
-    values: Mapping[str, Quantity]
+    values: Mapping[str, Value]
     built: dict[Any, object] = attribute(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -178,9 +178,9 @@ class Setting:
         return tuple(places[place] for place in sorted(places))
 
     @cached_property
-    def reactions(self) -> Mapping[str, Quantity]:
+    def reactions(self) -> Mapping[str, Value]:
         """The multipliers of constraints, whole and by component, as symbols."""
-        found: dict[str, Quantity] = {}
+        found: dict[str, Value] = {}
         for each in self.spec.constraints:
             parts = self.elements(each.reactions)
             found |= zip(each.reactions, parts, strict=True)
@@ -188,7 +188,7 @@ class Setting:
         return found
 
     def excess(
-        self, condition: Inequality, others: Mapping[str, Quantity] = MappingProxyType({})
+        self, condition: Inequality, others: Mapping[str, Value] = MappingProxyType({})
     ) -> Element:
         """What a condition of the domain asks to be positive: the larger side minus the other."""
         left, right = (self.formula(side, others) for side in (condition.left, condition.right))
@@ -213,21 +213,21 @@ class Setting:
         return tuple(self.field[name] for name in names)
 
     def formula(
-        self, formula: Formula, observables: Mapping[str, Quantity] = MappingProxyType({})
+        self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
     ) -> Element:
         """The value of a declared scalar formula; arguments as in `value`."""
         found: Element = self.value(formula, observables)
         return found
 
     def components(
-        self, formula: Formula, observables: Mapping[str, Quantity] = MappingProxyType({})
+        self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
     ) -> tuple[Element, ...]:
         """The components of a formula of any shape, row by row; arguments as in `value`."""
         return entries(self.value(formula, observables))
 
     def value(
-        self, formula: Formula, observables: Mapping[str, Quantity] = MappingProxyType({})
-    ) -> Quantity:
+        self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
+    ) -> Value:
         """The value of a declared formula: an element, a vector or a matrix.
 
         Args:
@@ -269,7 +269,7 @@ class Owner(Protocol):
 Shared = TypeVar("Shared", bound=Owner)
 
 
-def once(build: Callable[[Shared], Value]) -> Callable[[Shared], Value]:
+def once(build: Callable[[Shared], Built]) -> Callable[[Shared], Built]:
     """Let a function of a Setting alone build its value once; all routes of the Setting share it.
 
     So it is with a function of anything else that remembers what was built, as a motion does.
@@ -283,10 +283,10 @@ def once(build: Callable[[Shared], Value]) -> Callable[[Shared], Value]:
     """
 
     @wraps(build)
-    def look_up(owner: Shared) -> Value:
+    def look_up(owner: Shared) -> Built:
         if build not in owner.built:
             owner.built[build] = build(owner)
-        return cast(Value, owner.built[build])
+        return cast(Built, owner.built[build])
 
     return look_up
 
@@ -319,7 +319,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     field = Field([*names, *symbols], room, positive)
     parameters = frozenset(name for p in spec.parameters for name in p.components)
     field.region = Region(parameters, _defaults(quantities))
-    values: dict[str, Quantity] = {name: field[name] for name in names}
+    values: dict[str, Value] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = whole(quantity, values)
     for each in spec.reconstruction:
@@ -369,7 +369,7 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     kept = spec.having_role(role)
     names = [name for variable in kept for name in variable.components]
     field = Field(names, _function_calls(spec))
-    values: dict[str, Quantity] = {name: field[name] for name in names}
+    values: dict[str, Value] = {name: field[name] for name in names}
     quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
     for quantity in quantities:
         for name in quantity.components:
@@ -394,21 +394,21 @@ def _calls_parameters(spec: Spec) -> bool:
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 
 
-def whole(quantity: Declared, values: Mapping[str, Quantity]) -> Quantity:
+def whole(quantity: Declared, values: Mapping[str, Value]) -> Value:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:
         return weigh(parts, quantity.elements)
     form = quantity.form if isinstance(quantity, Variable | Parameter) else ""
-    return unpacked(parts, form) if form in FORMS else shape(parts, quantity.shape)
+    return unpack(parts, form) if form in FORMS else shape(parts, quantity.shape)
 
 
-def weigh(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Quantity:
+def weigh(parts: Sequence[Element], matrices: Sequence[SparseMatrix]) -> Value:
     """``sum x_i e_i`` for matrices e_i."""
     return dense.weighted_sum(parts, matrices, size(matrices), 0 * parts[0])
 
 
-def shape(parts: Sequence[Element], shape: Shape) -> Quantity:
+def shape(parts: Sequence[Element], shape: Shape) -> Value:
     """Components, row by row, as an element, a vector or a matrix."""
     parts = tuple(parts)
     match shape:

@@ -14,7 +14,7 @@ from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import AlgebraError
 from coadjoint.exact.dense import product
-from coadjoint.poisson import PoissonStructure, declared, lie_poisson, magnetic, nambu
+from coadjoint.poisson import PoissonStructure, declare_bracket, lie_poisson, magnetic, nambu
 from coadjoint.spec.model import Poisson
 
 
@@ -90,7 +90,7 @@ def _declared_structure(setting: Setting, bracket: Poisson) -> PoissonStructure:
             case "nambu":
                 return nambu(field, names, [setting.formula(c) for c in bracket.functions])
             case "brackets":
-                return declared(field, names, entries, setting.spec.name)
+                return declare_bracket(field, names, entries, setting.spec.name)
         pairs = [(names[i], names[j]) for i, j in bracket.pairs]
         fields = {(names[i], names[j]): value for (i, j), value in entries.items()}
         return _reorder(magnetic(field, pairs, fields, bracket.weights), names)

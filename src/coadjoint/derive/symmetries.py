@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import Quantity, entries
+from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.setting import Setting, once, shape
 from coadjoint.derive.structure import has_structure, poisson_structure
@@ -26,11 +26,11 @@ from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_functi
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.model import Symmetry, matrix_size, unpacked
+from coadjoint.spec.model import Symmetry, matrix_size, unpack
 
 #: Components that move, by name.
 Moves = Mapping[str, Element]
-_NOTHING: Mapping[str, Quantity] = MappingProxyType({})
+_NOTHING: Mapping[str, Value] = MappingProxyType({})
 
 
 def momentum_maps(setting: Setting, energy: Element | None) -> dict[str, tuple[Element, ...]]:
@@ -43,10 +43,10 @@ def momentum_maps(setting: Setting, energy: Element | None) -> dict[str, tuple[E
     return {each.name: _values(setting, each, energy) for each in setting.spec.symmetries}
 
 
-def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Quantity:
+def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Value:
     """The components of a momentum map as what it is in formulas."""
     if symmetry.form in ("antisymmetric", "symmetric"):
-        return unpacked(components, symmetry.form)
+        return unpack(components, symmetry.form)
     return shape(components, symmetry.shape)
 
 
@@ -79,6 +79,11 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     return MomentumMap(algebra, structure, tuple(generators), values, sign)
 
 
+def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:
+    """The components that each basis vector of the algebra moves, as declared."""
+    return [_moves(setting, symmetry, element) for element in _elements(setting, symmetry)]
+
+
 def structure_of(equations: Equations) -> PoissonStructure:
     """The emitted bracket, velocities put in."""
     tensor = equations.exact.poisson_tensor
@@ -98,7 +103,7 @@ def positions(setting: Setting) -> tuple[str, ...]:
 # -- elements of the algebra and what they move ---------------------------------------------------
 
 
-def _elements(setting: Setting, symmetry: Symmetry) -> list[Quantity]:
+def _elements(setting: Setting, symmetry: Symmetry) -> list[Value]:
     """Each basis vector as formulas have it: a scalar, a vector, a matrix, or its place."""
     field, algebra = setting.field, symmetry.algebra
     n = algebra.dimension
@@ -118,14 +123,12 @@ def _elements(setting: Setting, symmetry: Symmetry) -> list[Quantity]:
     return [field.vector(int(i == k) for i in range(n)) for k in range(n)]
 
 
-def _evaluate_at(
-    setting: Setting, formula: Formula, symmetry: Symmetry, element: Quantity
-) -> Element:
+def _evaluate_at(setting: Setting, formula: Formula, symmetry: Symmetry, element: Value) -> Element:
     """A scalar formula at one element."""
     return setting.formula(formula, _name_element(symmetry, element))
 
 
-def _name_element(symmetry: Symmetry, element: Quantity) -> dict[str, Quantity]:
+def _name_element(symmetry: Symmetry, element: Value) -> dict[str, Value]:
     """An element, and its parts along the blocks of the algebra, by the names in formulas."""
     named = {symmetry.element: element}
     if not symmetry.as_matrix and isinstance(element, tuple):
@@ -135,7 +138,7 @@ def _name_element(symmetry: Symmetry, element: Quantity) -> dict[str, Quantity]:
     return named
 
 
-def _moves(setting: Setting, symmetry: Symmetry, element: Quantity) -> Moves:
+def _moves(setting: Setting, symmetry: Symmetry, element: Value) -> Moves:
     """The components that an element moves, as declared."""
     if symmetry.linear:
         by_name = {variable.name: variable for variable in setting.spec.state}
@@ -149,7 +152,7 @@ def _moves(setting: Setting, symmetry: Symmetry, element: Quantity) -> Moves:
 
 
 def moved_components(
-    setting: Setting, formulas: Mapping[str, Formula], known: Mapping[str, Quantity] = _NOTHING
+    setting: Setting, formulas: Mapping[str, Formula], known: Mapping[str, Value] = _NOTHING
 ) -> dict[str, Element]:
     """Values of formulas for variables of the state, by the components of these.
 
@@ -178,7 +181,7 @@ def _kept_entries(
         "antisymmetric": [rows[i][j] for i in range(size) for j in range(i + 1, size)],
         "symmetric": [rows[i][j] for i in range(size) for j in range(i, size)],
     }.get(form, list(parts))
-    if any(x != y for x, y in zip(entries(unpacked(kept, form)), parts, strict=True)):
+    if any(x != y for x, y in zip(entries(unpack(kept, form)), parts, strict=True)):
         raise _fault(setting, formula, f"the value is not {form}", "Correct the formula.")
     return tuple(kept)
 
@@ -200,7 +203,7 @@ def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tup
 
 
 @once
-def _resting(setting: Setting) -> dict[str, list[tuple[Quantity, Element]]]:
+def _resting(setting: Setting) -> dict[str, list[tuple[Value, Element]]]:
     """J of each basis vector without the part of time, by the names of the momentum maps."""
     return {
         each.name: [(x, _value(setting, each, x)) for x in _elements(setting, each)]
@@ -208,7 +211,7 @@ def _resting(setting: Setting) -> dict[str, list[tuple[Quantity, Element]]]:
     }
 
 
-def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
+def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
     """J of one element, without the part of time."""
     if symmetry.map is not None:
         return _evaluate_at(setting, symmetry.map, symmetry, element)
@@ -217,7 +220,7 @@ def _value(setting: Setting, symmetry: Symmetry, element: Quantity) -> Element:
     if moves.keys() <= covector.keys():
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())
     formula = next(iter(symmetry.generators.values()), None)
-    if not has_structure(setting):
+    if setting.spec.constraints or not has_structure(setting):
         problem = "the motion has no bracket in which something could generate it"
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
@@ -250,15 +253,16 @@ def _covector(setting: Setting) -> dict[str, Element]:
     pairs = _pairs(setting)
     if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
         return {q: field[p] / weight for q, p, weight in pairs}
-    slopes = mechanics(setting).momenta
-    return dict(zip(setting.positions, slopes, strict=True))
+    slopes = mechanics(setting).momenta  # those of coordinates are the last of a frame
+    own = len(slopes) - len(setting.positions)
+    return dict(zip(setting.positions, slopes[own:], strict=True))
 
 
 def _generator(
     setting: Setting,
     structure: PoissonStructure,
     symmetry: Symmetry,
-    element: Quantity,
+    element: Value,
     resting: Element,
 ) -> tuple[VectorField, bool]:
     """The vector field of one element on the whole state, time standing still.

@@ -215,7 +215,7 @@ class Element:
         )
 
     def _insert(self, numer: PolyElement, powers: Mapping[int, int]) -> None:
-        """Add a quotient: to the one with the same factors, or beside the others."""
+        """Add a quotient: to the one with the same factors, or as a further one."""
         while numer:
             kept, support = {}, []
             for number, exponent in powers.items():
@@ -247,7 +247,7 @@ class Element:
             self._sorted = tuple(sorted(parts, key=Quotient.order) if several else parts)
         return self._sorted
 
-    def combined(self) -> Element:
+    def combine(self) -> Element:
         """The same element as a single quotient, or zero."""
         if len(self._parts) < 2:
             return self
@@ -305,7 +305,7 @@ class Element:
         Raises:
             ZeroDivisionError: The element is zero, also by what the field knows of its functions.
         """
-        whole = self.combined()
+        whole = self.combine()
         if not whole._parts or self.factors.is_hidden_zero(whole):
             raise ZeroDivisionError("the inverse of the zero element")
         (quotient,) = whole._parts.values()
@@ -417,3 +417,18 @@ class Element:
 
     def __repr__(self) -> str:
         return str(self._sympy_())
+
+
+def numerator(element: Element) -> PolyElement:
+    """The numerator of a nonzero element."""
+    (quotient,) = element.combine().parts
+    return quotient.numer
+
+
+def split_by_powers(p: PolyElement, place: int) -> dict[int, PolyElement]:
+    """The coefficients of the powers of a generator, in the order in which they occur."""
+    result: dict[int, dict[tuple[int, ...], Any]] = {}
+    for exponents, value in p.terms():
+        rest = (*exponents[:place], 0, *exponents[place + 1 :])
+        result.setdefault(exponents[place], {})[rest] = value
+    return {power: p.ring.from_dict(terms) for power, terms in result.items()}

@@ -100,6 +100,14 @@ def exact(number: Any) -> Fraction:
     return Fraction(int(number.numerator), int(number.denominator))
 
 
+def rational_root(value: Fraction) -> Fraction | None:
+    """The square root of the square of a rational number; None for other numbers."""
+    if value < 0:
+        return None
+    root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
+    return root if root**2 == value else None
+
+
 def number_factors(number: Fraction) -> Powers:
     """A rational number as powers of -1, of small primes and of what is left of the rest."""
     vector: Powers = {-1: 1} if number < 0 else {}

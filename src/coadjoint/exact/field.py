@@ -9,20 +9,42 @@ Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 import sympy
 from sympy.polys.rings import PolyElement
 
 from coadjoint.exact.dense import total
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import Element, split_by_powers
 from coadjoint.exact.rationals import Rationals
 from coadjoint.exact.region import Condition, Region
-from coadjoint.exact.written import Adjoined
 
 Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Adjoined:
+    """A generator that stands for ``function(argument)``.
+
+    Attributes:
+        generator: Its name.
+        function: ``sqrt``, ``sin``, ``cos``, ``exp`` or ``log``.
+        argument: An element of generators adjoined before.
+        partner: The generator of the cosine for a sine and the other way round, else empty.
+    """
+
+    generator: str
+    function: str
+    argument: Element
+    partner: str = ""
+
+
+def refuse_call(function: str, argument: Any) -> NoReturn:
+    """No arithmetic for functions: the elements have none."""
+    raise AssertionError(f"{function}({argument}) in a function-free element")
+
 
 _SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")}
 
@@ -57,7 +79,7 @@ class Field(Rationals):
         self.relations: dict[frozenset[str], object] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
-        """Take it that conditions hold, besides those that do."""
+        """Assume further conditions."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
 
@@ -112,15 +134,15 @@ class Field(Rationals):
         """
         from coadjoint.exact.relations import vanish_by_relations  # which needs fields
 
-        if not self.adjoined or self.function_free(element):
+        if not self.adjoined or self.is_function_free(element):
             return element
         called = self.functions_in(element)
         for known in reversed(self.adjoined.values()):
             square = self._square_of(known)
             if square is not None:
-                element = self.reduce_squares(element.combined(), known.generator, square)
-        short = element.combined()
-        if self.function_free(short):
+                element = self.reduce_squares(element.combine(), known.generator, square)
+        short = element.combine()
+        if self.is_function_free(short):
             return short
         hidden = vanish_by_relations(self, short, called | self.functions_in(short))
         return self.zero if hidden else short
@@ -139,15 +161,11 @@ class Field(Rationals):
         if not element or element.parts[0].numer.degree(ring.gens[place]) < 2:
             return element
         (quotient,) = element.parts
-        parts: dict[int, dict[tuple[int, ...], Any]] = {}
-        for monomial, coefficient in quotient.numer.terms():
-            rest = (*monomial[:place], monomial[place] % 2, *monomial[place + 1 :])
-            part = parts.setdefault(monomial[place] // 2, {})
-            part[rest] = part.get(rest, 0) + coefficient
-        numer = sum(
-            (self._element(ring.from_dict(part)) * square**k for k, part in parts.items()),
-            self.zero,
-        )
+        parts: dict[int, PolyElement] = {}
+        for power, part in split_by_powers(quotient.numer, place).items():
+            odd = part * ring.gens[place] ** (power % 2)
+            parts[power // 2] = parts.get(power // 2, ring.zero) + odd
+        numer = sum((self.from_polynomial(p) * square**k for k, p in parts.items()), self.zero)
         return numer * Element(self._factors, [(ring.one, quotient.powers)])
 
     def is_zero(self, element: Element) -> bool:
@@ -164,7 +182,7 @@ class Field(Rationals):
             return False
         return self.is_zero(divisor)
 
-    def function_free(self, element: Element) -> bool:
+    def is_function_free(self, element: Element) -> bool:
         """Whether no adjoined function occurs, so that the normal form decides both ways."""
         return not any(name in self.adjoined for name in self.names_in(element))
 
@@ -191,13 +209,9 @@ class Field(Rationals):
                     raise ValueError(f"{name} stands in a sum in a denominator")
                 else:
                     powers[number] = exponent
-            parts: dict[int, dict[tuple[int, ...], Any]] = {}
-            for monomial, number in quotient.numer.terms():
-                rest = (*monomial[:place], 0, *monomial[place + 1 :])
-                parts.setdefault(monomial[place] - lowered, {})[rest] = number
-            for power, part in parts.items():
-                whole = Element(self._factors, [(self._ring.from_dict(part), powers)])
-                result.setdefault(power, []).append(whole)
+            for power, part in split_by_powers(quotient.numer, place).items():
+                whole = Element(self._factors, [(part, powers)])
+                result.setdefault(power - lowered, []).append(whole)
         return {power: value for power in sorted(result) if (value := self.sum(result[power]))}
 
     def functions_in(self, element: Element) -> frozenset[str]:
@@ -250,20 +264,20 @@ class Field(Rationals):
         element: Element,
         values: Mapping[str, Value],
         number: Callable[[Fraction], Value],
-        call: Callable[[str, Value], Value],
+        call: Callable[[str, Value], Value] = refuse_call,
         factors: dict[int, Value] | None = None,
     ) -> Value:
         """The value of an element in any arithmetic with ``+ * /``: term by term, as it is written.
 
         Args:
             element: What to evaluate.
-            values: Values of the symbols that occur.
+            values: Values of the symbols that occur; of functions, too, that are not to be called.
             number: Takes a rational number into the arithmetic.
-            call: Applies an elementary function by name.
+            call: Applies an elementary function by name; left out where there is none.
             factors: Remembers the factors of denominators, for many elements at the same values.
         """
         factors = {} if factors is None else factors
-        calls = self._calls_in(element)
+        calls = [name for name in self._calls_in(element) if name not in values]
         known = dict(values) if calls else values
         for generator in calls:
             argument = self.adjoined[generator].argument
@@ -296,9 +310,9 @@ class Field(Rationals):
             names |= self.reach(self.adjoined[generator].argument)
         return names
 
-    def in_sines(self, p: PolyElement) -> PolyElement:
+    def write_in_sines(self, p: PolyElement) -> PolyElement:
         """A polynomial with even powers of cosines written by sines: ``1 - cos^2`` as ``sin^2``."""
-        element = self._element(p)
+        element = self.from_polynomial(p)
         for name, known in self.adjoined.items():
             if known.function == "cos" and name in self.names_in(element):
                 element = self.reduce_squares(element, name, self.one - self[known.partner] ** 2)

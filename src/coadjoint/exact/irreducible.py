@@ -11,28 +11,20 @@ Read next: `coadjoint.exact.factors`, which keeps exponents and numbers;
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import reduce
 from itertools import combinations
-from math import isqrt
 from typing import Any
 
 from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.element import Element, remove_factor
-from coadjoint.exact.factors import common_divisor, in_own_symbols
+from coadjoint.exact.element import Element, numerator, remove_factor, split_by_powers
+from coadjoint.exact.factors import common_divisor, exact, in_own_symbols, rational_root
 from coadjoint.exact.field import Field
 
 #: Symbols that are eliminated at a time by the relations of functions, to find factors.
 ELIMINATED = 2
 #: Addends of a polynomial that is factored; larger ones may take minutes.
 FACTORED = 400
-
-
-def numerator(element: Element) -> PolyElement:
-    """The numerator of a nonzero element."""
-    (quotient,) = element.combined().parts
-    return quotient.numer
 
 
 def all_factors(field: Field, element: Element) -> Iterator[Element]:
@@ -80,7 +72,7 @@ def _relations_in(
             if present[own] > 0 or present[other] > 0:
                 yield gens[own] ** 2 + gens[other] ** 2 - 1
         if known.function == "sqrt" and present[own] > 0 and known.argument != 0:
-            (argument,) = known.argument.combined().parts
+            (argument,) = known.argument.combine().parts
             if not argument.powers:
                 yield gens[own] ** 2 - argument.numer
 
@@ -129,7 +121,7 @@ def _eliminations(relation: PolyElement) -> Iterator[Elimination]:
     [(0, 2, h**2 - 1), (1, 2, x**2 + 1)]
     """
     for place, degree in enumerate(relation.degrees()):
-        parts = _powers(relation, place)
+        parts = split_by_powers(relation, place)
         if degree in (1, 2) and len(parts) - (0 in parts) == 1 and parts[degree].is_ground:
             yield place, degree, -parts.get(0, relation.ring.zero) / parts[degree].LC
 
@@ -138,7 +130,7 @@ def _eliminate(polynomial: PolyElement, elimination: Elimination) -> PolyElement
     """A polynomial with a power of a symbol replaced."""
     place, degree, value = elimination
     symbol, result = polynomial.ring.gens[place], polynomial.ring.zero
-    for power, part in _powers(polynomial, place).items():
+    for power, part in split_by_powers(polynomial, place).items():
         result += part * symbol ** (power % degree) * value ** (power // degree)
     return result
 
@@ -185,7 +177,7 @@ def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
     if degree == 1:
         yield own
         return
-    symbol, parts = polynomial.ring.gens[place], _powers(own, place)
+    symbol, parts = polynomial.ring.gens[place], split_by_powers(own, place)
     a, b, c = (parts.get(power, polynomial.ring.zero) for power in (2, 1, 0))
     root = _square_root(b**2 - 4 * a * c)
     if root is None:
@@ -195,19 +187,10 @@ def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
     yield _part_content(2 * a * symbol + b + root, place)[1]
 
 
-def _powers(polynomial: PolyElement, place: int) -> dict[int, PolyElement]:
-    """The coefficients of the powers of a symbol."""
-    result: dict[int, dict[tuple[int, ...], Any]] = {}
-    for exponents, value in polynomial.terms():
-        rest = (*exponents[:place], 0, *exponents[place + 1 :])
-        result.setdefault(exponents[place], {})[rest] = value
-    return {power: polynomial.ring.from_dict(terms) for power, terms in result.items()}
-
-
 def _part_content(polynomial: PolyElement, place: int) -> tuple[PolyElement, PolyElement]:
     """The greatest factor without a symbol, and the rest."""
     content = polynomial.ring.zero
-    for part in _powers(polynomial, place).values():
+    for part in split_by_powers(polynomial, place).values():
         content = common_divisor(content, part)
     return content, polynomial.exquo(content)
 
@@ -217,13 +200,10 @@ def _square_root(polynomial: PolyElement) -> PolyElement | None:
     if not polynomial:
         return polynomial
     number, parts = polynomial.sqf_list()
-    whole = Fraction(int(number.numerator), int(number.denominator))
-    if whole < 0 or any(power % 2 for _, power in parts):
+    whole = rational_root(exact(number))
+    if whole is None or any(power % 2 for _, power in parts):
         return None
-    top, bottom = isqrt(whole.numerator), isqrt(whole.denominator)
-    if Fraction(top, bottom) ** 2 != whole:
-        return None
-    root = polynomial.ring.one * polynomial.ring.domain(top, bottom)
+    root = polynomial.ring.one * polynomial.ring.domain(whole.numerator, whole.denominator)
     for part, power in parts:
         root *= part ** (power // 2)
     return root

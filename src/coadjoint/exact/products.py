@@ -13,9 +13,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import mul
 
-from sympy.polys.rings import PolyElement
-
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import (
     Factor,
     Powers,
@@ -94,10 +92,10 @@ class Products:
         if values:
             element = self.ring.substitute(element, values)
         for name in reversed(self._squares):
-            element = self.ring.reduce_squares(element.combined(), name, self._squares[name])
-        return element.combined()
+            element = self.ring.reduce_squares(element.combine(), name, self._squares[name])
+        return element.combine()
 
-    def known_signs(self) -> dict[str, Element]:
+    def derive_signs(self) -> dict[str, Element]:
         """The signs of factors by others, as all that is positive together says."""
         rows = eliminate_signs(self._rows, list(self._signs))
         result = {}
@@ -116,7 +114,7 @@ class Products:
             return radicand
         vector = self.factor(radicand)
         self.note_positive(vector)
-        odd, members = self._dependent(odd_factors(vector))
+        odd, members = self._reduce_by_radicals(odd_factors(vector))
         if odd:
             return self._new_root(vector)
         for radical in members:
@@ -137,7 +135,9 @@ class Products:
         self._radicals.append(Radical(root, inner))
         return self.normalize(outer * root)
 
-    def _dependent(self, odd: frozenset[Factor]) -> tuple[frozenset[Factor], list[Radical]]:
+    def _reduce_by_radicals(
+        self, odd: frozenset[Factor]
+    ) -> tuple[frozenset[Factor], list[Radical]]:
         """What is left of a product of factors modulo squares and radicands, and which of these."""
         rows: list[tuple[Factor, frozenset[Factor], frozenset[int]]] = []
         for n, radical in enumerate(self._radicals):
@@ -227,7 +227,7 @@ class Products:
 
     def factor(self, element: Element) -> Powers:
         """A nonzero element as powers of factors."""
-        top, bottom = self.ring.fraction(element.combined())
+        top, bottom = self.ring.fraction(element.combine())
         vector: Powers = {}
         for p, power in [(top, 1), *((p, -e) for p, e in bottom)]:
             content, factors = factors_of(p)
@@ -245,11 +245,6 @@ class Products:
                 for f, e in vector.items()
             ),
         )
-
-
-def numerator(element: Element) -> PolyElement:
-    """The numerator of a nonzero quotient; a generator as a factor."""
-    return element.parts[0].numer
 
 
 def product(ring: Field, powers: Iterable[tuple[Element, int]]) -> Element:

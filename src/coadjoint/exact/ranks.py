@@ -1,6 +1,7 @@
 """Ranks of matrices of functions: never above the true rank at almost every point.
 
-Comes in: sparse rows of elements. Goes out: a rank, which is a certain bound from below.
+Comes in: sparse rows of elements, or square matrices. Goes out: a rank, which is a certain bound
+from below; for square matrices a rational point of the domain at which every pivot excludes zero.
 
 Rational entries are taken at a random point modulo a prime. Where no denominator is zero there,
 this is a homomorphism of rings: a minor with a nonzero value is a nonzero function. Entries with
@@ -27,8 +28,18 @@ import mpmath
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.linear import SpanModulo, primes, rank_modulo
-from coadjoint.exact.witness import UNDEFINED, Enclosure, enclosure, points_inside
+from coadjoint.exact.witness import TRIES as REAL_POINTS
+from coadjoint.exact.witness import (
+    UNDEFINED,
+    Enclosure,
+    Point,
+    enclosure,
+    enclosures,
+    points_inside,
+)
 
+#: A square matrix of elements.
+Matrix = Sequence[Sequence[Element]]
 #: Points at which a rank is taken; the largest counts.
 POINTS = 2
 #: Points without a pole are looked for that often, each modulo another prime.
@@ -103,7 +114,7 @@ def independent_rows(field: Field, rows: Sequence[Mapping[int, Element]]) -> lis
     if not is_exact(field, _entries(rows)):
         return max(islice(_enclose(field, rows), POINTS), key=len)
     spans = ((SpanModulo(prime), numbers) for prime, numbers in _sample(field, rows))
-    chosen = (span.independent(numbers) for span, numbers in islice(spans, POINTS))
+    chosen = (span.add_independent(numbers) for span, numbers in islice(spans, POINTS))
     return max(chosen, key=len)
 
 
@@ -113,7 +124,7 @@ def is_exact(field: Field, elements: Iterable[Element]) -> bool:
     A square root modulo a prime has no sign: that of x^2 may be -x there, which it is nowhere for
     positive x.
     """
-    return not field.adjoined or all(map(field.function_free, elements))
+    return not field.adjoined or all(map(field.is_function_free, elements))
 
 
 def _entries(rows: Sequence[Mapping[int, Element]]) -> Iterator[Element]:
@@ -173,7 +184,7 @@ def _enclose(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
             result = True
             yield certain_rows(values)
     if not result:
-        entry = next(e for e in _entries(rows) if not field.function_free(e))
+        entry = next(e for e in _entries(rows) if not field.is_function_free(e))
         text = element_text(field, entry)
         shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
         raise AlgebraError(
@@ -222,3 +233,59 @@ def certain_rows(
             pivots.append((chosen, rest))
             places.append(place)
     return places
+
+
+# -- regular matrices ---------------------------------------------------------------------------
+
+
+def witness_regular(field: Field, *matrices: Matrix) -> Point | None:
+    """A point of the domain at which the determinants of matrices are certainly not zero.
+
+    Returns:
+        Values of the symbols in the matrices; None where no point was found, which proves nothing.
+
+    >>> field = Field(["x"], slots=1)
+    >>> exp = field.call("exp", field["x"])
+    >>> witness_regular(field, [[exp, field.one], [exp**2, exp]])
+    >>> witness_regular(field, [[exp, field.one], [field.one, exp]])
+    {'x': Fraction(-3, 5)}
+    """
+    for point, result in _values(field, matrices):
+        if all(len(certain_rows(rows)) == len(rows) for rows in result):
+            return point
+    return None
+
+
+def certain_minors(field: Field, matrix: Matrix) -> int:
+    """How many leading minors of a square matrix, one after the other, are not identically zero.
+
+    >>> field = Field(["x"])
+    >>> certain_minors(field, [[field["x"], field.one], [field.one, field.zero]])
+    2
+    >>> certain_minors(field, [[field.zero, field.one], [field.one, field["x"]]])
+    0
+    """
+    most = 0
+    for _, (rows,) in _values(field, [matrix]):
+        pivots = certain_rows(rows, on_diagonal)
+        count = next((n for n, place in enumerate(pivots) if n != place), len(pivots))
+        most = max(most, count)
+        if most == len(matrix):
+            break
+    return most
+
+
+def _values(
+    field: Field, matrices: Sequence[Matrix]
+) -> Iterator[tuple[Point, list[list[dict[int, Enclosure]]]]]:
+    """Points of the domain with bounds of the entries of matrices."""
+    entries = [entry for matrix in matrices for row in matrix for entry in row]
+    names = frozenset[str]().union(*map(field.reach, entries))
+    for point in islice(points_inside(field, entries), REAL_POINTS):
+        with suppress(*UNDEFINED):
+            values = iter(enclosures(field, entries, point))
+            shown = {name: value for name, value in point.items() if name in names}
+            yield (
+                shown,
+                [[{j: next(values) for j in range(len(row))} for row in m] for m in matrices],
+            )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from operator import mul, truediv
@@ -23,9 +24,24 @@ from sympy.polys.rings import PolyElement, PolyRing
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, Factors, Quotient
 from coadjoint.exact.residues import residue
-from coadjoint.exact.written import Monomial, Written
 
 Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Monomial:
+    """A rational number times powers of generators, by name and in the order of the field."""
+
+    number: Fraction
+    powers: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True)
+class Written:
+    """A quotient as it is written: addends of the numerator over powers of divisors."""
+
+    monomials: tuple[Monomial, ...]
+    divisors: tuple[tuple[Element, int], ...]
 
 
 class Rationals:
@@ -45,7 +61,7 @@ class Rationals:
         self._names = (*names, *self._free)
         self._position = {name: n for n, name in enumerate(self._names)}
         self._generators = {
-            name: self._element(generator)
+            name: self.from_polynomial(generator)
             for name, generator in zip(self._names, self._ring.gens, strict=True)
         }
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
@@ -55,18 +71,19 @@ class Rationals:
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]
 
-    def _element(self, p: PolyElement) -> Element:
+    def from_polynomial(self, p: PolyElement) -> Element:
+        """A polynomial of the ring as an element."""
         return Element(self._factors, [(p, {})])
 
     @property
     def zero(self) -> Element:
         """The element 0."""
-        return self._element(self._ring.zero)
+        return self.from_polynomial(self._ring.zero)
 
     @property
     def one(self) -> Element:
         """The element 1."""
-        return self._element(self._ring.one)
+        return self.from_polynomial(self._ring.one)
 
     def number(self, value: Fraction | int) -> Element:
         """A rational number as an element."""
@@ -85,7 +102,7 @@ class Rationals:
         own = [names.get(str(s), str(s)) for s in element.factors.ring.symbols]
 
         def move(p: PolyElement) -> Element:
-            return self._element(self._ring.from_dict(self._place(own, dict(p))))
+            return self.from_polynomial(self._ring.from_dict(self._place(own, dict(p))))
 
         def divide(quotient: Quotient) -> Element:
             factors = element.factors.known
@@ -102,7 +119,7 @@ class Rationals:
     ) -> Element:
         """A polynomial in some symbols, by the exponents of its terms in their order."""
         numbers = {e: QQ(value.numerator, value.denominator) for e, value in terms.items()}
-        return self._element(self._ring.from_dict(self._place(names, numbers)))
+        return self.from_polynomial(self._ring.from_dict(self._place(names, numbers)))
 
     def _place(self, names: Sequence[str], terms: Mapping[Any, Any]) -> dict[Any, Any]:
         """Terms in some symbols as terms of the ring; only symbols that occur must be known."""
@@ -121,7 +138,7 @@ class Rationals:
         addends = list(elements)
         return total(addends) if addends else self.zero
 
-    def vector(self, values: Iterable[Element | int]) -> tuple[Element, ...]:
+    def vector(self, values: Iterable[Element | Fraction | int]) -> tuple[Element, ...]:
         """Values that may still be plain numbers, as elements."""
         return tuple(self.zero + value for value in values)
 
@@ -183,14 +200,6 @@ class Rationals:
             )
         return self._remembered[p]
 
-    def rewritten(
-        self, element: Element, values: Mapping[str, Value], number: Callable[[Fraction], Value]
-    ) -> Value:
-        """The value of an element where each generator, also of a function, has a value given."""
-        factors: dict[int, Value] = {}
-        quotients = [self._quotient(q, values, number, factors) for q in element.parts]
-        return total(quotients) if quotients else number(Fraction(0))
-
     def _replace(self, element: Element, values: Mapping[str, Element]) -> Element:
         """An element with generators replaced; the others stay together, as they are."""
         places = {self._position[name]: value for name, value in values.items()}
@@ -216,7 +225,11 @@ class Rationals:
                 rest[n] = 0
             groups.setdefault(moved, {})[tuple(rest)] = number
         return self.sum(
-            reduce(mul, (values[n] ** e for n, e in moved), self._element(self._ring.from_dict(g)))
+            reduce(
+                mul,
+                (values[n] ** e for n, e in moved),
+                self.from_polynomial(self._ring.from_dict(g)),
+            )
             for moved, g in groups.items()
         )
 
@@ -278,13 +291,9 @@ class Rationals:
         (quotient,) = element.parts
         return quotient.numer, [(self._factors.known[n], e) for n, e in quotient.powers.items()]
 
-    def from_polynomial(self, p: PolyElement) -> Element:
-        """A polynomial of the ring as an element."""
-        return self._element(p)
-
     def numerators(self, elements: Iterable[Element]) -> tuple[list[PolyElement], Element]:
         """Numerators over a common denominator, and its reciprocal."""
-        quotients = [each.combined().parts for each in elements]
+        quotients = [each.combine().parts for each in elements]
         common: dict[int, int] = {}
         for quotient, *_ in filter(None, quotients):
             for number, exponent in quotient.powers.items():
@@ -318,7 +327,7 @@ class Rationals:
         ]
 
     def _factor(self, number: int) -> Element:
-        return self._element(self._factors.known[number])
+        return self.from_polynomial(self._factors.known[number])
 
     def terms(self, element: Element) -> tuple[Element, ...]:
         """The addends of the numerators, each over the whole denominator of its quotient."""

@@ -1,8 +1,8 @@
 """Regions: where values of the functions of a field are looked at.
 
 Comes in: what a spec declares: its parameters, defaults and the conditions of ``[domain]``. Goes
-out: a record that stays with the `Field`, so that nothing is decided outside of the domain. Beside
-it the field knows only which symbols are positive.
+out: a record that stays with the `Field`, so that nothing is decided outside of the domain. The
+field itself knows only which symbols are positive.
 Read next: `coadjoint.prove.points`, which draws points in it.
 """
 
@@ -37,7 +37,7 @@ class Region:
         defaults: A value for each symbol that has one.
         conditions: What holds wherever anything in the field is asked for, as ``cos(phi) > 0``;
             normal forms rest on it. `Field.assume` adds to it.
-        bounds: What holds besides where claims are looked at, of reactions and pivots for example;
+        bounds: What also holds where claims are looked at, of reactions and pivots for example;
             normal forms know nothing of it.
         definitions: Values of further names, each in terms of symbols and of names before it.
         momenta: Momenta in terms of velocities, for functions that are written in velocities.

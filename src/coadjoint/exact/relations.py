@@ -26,13 +26,12 @@ from math import prod
 
 from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.element import Element
+from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import Factor, factors_of
-from coadjoint.exact.field import Field
+from coadjoint.exact.field import Adjoined, Field
 from coadjoint.exact.lattices import Lattice
-from coadjoint.exact.products import Products, numerator, product
+from coadjoint.exact.products import Products, product
 from coadjoint.exact.witness import witness_nonzero
-from coadjoint.exact.written import Adjoined
 
 #: Terms of a sine of a sum; one with more keeps a generator of its own.
 EXPANDED = 64
@@ -92,9 +91,9 @@ class Relations:
         """Whether an element is zero by the relations; only numerators count."""
         if not element:
             return True
-        top, _ = self.field.fraction(element.combined())
+        top, _ = self.field.fraction(element.combine())
         return not self.products.normalize(
-            self.products.normalize(self._of_polynomial(top)), self.products.known_signs()
+            self.products.normalize(self._of_polynomial(top)), self.products.derive_signs()
         )
 
     @cached_property
@@ -117,7 +116,7 @@ class Relations:
     def _image(self, element: Element) -> Element:
         """An element in the new ring, as one quotient."""
         values = {name: self.ring[name] for name in self.field.names} | self._images
-        result = self.field.rewritten(element, values, self.ring.number)
+        result = self.field.evaluate(element, values, self.ring.number)
         return self.products.normalize(result)
 
     def _of_polynomial(self, p: PolyElement) -> Element:
@@ -174,7 +173,7 @@ def relations_of(field: Field, names: frozenset[str]) -> Relations | None:
         if asked not in field.relations:
             field.relations[asked] = None  # for what the arguments themselves ask
             try:
-                field.relations[asked] = _found_relations(field, asked)
+                field.relations[asked] = _find_relations(field, asked)
             except BaseException:  # a budget that is spent says nothing of relations
                 del field.relations[asked]
                 raise
@@ -184,7 +183,7 @@ def relations_of(field: Field, names: frozenset[str]) -> Relations | None:
     return known if isinstance(known, Relations) else None
 
 
-def _found_relations(field: Field, names: frozenset[str]) -> Relations | str | None:
+def _find_relations(field: Field, names: frozenset[str]) -> Relations | str | None:
     """The relations; None if the functions are independent, or why they were not found."""
     try:
         result = Relations(field, names)
@@ -215,7 +214,7 @@ def _polynomial_factors(field: Field, element: Element) -> list[PolyElement]:
     """The factors of the numerator and the denominator of an element."""
     if element == 0:
         return []
-    top, bottom = field.fraction(element.combined())
+    top, bottom = field.fraction(element.combine())
     return [f for p in (top, *(p for p, _ in bottom)) for f, _ in factors_of(p)[1]]
 
 

@@ -97,7 +97,7 @@ def sign(field: Field, element: Element, *, strict: bool = True) -> int:
     whole = field.normal(element)
     if whole == 0:
         return 0
-    return Signs(field, strict=strict).of(whole.combined())
+    return Signs(field, strict=strict).of(whole.combine())
 
 
 class Signs:
@@ -106,7 +106,7 @@ class Signs:
     Args:
         field: The field.
         strict: Whether values may nowhere be 0.
-        more: What holds besides the conditions of the field.
+        more: What holds in addition to the conditions of the field.
     """
 
     def __init__(self, field: Field, *, strict: bool, more: Sequence[Condition] = ()) -> None:
@@ -131,7 +131,7 @@ class Signs:
             given: What vanishes nowhere.
         """
         positive = (p for p, strict in self._given if strict)
-        whole = element.combined()
+        whole = element.combine()
         top, _ = self.field.fraction(whole)
         others = (*map(self.field.from_polynomial, positive), *given)
         return bool(self._plain(top)) or is_factor(self.field, whole, others)
@@ -151,13 +151,13 @@ class Signs:
         if known.function == "sqrt":
             argument = self.field.normal(known.argument)
             signs = Signs(self.field, strict=True, more=self._more)
-            return 1 + (argument != 0 and signs.of(argument.combined()) == 1)
+            return 1 + (argument != 0 and signs.of(argument.combine()) == 1)
         return 2 * (known.function == "exp")
 
     def _conditions(self) -> Iterator[tuple[PolyElement, bool]]:
         """What the conditions of the field say is positive: monic, or minus a monic one."""
         for condition in (*self.field.region.conditions, *self._more):
-            element = self.field.normal(condition.element).combined()
+            element = self.field.normal(condition.element).combine()
             if element == 0:
                 continue
             top, bottom = self.field.fraction(element)
@@ -238,7 +238,7 @@ class Signs:
         symbol measured from its bound: ``3 + q`` for ``q > 3``.
         """
         yield p, self.known
-        swapped = self.field.in_sines(p)
+        swapped = self.field.write_in_sines(p)
         if swapped != p:
             yield swapped, self.known
         moved, measured = p, list[int]()
@@ -300,17 +300,17 @@ class Signs:
 
 def is_factor(field: Field, element: Element, others: Iterable[Element]) -> bool:
     """Whether a numerator is a factor of one of those of some others."""
-    own, _ = field.fraction(element.combined())
-    tops = (field.fraction(part)[0] for part in map(Element.combined, others) if part.parts)
+    own, _ = field.fraction(element.combine())
+    tops = (field.fraction(part)[0] for part in map(Element.combine, others) if part.parts)
     return any(remove_factor(top, own, 1)[0] > 0 for top in tops)
 
 
 def complete_squares(field: Field, element: Element) -> list[Element]:
     """The linear polynomials whose squares a definite quadratic one is the sum of."""
     names = sorted(field.reach(element), key=field.names.index)
-    if not 0 < len(names) <= SQUARES or not field.function_free(element):
+    if not 0 < len(names) <= SQUARES or not field.is_function_free(element):
         return []
-    if field.normal(element).combined().parts[0].powers:
+    if field.normal(element).combine().parts[0].powers:
         return []
     rest, result, sign = element, list[Element](), 0
     for name in names:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
-from coadjoint.exact.written import Monomial, Written
+from coadjoint.exact.rationals import Monomial, Written
 
 
 def element_text(field: Field, element: Element) -> str:

@@ -7,13 +7,11 @@ Read next: `coadjoint.exact.signs`.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import reduce
-from math import isqrt
 from operator import mul
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.factors import exact, factors_of
+from coadjoint.exact.factors import exact, factors_of, rational_root
 from coadjoint.exact.field import Field
 from coadjoint.exact.signs import sign
 
@@ -40,17 +38,9 @@ def known_value(field: Field, function: str, argument: Element) -> Element | Non
     return None
 
 
-def rational_root(value: Fraction) -> Fraction | None:
-    """The square root of the square of a rational number; None for other numbers."""
-    if value < 0:
-        return None
-    root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
-    return root if root**2 == value else None
-
-
 def _root(field: Field, argument: Element) -> Element | None:
     """The square root of a square whose root has a declared sign."""
-    whole = field.normal(argument).combined()
+    whole = field.normal(argument).combine()
     if whole == 0:
         return whole
     top, bottom = field.fraction(whole)

@@ -153,7 +153,7 @@ def is_nonzero(field: Field, element: Element) -> bool:
     """
     if field.is_zero(element):
         return False
-    return field.function_free(element) or witness_nonzero(field, element) is not None
+    return field.is_function_free(element) or witness_nonzero(field, element) is not None
 
 
 def is_entire(field: Field, elements: Iterable[Element]) -> bool:

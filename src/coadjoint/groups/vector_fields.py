@@ -1,14 +1,14 @@
-r"""Group actions: vector fields and their Lie derivatives.
+r"""Group actions: vector fields, their Lie derivatives, and what maps do to covectors.
 
 Comes in: components as elements of a field in named coordinates. Goes out: `VectorField` and its
-calculus:
+calculus, Jacobian matrices and cotangent lifts:
 
 .. math:: \pounds_X Y = (DY) X - (DX) Y = [X, Y]_{operators}
 
 Read next: `coadjoint.theory.vector_fields`, which has the Jacobi-Lie bracket of the other sign.
 
 Source:
-    Holm (2011), Geometric Mechanics II, appendices A.2 and B.5 to B.7.
+    Holm (2011), Geometric Mechanics II, appendices A.2, A.3 and B.5 to B.7.
 """
 
 from __future__ import annotations
@@ -19,8 +19,22 @@ from typing import Any
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
-from coadjoint.exact.dense import Vector, add, apply, dot, scale, subtract
-from coadjoint.groups.lifts import jacobian
+from coadjoint.exact.dense import Matrix, Vector, add, apply, dot, scale, subtract, transpose
+
+
+def jacobian(field: Field, components: Sequence[Element], names: Sequence[str]) -> Matrix:
+    """``Df``: row i holds the partial derivatives of component i."""
+    return tuple(field.gradient(component, names) for component in components)
+
+
+def cotangent_lift(
+    field: Field, components: Sequence[Element], names: Sequence[str], covector: Sequence[Any]
+) -> Vector:
+    """``T*f(alpha) = Df^T alpha``, a covector at x from one at f(x).
+
+    ``<T*f(alpha), v> = <alpha, Tf(v)>`` defines it.
+    """
+    return apply(transpose(jacobian(field, components, names)), covector)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.mechanics.solver import forward_name, scaled_name
 from coadjoint.exact import Element, Field
-from coadjoint.exact.written import Written
+from coadjoint.exact.rationals import Written
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes

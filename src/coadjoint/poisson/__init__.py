@@ -6,15 +6,22 @@ Read next: `coadjoint.poisson.structure`, then `coadjoint.poisson.brackets` and
 `coadjoint.poisson.casimirs`.
 """
 
-from coadjoint.poisson.brackets import canonical, declared, frozen, lie_poisson, magnetic, nambu
+from coadjoint.poisson.brackets import (
+    canonical,
+    declare_bracket,
+    freeze_bracket,
+    lie_poisson,
+    magnetic,
+    nambu,
+)
 from coadjoint.poisson.structure import PoissonStructure, compatible_sum
 
 __all__ = [
     "PoissonStructure",
     "canonical",
     "compatible_sum",
-    "declared",
-    "frozen",
+    "declare_bracket",
+    "freeze_bracket",
     "lie_poisson",
     "magnetic",
     "nambu",

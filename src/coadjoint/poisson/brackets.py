@@ -45,7 +45,7 @@ def lie_poisson(
     return _from_constants(algebra, field, names, field.vector(field[x] for x in names), sign)
 
 
-def frozen(
+def freeze_bracket(
     algebra: LieAlgebra,
     field: Field,
     names: Sequence[str],
@@ -60,7 +60,7 @@ def frozen(
     """
     _check_count(f"frozen bracket of {algebra.name}", names, algebra.dimension)
     _check_count(f"frozen bracket of {algebra.name}", point, algebra.dimension)
-    structure = _from_constants(algebra, field, names, field.vector(_exact(point)), sign)
+    structure = _from_constants(algebra, field, names, field.vector(point), sign)
     extra = {pair: field.zero + value for pair, value in (cocycle or {}).items()}
     entries = {pair: structure.tensor[pair[0]][pair[1]] + value for pair, value in extra.items()}
     kept = {(i, j): structure.tensor[i][j] for i, j in combinations(range(len(names)), 2)}
@@ -112,7 +112,7 @@ def magnetic(
         field: Where the coordinates are symbols.
         pairs: Each coordinate with its momentum.
         two_form: B by pairs of momenta, each pair once; a function of the coordinates q alone.
-        weights: w, 1 by default; entries of symmetric matrices beside the diagonal have 1/2, since
+        weights: w, 1 by default; off-diagonal entries of symmetric matrices have 1/2, since
             ``tr(P dS/dt)`` counts them twice.
 
     Raises:
@@ -123,7 +123,7 @@ def magnetic(
     """
     coordinates, momenta = [q for q, _ in pairs], [p for _, p in pairs]
     names, n = (*coordinates, *momenta), len(pairs)
-    scale = field.vector(_exact(weights or (1,) * n))
+    scale = field.vector(weights or (1,) * n)
     entries = {(a, n + a): scale[a] for a in range(n)}
     for (first, second), value in two_form.items():
         a, b = places(momenta, (first, second))
@@ -209,7 +209,7 @@ def nambu_tensor(
     return antisymmetric(field, n, entries)
 
 
-def declared(
+def declare_bracket(
     field: Field, names: Sequence[str], brackets: Mapping[tuple[int, int], Element], name: str = ""
 ) -> PoissonStructure:
     """A structure from its brackets ``{(i, j): {x_i, x_j}}``, each pair once, others zero.
@@ -218,7 +218,7 @@ def declared(
         AlgebraError: A pair is given twice or with itself, or the Jacobi identity fails.
 
     >>> field = Field(["q", "p"])
-    >>> declared(field, field.names, {(1, 0): -field.one}).bracket(field["q"], field["p"])
+    >>> declare_bracket(field, field.names, {(1, 0): -field.one}).bracket(field["q"], field["p"])
     1
     """
     entries: dict[tuple[int, int], Element] = {}
@@ -246,8 +246,3 @@ def _check_count(
             found=len(found),
             expected=expected,
         )
-
-
-def _exact(values: Sequence[Number]) -> list[Element | int]:
-    """Numbers as they come; a field takes them in."""
-    return list(values)  # type: ignore[arg-type]

@@ -8,10 +8,12 @@ Read next: `coadjoint.poisson.summands`, `coadjoint.poisson.search`, `coadjoint.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
+
+from sympy.polys.rings import PolyElement
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
@@ -21,7 +23,6 @@ from coadjoint.limits import INVARIANT_TERMS, MONOMIALS
 from coadjoint.poisson.brackets import lie_poisson
 from coadjoint.poisson.invariants import has_trace_form, matrix_invariants
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.polynomials import Polynomial
 from coadjoint.poisson.search import independent_polynomials, polynomial_casimirs, quotients
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.poisson.summands import restrict_algebra, restrict_structure, summands
@@ -182,7 +183,7 @@ def search_summands(
     return CasimirSearch(structure, tuple(result))
 
 
-def independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
+def select_independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
     """Those functions whose gradients are independent of all before them at a generic point."""
     slopes = [structure.gradient(function) for function in functions]
     return [functions[place] for place in independent_rows(structure.field, slopes)]
@@ -226,44 +227,42 @@ def _search(
         AlgebraError: An entry of the tensor is not a polynomial over the rationals.
     """
     bracket = PolynomialBracket(structure)
-    reached = _affordable(structure.dimension, degree)
-    found, ways, searched = list[Polynomial](), list[str](), list[str]()
-
-    def search_polynomials() -> None:
-        nonlocal found
-        new = polynomial_casimirs(bracket, reached, expected)
-        more = independent_polynomials([*found, *new], bracket.size, expected)
-        way = f"exact linear solve over the monomials up to degree {reached}"
-        ways.extend([way] * (len(more) > len(found)))
-        searched.append(f"all polynomials of degree <= {reached}")
-        found = more
-
-    def search_matrices() -> None:
-        nonlocal found
-        if algebra is None or not has_trace_form(algebra):
-            return
-        more = independent_polynomials(
-            [*found, *matrix_invariants(algebra, bracket)], bracket.size, expected
+    reached = _reduce_degree(structure.dimension, degree)
+    polynomials, ways, searched = list[PolyElement](), list[str](), list[str]()
+    steps: list[tuple[str, str, Callable[[], list[PolyElement]]]] = [
+        (
+            f"exact linear solve over the monomials up to degree {reached}",
+            f"all polynomials of degree <= {reached}",
+            lambda: polynomial_casimirs(bracket, reached, expected),
         )
-        ways.extend(["invariants of the matrix dual by the trace form"] * (len(more) > len(found)))
+    ]
+    if algebra is not None and has_trace_form(algebra):
+        matrices = algebra, bracket
         bound = f"at most {INVARIANT_TERMS} products of terms (INVARIANT_TERMS)"
-        searched.append(f"traces of powers or Pfaffians of its matrix dual that take {bound}")
-        found = more
-
-    steps = search_polynomials, search_matrices
-    for search in steps if reached == degree else reversed(steps):
-        if len(found) < expected:
-            search()
-    generators = [p.element(structure.field, structure.names) for p in found]
-    if len(found) < expected and bracket.scalings:
+        steps.append(
+            (
+                "invariants of the matrix dual by the trace form",
+                f"traces of powers or Pfaffians of its matrix dual that take {bound}",
+                lambda: matrix_invariants(*matrices),
+            )
+        )
+    for way, family, search in steps if reached == degree else reversed(steps):
+        if len(polynomials) < expected:
+            before = len(polynomials)
+            candidates = [*polynomials, *search()]
+            polynomials = independent_polynomials(candidates, bracket.size, expected)
+            ways += [way] * (len(polynomials) > before)
+            searched.append(family)
+    generators = [structure.field.polynomial(structure.names, p) for p in polynomials]
+    if len(polynomials) < expected and bracket.scalings:
         count = len(generators)
         rational = quotients(structure, bracket, reached)
-        generators = independent(structure, [*generators, *rational])
+        generators = select_independent(structure, [*generators, *rational])
         ways += ["quotients of semi-invariants"] * (len(generators) > count)
         searched.append(f"products of powers of semi-invariants of degree <= {reached}")
     skipped = "" if reached == degree else _explain_skipped(structure.dimension, degree, reached)
     if known:  # long functions; these are independent of each other by now
-        generators = independent(structure, [*known, *generators])[len(known) :]
+        generators = select_independent(structure, [*known, *generators])[len(known) :]
     return SummandSearch(
         structure,
         len(known),
@@ -276,7 +275,7 @@ def _search(
     )
 
 
-def _affordable(dimension: int, degree: int) -> int:
+def _reduce_degree(dimension: int, degree: int) -> int:
     """The largest degree up to the one that is asked for with at most `MONOMIALS` monomials."""
     while degree > 1 and _monomials(dimension, degree) > MONOMIALS:
         degree -= 1

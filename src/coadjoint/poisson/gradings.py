@@ -10,15 +10,15 @@ Read next: `coadjoint.poisson.casimirs`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from operator import mul
 
 from coadjoint.exact.ansatz import Exponents
-from coadjoint.exact.linear import nullspace, whole_numbers
-from coadjoint.poisson.polynomials import Polynomial
+from coadjoint.exact.linear import nullspace, nullspace_modulo, whole_numbers
+from coadjoint.poisson.polynomials import Terms
 
 #: The nonzero entries ``{x_i, x_j}``, both orders of i and j.
-Entries = Mapping[tuple[int, int], Polynomial]
+Entries = Mapping[tuple[int, int], Terms]
 #: Weights of a coordinate or a monomial: integers, then parities as the bits of one integer.
 Weight = tuple[tuple[int, ...], int]
 
@@ -34,10 +34,10 @@ class Gradings:
     def __init__(self, entries: Entries, size: int) -> None:
         relations = _relations(entries, size)
         integral = [whole_numbers(vector) for vector in nullspace(relations, size + 1)]
-        parities = _parities(relations, size + 1)
+        parities = nullspace_modulo(relations, size + 1, 2)
         self._integral = [[vector.get(i, 0) for i in range(size)] for vector in integral]
         self._parity = [
-            sum(1 << n for n, vector in enumerate(parities) if vector >> i & 1) for i in range(size)
+            sum(1 << n for n, vector in enumerate(parities) if i in vector) for i in range(size)
         ]
 
     def weight(self, exponents: Exponents) -> Weight:
@@ -53,26 +53,9 @@ def _relations(entries: Entries, size: int) -> list[dict[int, int]]:
     """``w_i + w_j + s - sum_k e_k w_k = 0`` for each term of each entry; s is the last unknown."""
     result = set()
     for (i, j), entry in entries.items():
-        for exponents in entry.terms:
+        for exponents in entry:
             row = [-e for e in exponents] + [1]
             row[i] += 1
             row[j] += 1
             result.add(tuple(row))
     return [{k: value for k, value in enumerate(row) if value} for row in sorted(result)]
-
-
-def _parities(relations: Sequence[Mapping[int, int]], unknowns: int) -> list[int]:
-    """A basis of the solutions modulo 2, each as the bits of an integer."""
-    pivots: dict[int, int] = {}  # by leading bit, fully reduced
-    for relation in relations:
-        row = sum(1 << k for k, value in relation.items() if value % 2)
-        for bit, pivot in pivots.items():
-            if row >> bit & 1:
-                row ^= pivot
-        if row:
-            lead = row.bit_length() - 1
-            pivots = {b: p ^ row if p >> lead & 1 else p for b, p in pivots.items()} | {lead: row}
-    free = [k for k in range(unknowns) if k not in pivots]
-    return [
-        1 << k | sum(1 << lead for lead, pivot in pivots.items() if pivot >> k & 1) for k in free
-    ]

@@ -21,17 +21,49 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import Any
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.linear import Span
-from coadjoint.groups.lifts import cotangent_lift
-from coadjoint.groups.vector_fields import VectorField, exterior_derivative, lie_derivative
+from coadjoint.groups.vector_fields import (
+    VectorField,
+    cotangent_lift,
+    exterior_derivative,
+    lie_derivative,
+)
 from coadjoint.poisson.structure import PoissonStructure
 
 #: A position, its momentum and ``{q, p}``, which is 1 but for entries of symmetric matrices.
 Pair = tuple[str, str, Element]
+
+
+def action_defects(
+    algebra: LieAlgebra, generators: Sequence[VectorField], sign: int
+) -> list[Element]:
+    """``[xi_P, eta_P] +- [xi, eta]_P``: whether the generators are those of an action.
+
+    Args:
+        algebra: What acts.
+        generators: ``xi_P`` of each basis vector.
+        sign: +1 for a left action, -1 for a right one.
+    """
+    defects: list[Element] = []
+    for i, j in combinations(range(algebra.dimension), 2):
+        result = lie_derivative(generators[i], generators[j])
+        expected = _in_algebra(algebra, sign, i, j).items()
+        for n, component in enumerate(result.components):
+            moved = result.field.sum(c * generators[k].components[n] for k, c in expected)
+            defects.append(component + moved)
+    return defects
+
+
+def _in_algebra(algebra: LieAlgebra, sign: int, i: int, j: int) -> dict[int, Any]:
+    """``+-[e_i, e_j]`` by basis vectors, the sign that of the side."""
+    flip = sign if i < j else -sign
+    row = algebra.constants.get((min(i, j), max(i, j)), {})
+    return {k: flip * value for k, value in row.items()}
 
 
 @dataclass(frozen=True)
@@ -77,30 +109,16 @@ class MomentumMap:
     def _pairs(self) -> Iterator[tuple[int, int]]:
         return combinations(range(self.algebra.dimension), 2)
 
-    def _in_algebra(self, i: int, j: int) -> dict[int, Element]:
-        """``+-[e_i, e_j]`` by basis vectors, the sign that of the side."""
-        flip = self.sign if i < j else -self.sign
-        row = self.algebra.constants.get((min(i, j), max(i, j)), {})
-        return {k: self.structure.field.zero + flip * value for k, value in row.items()}
-
     def _along(self, i: int, j: int) -> Element:
         """``+-J^[e_i, e_j]``."""
-        field = self.structure.field
-        return field.sum(c * self.values[k] for k, c in self._in_algebra(i, j).items())
+        field, row = self.structure.field, _in_algebra(self.algebra, self.sign, i, j)
+        return field.sum(c * self.values[k] for k, c in row.items())
 
     # -- laws, each as elements that must be zero ---------------------------------------
 
     def action_defects(self) -> list[Element]:
         """``[xi_P, eta_P] +- [xi, eta]_P``: whether the generators are those of an action."""
-        field, places = self.structure.field, range(self.structure.dimension)
-        defects = []
-        for i, j in self._pairs():
-            result = lie_derivative(self.generators[i], self.generators[j])
-            expected = self._in_algebra(i, j).items()
-            for n in places:
-                moved = field.sum(c * self.generators[k].components[n] for k, c in expected)
-                defects.append(result.components[n] + moved)
-        return defects
+        return action_defects(self.algebra, self.generators, self.sign)
 
     def bracket_defects(self) -> list[Element]:
         """``xi_P{x_a, x_b} - {xi_P x_a, x_b} - {x_a, xi_P x_b}``: the flow keeps the bracket."""
@@ -158,7 +176,7 @@ class MomentumMap:
             field.sum(
                 c * sigma(m, z)
                 for x, y, z in ((i, j, k), (j, k, i), (k, i, j))
-                for m, c in self._in_algebra(x, y).items()
+                for m, c in _in_algebra(self.algebra, self.sign, x, y).items()
             )
             for i, j, k in combinations(range(self.algebra.dimension), 3)
         ]
@@ -198,7 +216,7 @@ def generating_function(structure: PoissonStructure, X: VectorField) -> Element:
     ``dJ`` solves ``tensor . dJ = X``, and ``J(x) = integral of x . dJ(s x) ds`` from 0 to 1.
 
     Raises:
-        AlgebraError: There is no such function, or this road does not lead to it.
+        AlgebraError: There is no such function, or this method does not find it.
 
     >>> from coadjoint.poisson import canonical
     >>> field = Field(["q", "p"])
@@ -215,7 +233,7 @@ def generating_function(structure: PoissonStructure, X: VectorField) -> Element:
     if span.dependent or result is None:
         raise AlgebraError(
             f"{structure.label}: the bracket is degenerate, so a generator does not say its "
-            "momentum map; expected the map beside the generators.",
+            "momentum map; expected the map together with the generators.",
             found=len(span.dependent),
         )
     slopes = [field.zero + result.get(j, 0) for j in range(len(names))]
@@ -237,10 +255,10 @@ def _degree(field: Field, term: Element, names: Sequence[str]) -> int:
     (written,) = field.quotients(term)
     (monomial,) = written.monomials
     bottom = frozenset[str]().union(*(field.reach(divisor) for divisor, _ in written.divisors))
-    if not field.function_free(term) or bottom & set(names):
+    if not field.is_function_free(term) or bottom & set(names):
         raise AlgebraError(
             f"the generator with {term} is no polynomial of the coordinates; expected the "
-            "momentum map beside it.",
+            "momentum map together with it.",
             found=str(term),
         )
     return sum(power for name, power in monomial.powers if name in names)

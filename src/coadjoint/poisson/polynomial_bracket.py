@@ -9,16 +9,12 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from sympy.polys.rings import PolyElement
+
 from coadjoint.errors import AlgebraError
 from coadjoint.exact.ansatz import Exponents
-from coadjoint.poisson.generating import generating
-from coadjoint.poisson.polynomials import (
-    Number,
-    Polynomial,
-    coordinate,
-    read_polynomial,
-)
-from coadjoint.poisson.structure import PoissonStructure
+from coadjoint.poisson.polynomials import Number, read_terms
+from coadjoint.poisson.structure import PoissonStructure, find_generators
 
 
 class PolynomialBracket:
@@ -45,7 +41,7 @@ class PolynomialBracket:
             if entry
         }
         self._acting = [
-            [(j, self.entries[i, j].terms) for j in range(self.size) if (i, j) in self.entries]
+            [(j, self.entries[i, j]) for j in range(self.size) if (i, j) in self.entries]
             for i in range(self.size)
         ]
 
@@ -61,11 +57,11 @@ class PolynomialBracket:
                     result[product] = result.get(product, 0) + value * power
         return result
 
-    def is_casimir(self, p: Polynomial) -> bool:
+    def is_casimir(self, p: PolyElement) -> bool:
         """Whether a polynomial commutes with the generating coordinates, hence with all."""
         for i in self.generating:
             total: dict[Exponents, Number] = {}
-            for monomial, factor in p.terms.items():
+            for monomial, factor in p.items():
                 for product, value in self.along(i, monomial).items():
                     total[product] = total.get(product, 0) + factor * value
             if any(total.values()):
@@ -76,18 +72,20 @@ class PolynomialBracket:
     def generating(self) -> list[int]:
         """Coordinates that generate the others."""
         single = {
-            pair: next(iter(entry.terms)).index(1)
+            pair: next(iter(entry)).index(1)
             for pair, entry in self.entries.items()
-            if len(entry.terms) == 1 and entry.degree == 1
+            if [sum(exponents) for exponents in entry] == [1]
         }
-        return generating(single, self.size)
+        return find_generators(single, self.size)
 
     @cached_property
     def scalings(self) -> dict[int, dict[int, Number]]:
         """The coordinates with ``{x_i, x_j} = a_ij x_j`` for every j, and their factors."""
         result = {}
         for i, entries in enumerate(self._acting):
-            single = all(set(terms) == set(coordinate(j, self.size).terms) for j, terms in entries)
+            single = all(
+                len(terms) == 1 and sum(e) == e[j] == 1 for j, terms in entries for e in terms
+            )
             if entries and single:
                 result[i] = {j: value for j, terms in entries for value in terms.values()}
         return result
@@ -100,14 +98,14 @@ class PolynomialBracket:
         )
 
 
-def _read(structure: PoissonStructure, i: int, j: int) -> Polynomial:
-    """An entry as a polynomial.
+def _read(structure: PoissonStructure, i: int, j: int) -> dict[Exponents, Number]:
+    """An entry as a polynomial, by its terms.
 
     Raises:
         AlgebraError: It is none; the message names the pair of coordinates.
     """
     try:
-        return read_polynomial(structure.field, structure.tensor[i][j], structure.names)
+        return read_terms(structure.field, structure.tensor[i][j], structure.names)
     except AlgebraError as error:
         a, b = structure.names[i], structure.names[j]
         raise AlgebraError(f"{{{a}, {b}}}: {error}", pair=[a, b], **error.parts) from None

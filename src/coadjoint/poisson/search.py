@@ -15,12 +15,15 @@ from functools import reduce
 from itertools import islice
 from operator import mul
 
+from sympy.polys.orderings import grlex
+from sympy.polys.rings import PolyElement
+
 from coadjoint.exact import Element
 from coadjoint.exact.ansatz import Exponents, conditions_on, monomials, solve_exactly
 from coadjoint.exact.linear import SpanModulo, primes, whole_numbers
 from coadjoint.poisson.gradings import Gradings, Weight
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
-from coadjoint.poisson.polynomials import Number, Polynomial, monomial_order
+from coadjoint.poisson.polynomials import Number, primitive, slopes_modulo
 from coadjoint.poisson.structure import PoissonStructure
 
 #: Primes modulo which independence is looked for.
@@ -30,7 +33,9 @@ PRIMES = 2
 MonomialClass = tuple[tuple[Number, ...], list[Exponents]]
 
 
-def polynomial_casimirs(bracket: PolynomialBracket, degree: int, expected: int) -> list[Polynomial]:
+def polynomial_casimirs(
+    bracket: PolynomialBracket, degree: int, expected: int
+) -> list[PolyElement]:
     """Independent polynomial Casimirs, by degree and then by the number of their terms.
 
     Args:
@@ -66,7 +71,7 @@ def quotients(
     kept = independent_polynomials((solution for _, solution in result), bracket.size, bracket.size)
     characters = [next(c for c, solution in result if solution is p) for p in kept]
     balance = conditions_on(dict(enumerate(character)) for character in characters)
-    bases = [p.element(structure.field, structure.names) for p in kept]
+    bases = [structure.field.polynomial(structure.names, p) for p in kept]
     return [
         reduce(mul, (bases[place] ** power for place, power in whole_numbers(powers).items()))
         for powers in solve_exactly(range(len(bases)), balance)
@@ -85,24 +90,24 @@ def monomial_classes(bracket: PolynomialBracket, degree: int) -> list[MonomialCl
 
 def _solutions(
     bracket: PolynomialBracket, members: Sequence[Exponents], asked: Sequence[int]
-) -> list[Polynomial]:
+) -> list[PolyElement]:
     """A basis of the polynomials in some monomials that commute with some coordinates.
 
     It is the reduced echelon form with the largest monomials first, so that what has a low degree
     has no terms of a high one; short ones come first.
     """
-    order = sorted(members, key=monomial_order, reverse=True)
+    order = sorted(members, key=grlex, reverse=True)
     conditions = conditions_on(
         {(i, product): x for i in asked for product, x in bracket.along(i, monomial).items()}
         for monomial in order
     )
-    result = [Polynomial(terms).primitive() for terms in solve_exactly(order, conditions)]
-    return sorted(result, key=lambda p: (p.degree, len(p.terms)))
+    result = [primitive(terms) for terms in solve_exactly(order, conditions)]
+    return sorted(result, key=lambda p: (sum(p.LM), len(p)))
 
 
 def independent_polynomials(
-    solutions: Iterable[Polynomial], size: int, most: int
-) -> list[Polynomial]:
+    solutions: Iterable[PolyElement], size: int, most: int
+) -> list[PolyElement]:
     """Those whose gradients are independent of all before them, up to a number.
 
     A rank at a point modulo a prime is a lower bound, so that independence is proved. What is not
@@ -110,9 +115,9 @@ def independent_polynomials(
     """
     source = random.Random(1)  # noqa: S311 (not for secrets)
     points = {p: [source.randrange(1, p) for _ in range(size)] for p in islice(primes(), PRIMES)}
-    spans, kept = [SpanModulo(prime) for prime in points], list[Polynomial]()
+    spans, kept = [SpanModulo(prime) for prime in points], list[PolyElement]()
     for solution in solutions if most else ():
-        raised = [s for s in spans if s.add(solution.slopes_modulo(points[s.prime], s.prime))]
+        raised = [s for s in spans if s.add(slopes_modulo(solution, points[s.prime], s.prime))]
         if not raised:
             continue
         kept, spans = [*kept, solution], raised

@@ -19,7 +19,6 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.witness import is_nonzero
-from coadjoint.poisson.generating import generating
 from coadjoint.poisson.jacobi import Triple, schouten_bracket, slopes_by
 
 
@@ -142,10 +141,10 @@ class PoissonStructure:
     def is_casimir(self, f: Element) -> bool:
         """Whether f commutes with every function: ``J grad f = 0``, by normal form."""
         slopes = self.gradient(f)
-        return all(self.field.is_zero(self._along(i, slopes)) for i in self._asked)
+        return all(self.field.is_zero(self._along(i, slopes)) for i in self._tested_places)
 
     @cached_property
-    def _asked(self) -> Sequence[int]:
+    def _tested_places(self) -> Sequence[int]:
         """Coordinates that generate the others where Jacobi is proved by constants; else all."""
         try:
             algebra = self.lie_algebra()
@@ -155,7 +154,7 @@ class PoissonStructure:
             return range(self.dimension)
         rows = algebra.constants.items()
         single = {pair: next(iter(row)) for pair, row in rows if len(row) == 1}
-        return generating(single, self.dimension)
+        return find_generators(single, self.dimension)
 
     def generic_rank(self) -> int:
         """Rank of the tensor at almost every point: even, and the dimension of the leaves."""
@@ -295,3 +294,35 @@ def _number(field: Field, value: Element) -> Fraction | Element:
     """An element as a number where it is one."""
     number = field.as_number(value)
     return value if number is None else number
+
+
+def find_generators(products: Mapping[tuple[int, int], int], size: int) -> list[int]:
+    """The coordinates, in order, that the brackets of those before do not give.
+
+    Only these need be asked whether they commute with a Casimir C: by the Jacobi identity
+    ``{x_i, C} = {x_j, C} = 0`` gives ``{{x_i, x_j}, C} = 0``.
+
+    Args:
+        products: ``{(i, j): k}`` where ``{x_i, x_j}`` is a nonzero multiple of x_k.
+        size: Number of coordinates.
+
+    >>> find_generators({(0, 1): 2, (1, 2): 0, (0, 2): 1}, 4)
+    [0, 1, 3]
+    """
+    partners: list[list[tuple[int, int]]] = [[] for _ in range(size)]
+    for (i, j), k in products.items():
+        partners[i].append((j, k))
+        partners[j].append((i, k))
+    reached: set[int] = set()
+    kept = []
+    for i in range(size):
+        if i in reached:
+            continue
+        kept.append(i)
+        waiting = [i]
+        while waiting:
+            new = waiting.pop()
+            if new not in reached:
+                reached.add(new)
+                waiting += [k for j, k in partners[new] if j in reached]
+    return kept

@@ -9,8 +9,10 @@ Read next: `coadjoint.poisson.casimirs`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
+
+from sympy.utilities.iterables import connected_components
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra.matrices import SparseMatrix
@@ -31,34 +33,16 @@ def summands(structure: PoissonStructure) -> list[tuple[int, ...]]:
     """
     place = {name: n for n, name in enumerate(structure.names)}
     reached: dict[int, list[int]] = {}  # by object: a Lie-Poisson tensor repeats few objects often
-    linked = []
+    linked: list[tuple[int, int]] = []
     for i, row in enumerate(structure.tensor):
         for j, entry in enumerate(row[:i]):
             if entry:
                 if id(entry) not in reached:
                     names = structure.field.reach(entry) & place.keys()
                     reached[id(entry)] = [place[name] for name in names]
-                linked.append((i, j, *reached[id(entry)]))
-    return _connect(structure.dimension, linked)
-
-
-def _connect(size: int, linked: Iterable[Sequence[int]]) -> list[tuple[int, ...]]:
-    """The classes of the smallest equivalence in which the members of each tuple are equivalent."""
-    leader = list(range(size))
-
-    def find(n: int) -> int:
-        while leader[n] != n:
-            leader[n] = n = leader[leader[n]]
-        return n
-
-    for first, *others in linked:
-        for other in others:
-            a, b = sorted((find(first), find(other)))
-            leader[b] = a
-    classes: dict[int, list[int]] = {}
-    for n in range(size):
-        classes.setdefault(find(n), []).append(n)
-    return [tuple(members) for members in classes.values()]
+                linked += [(i, other) for other in (j, *reached[id(entry)])]
+    parts = connected_components((range(structure.dimension), linked))
+    return sorted(tuple(sorted(part)) for part in parts)
 
 
 def restrict_structure(structure: PoissonStructure, places: Sequence[int]) -> PoissonStructure:

@@ -159,7 +159,7 @@ class ReducedBracket:
     def defect_somewhere(self) -> tuple[Triple, Decision] | None:
         """A triple whose Jacobi defect is not zero at some point; None if none is found."""
         entries = [e for row in (*self.tensor, *self.turn) for e in row]
-        plain = all(map(self.field.function_free, entries))
+        plain = all(map(self.field.is_function_free, entries))
         for point in islice(Points(self.field, entries), TRIED):
             with suppress(ZeroDivisionError, ValueError), mpmath.workdps(DIGITS):
                 for triple, value in self._defects_at(point, plain).items():

@@ -177,7 +177,7 @@ class CandidateSearch(PolynomialFamily):
         parts = (*self.samples.where.relations, *(p for known in self.known for p in known.parts))
         slopes = (map(point.value, self.field.gradient(part, state)) for part in parts)
         span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
-        return span.independent(self.gradient(each) for each in found)
+        return span.add_independent(self.gradient(each) for each in found)
 
     def find_new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.

@@ -173,7 +173,7 @@ class ChartMap:
 
     def _rank_on_domain(self, rows: Sequence[Mapping[int, Element]]) -> int:
         """The rank of a matrix at points where the relations hold, if such are known."""
-        plain = all(self.field.function_free(entry) for row in rows for entry in row.values())
+        plain = all(self.field.is_function_free(entry) for row in rows for entry in row.values())
         if not (self._is_quadric and plain):
             return generic_rank(self.field, rows)
         largest = 0
@@ -190,7 +190,7 @@ class ChartMap:
     def _is_quadric(self) -> bool:
         """Whether points of a relation are known that none of its symbols is solved for."""
         plain = all(
-            self.field.function_free(entry)
+            self.field.is_function_free(entry)
             for rows in self._derivatives
             for row in rows
             for entry in row.values()
@@ -203,7 +203,7 @@ class ChartMap:
 
         A line through one of them, which has few entries other than 0, meets it once more.
         """
-        if len(self.domain.relations) != 1 or not self.field.function_free(
+        if len(self.domain.relations) != 1 or not self.field.is_function_free(
             self.domain.relations[0]
         ):
             return []
@@ -294,7 +294,7 @@ class ChartMap:
     def _image_points(self) -> Iterator[list[Fraction]]:
         """The state at random points of the chart; none where a function is called."""
         values = [self.domain.on_zero_set(value) for value in self.chart.state]
-        if not all(map(self.field.function_free, values)) or not self.domain.is_solved:
+        if not all(map(self.field.is_function_free, values)) or not self.domain.is_solved:
             return
         for point in random_points(self.field.names, self.field.positive):
             yield [self.field.evaluate(value, point, Fraction, _no_call) for value in values]

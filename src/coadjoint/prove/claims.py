@@ -19,6 +19,7 @@ from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
+from coadjoint.prove.bound_symmetries import about_constrained_symmetries
 from coadjoint.prove.brackets import (
     about_algebra,
     about_bracket,
@@ -106,9 +107,18 @@ def has_bracket(motion: Motion) -> bool:
 
 
 def names_bracket(motion: Motion) -> bool:
-    """Whether a motion along a frame is claimed to have Casimirs, brackets or momentum maps."""
+    """Whether a motion along a frame is claimed to have Casimirs, brackets or momentum maps.
+
+    Under constraints symmetries are claimed of the motion and not of its bracket.
+    """
     spec = motion.spec
-    return has_frame(motion) and bool(spec.casimirs or spec.brackets or spec.symmetries)
+    symmetric = spec.symmetries and not spec.constraints
+    return has_frame(motion) and bool(spec.casimirs or spec.brackets or symmetric)
+
+
+def has_constraints(motion: Motion) -> bool:
+    """Whether constraints bind the motion."""
+    return bool(motion.spec.constraints)
 
 
 def has_energy(motion: Motion) -> bool:
@@ -143,6 +153,7 @@ EXAMINATIONS = (
     Examination(about_reduced_bracket, has_linear_constraints),
     Examination(about_symmetries, has_bracket),
     Examination(lambda motion: about_symmetries(carry_over(motion)), names_bracket),
+    Examination(about_constrained_symmetries, has_constraints),
     Examination(about_transformations),
     Examination(about_spatial),
     Examination(about_pairs, of_routes=True),

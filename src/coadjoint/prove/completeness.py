@@ -19,7 +19,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.exact.witness import is_entire
 from coadjoint.poisson import PoissonStructure
-from coadjoint.poisson.casimirs import CasimirSearch, independent, search_summands
+from coadjoint.poisson.casimirs import CasimirSearch, search_summands, select_independent
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.summands import restrict_algebra
 from coadjoint.prove.certificate import Verdict
@@ -130,17 +130,17 @@ def completeness(
     if proved is None:
         claimed = [c for casimir in setting.spec.casimirs for c in setting.components(casimir)]
         proved = [c for c in claimed if is_proved_casimir(equations, c)]
-    known = independent(structure, proved)
+    known = select_independent(structure, proved)
     expected = structure.dimension - structure.generic_rank()
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
     given = [setting.formula(function) for function in declared]
     given = [function for function in given if is_proved_casimir(equations, function)]
-    found = independent(structure, [*known, *given])[len(known) :]
+    found = select_independent(structure, [*known, *given])[len(known) :]
     missing, reached = "", 0
     generating: Sequence[int] = range(structure.dimension)
     if len(known) + len(found) < expected:
         search = _search(equations, structure, degree, [*known, *found])
-        found = independent(structure, [*known, *found, *search.generators])[len(known) :]
+        found = select_independent(structure, [*known, *found, *search.generators])[len(known) :]
         missing, reached = search.missing, search.degree
         generating = _generating(structure) if search.generators else generating
     whole = len(known) + len(found)

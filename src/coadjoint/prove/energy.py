@@ -111,7 +111,10 @@ class Balance:
 
     @cached_property
     def _velocities(self) -> tuple[str, ...]:
-        found = self._distribution
+        found, reduction = self._distribution, self.spec.reduction
+        if reduction is not None:  # R names those of the whole system
+            moving = reduction.whole.having_role("velocity")
+            return tuple(name for each in moving for name in each.components)
         return self.setting.velocities if found is None else found.frame.velocities
 
     @property

@@ -24,7 +24,7 @@ from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import determinant
-from coadjoint.exact.regular import witness_regular
+from coadjoint.exact.ranks import witness_regular
 from coadjoint.exact.signs import sign
 from coadjoint.exact.witness import is_entire, point_text
 
@@ -94,7 +94,7 @@ class LegendreMap:
             inside = "in all of [domain], " if field.region.conditions else ""
             return Invertible(
                 f"{inside}wherever the Lagrangian is defined and the declared signs hold",
-                "the determinants of the blocks of d2l/dxi2 keep their signs there",
+                "the determinants of the blocks of d2l/dxi2 have constant sign there",
             )
         point = witness_regular(field, *left)
         assert point is not None, "legendre_transform refuses these"

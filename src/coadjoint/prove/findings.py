@@ -94,5 +94,5 @@ def nonzero_at_a_point(
 
 def show_value(field: Field, value: Element) -> str:
     """`` = value`` where that is short, else that it is not zero."""
-    text = element_text(field, field.normal(value).combined())
+    text = element_text(field, field.normal(value).combine())
     return f" = {text}" if len(text) <= SHOWN else " is not zero"

@@ -26,9 +26,9 @@ from typing import Any
 from sympy import factorint
 
 from coadjoint.exact import Element, Field
+from coadjoint.exact.field import Adjoined
 from coadjoint.exact.lattices import coordinates, lattice_basis
 from coadjoint.exact.residues import Residue, residue, square_root
-from coadjoint.exact.written import Adjoined
 
 #: Numbers under square roots up to which prime factors are looked for.
 LARGEST = 10**18
@@ -98,7 +98,7 @@ class Functions:
 
     def _number(self, argument: Element) -> Fraction | None:
         """The rational number that an argument is at the given parameters, or None."""
-        if not self.field.function_free(argument):
+        if not self.field.is_function_free(argument):
             return None
         return self.field.as_number(self._settle(argument))
 
@@ -147,7 +147,7 @@ class Functions:
         if len(arguments) < 2 and not any(map(self._vanishes, arguments)):
             moves = tuple(bool(self.field.reach(a) & self._state) for a in arguments)
             return Lattice(moves, tuple({0: 1} for _ in arguments))
-        if self._numbers and not all(map(self.field.function_free, arguments)):
+        if self._numbers and not all(map(self.field.is_function_free, arguments)):
             return None  # roots of numbers may be numbers
         settled = [self._settle(a) if self._numbers else a for a in arguments]
         vectors = [self._vector(argument) for argument in settled]
@@ -156,7 +156,7 @@ class Functions:
         return self._reduce([vector for vector in vectors if vector is not None])
 
     def _vanishes(self, argument: Element) -> bool:
-        return self.field.function_free(argument) and self._settle(argument) == 0
+        return self.field.is_function_free(argument) and self._settle(argument) == 0
 
     def _vector(self, argument: Element) -> dict[Any, Fraction] | None:
         """The coefficients of an argument by its products of powers; None with sums below a bar."""

@@ -19,7 +19,7 @@ from dataclasses import replace
 from functools import partial
 
 from coadjoint.derive import Equations, Setting
-from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.setting import Declared, whole
 from coadjoint.exact import Element
@@ -92,7 +92,7 @@ def _particles(setting: Setting) -> tuple[Particles, dict[str, str]]:
 
 def _with_names(setting: Setting, system: Particles, names: Mapping[str, str]) -> Setting:
     """The Setting with the symbols of the particles in the place of its own."""
-    values: dict[str, Quantity] = {name: system.field[inner] for name, inner in names.items()}
+    values: dict[str, Value] = {name: system.field[inner] for name, inner in names.items()}
     spec = setting.spec
     quantities: list[Declared] = [*spec.state, *spec.parameters, *spec.driving]
     for quantity in quantities:

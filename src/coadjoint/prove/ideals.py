@@ -28,7 +28,8 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.exact.irreducible import FACTORED, all_factors, numerator
+from coadjoint.exact.element import numerator
+from coadjoint.exact.irreducible import FACTORED, all_factors
 from coadjoint.exact.signs import Signs, is_factor
 from coadjoint.prove.points import Branch, Points, Values
 
@@ -109,7 +110,7 @@ class Ideal:
 
     def remainder(self, element: Element) -> Element:
         """The remainder of an element's numerator; 0 only if the ideal contains it."""
-        combined = self.field.normal(element).combined()
+        combined = self.field.normal(element).combine()
         if combined == 0 or not self._basis:
             return combined
         terms: dict[tuple[int, ...], Any] = {}
@@ -272,7 +273,7 @@ class Ideal:
         # An irreducible relation alone generates a prime ideal, on all of which vanishes what does
         # where the slope is not 0; with functions it need not be irreducible.
         factored = len(numerator(relation)) <= FACTORED
-        alone = len(left) == 1 and factored and field.function_free(relation)
+        alone = len(left) == 1 and factored and field.is_function_free(relation)
         if divides and not alone and size > SLOPE:
             yield Branch(branch.solved, tuple(left), branch.nonzero)
             return

@@ -20,9 +20,9 @@ from functools import cached_property, reduce
 
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant
-from coadjoint.exact.element import remove_factor
+from coadjoint.exact.element import numerator, remove_factor
 from coadjoint.exact.factors import common_divisor
-from coadjoint.exact.irreducible import find_factors, numerator
+from coadjoint.exact.irreducible import find_factors
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import leading
 

@@ -216,7 +216,7 @@ def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
         reducible = len(find_factors(measure.field, short)) > 1
         own = find_factors(measure.field, minor, found) if reducible else [minor]
-        (written,) = motion.field.quotients(minor.combined())
+        (written,) = motion.field.quotients(minor.combine())
         found = [*own, *(divisor for divisor, _ in written.divisors), *found]
     known = list[Element]()
     for element in found:

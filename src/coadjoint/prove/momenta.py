@@ -21,6 +21,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.frames import frame_of
@@ -41,13 +42,18 @@ def about_momenta(motion: Motion) -> Iterator[Examined]:
 
 
 def momentum_law(equations: Equations, section: Section) -> Element:
-    """``Sigma l + <p, [xi, Sigma]> + <f, Sigma>``, in all velocities.
+    """The rate of the momentum along a section, by `law_along`."""
+    return law_along(equations, section_vector(equations.setting, section))
 
-    A section that a kept constraint does not allow gains the work of its reaction.
+
+def law_along(equations: Equations, along: Row) -> Element:
+    """``Sigma l + <p, [xi, Sigma]> + <f, Sigma>`` along a field of the frame, in all velocities.
+
+    A field that a constraint does not allow gains the work of its reaction.
     """
     found, setting = equations.distribution, equations.setting
     field, frame, bound = setting.field, frame_of(setting), () if found is None else found.equations
-    lagrangian, along = setting.lagrangian, section_vector(setting, section)
+    lagrangian = setting.lagrangian
     turned = frame.bracket(setting.elements(frame.velocities), along)
     momenta = mechanics(setting).momenta
     forces = external_forces(setting, frame.velocities)
@@ -67,7 +73,7 @@ def momentum_law(equations: Equations, section: Section) -> Element:
 def _statement(motion: Motion, section: Section, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     spec = motion.equations.spec
-    closed = motion.field.normal(motion.equations.close(law)).combined()
+    closed = motion.field.normal(motion.equations.close(law)).combine()
     if motion.where.contains(closed):
         return f"{section.name} is conserved, by its momentum equation"
     text = element_text(motion.field, closed)

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any, Self
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import Quantity
+from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Equation, Row
 from coadjoint.derive.setting import Setting
@@ -194,9 +194,9 @@ class Motion:
     # -- names ----------------------------------------------------------------------------
 
     @cached_property
-    def emitted(self) -> dict[str, Quantity]:
+    def emitted(self) -> dict[str, Value]:
         """The energy and the observables, by the names that claims use."""
-        known: dict[str, Quantity] = dict(self.equations.exact.observables)
+        known: dict[str, Value] = dict(self.equations.exact.observables)
         return known | {each.name: each.whole for each in self.equations.exact.emitted}
 
     @property

@@ -124,7 +124,7 @@ class Points:
         self.ring, self.branch = ring, branch or Branch()
         self.elements = tuple(elements)
         self._defined = tuple(ring.substitute(each, self.branch.solved) for each in defined)
-        self.plain = all(map(ring.function_free, self._involved))
+        self.plain = all(map(ring.is_function_free, self._involved))
 
     # -- what has a value -----------------------------------------------------------------
 

@@ -22,8 +22,8 @@ from coadjoint.exact import Element
 from coadjoint.exact.ansatz import Exponents, Solution, monomials
 from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
 from coadjoint.exact.packed import PackedSpan
+from coadjoint.exact.rationals import Written
 from coadjoint.exact.residues import residue
-from coadjoint.exact.written import Written
 from coadjoint.prove.densities import measure_of
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import Point, Samples, Slopes, leading
@@ -188,7 +188,7 @@ class PolynomialFamily:
         names, state = self.names, set(self.samples.state)
         (point,), prime = self.points(1), self.samples.prime
         terms = Terms()
-        for quotient in self.field.quotients(element.combined()):
+        for quotient in self.field.quotients(element.combine()):
             for monomial in quotient.monomials:
                 powers, value = dict(monomial.powers), residue(monomial.number, prime).value
                 exponents = tuple(powers.pop(name, 0) for name in names)
@@ -208,7 +208,7 @@ class PolynomialFamily:
         state = set(self.samples.state)
         written = self.field.quotients(function)
         is_long = len(written) > QUOTIENTS or sum(len(q.monomials) for q in written) > LONG
-        whole = function if is_long else self.field.normal(function).combined()
+        whole = function if is_long else self.field.normal(function).combine()
         quotients = self.field.quotients(whole)
         if any(self.field.reach(d) & state for q in quotients for d, _ in q.divisors):
             return None

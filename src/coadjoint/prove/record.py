@@ -34,6 +34,8 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
     }
     if spec.definitions:  # the texts of casimirs and claims may hold them
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
+    if spec.observables:  # claims name them
+        record["observables"] = {each.name: each.formula.in_one_line for each in spec.observables}
     if spec.constraints:  # in the order of the rows of the function constraint_residual
         record["constraints"] = {
             name: each.in_one_line for each in spec.constraints for name in each.components

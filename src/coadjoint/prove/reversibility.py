@@ -163,7 +163,7 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
     for name, rate in motion.rates.items():
         if rate == 0:
             continue
-        (written,) = field.quotients(field.normal(rate).combined())
+        (written,) = field.quotients(field.normal(rate).combine())
         inside = [d for d, _ in written.divisors if field.reach(d) & (state | time)]
         called = [field.adjoined[g].argument for g in field.functions_in(rate)]
         inside += [argument for argument in called if field.reach(argument) & (state | time)]
@@ -173,7 +173,7 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
             right = (1 + len(odd & time)) % 2
             found.append(((odd & state) ^ {name}, right))
         for element in inside:
-            for quotient in field.quotients(field.normal(element).combined()):
+            for quotient in field.quotients(field.normal(element).combine()):
                 for powers in (dict(each.powers) for each in quotient.monomials):
                     odd = frozenset(n for n, e in powers.items() if e % 2)
                     found.append((odd & state, len(odd & time) % 2))

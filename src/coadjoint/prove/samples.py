@@ -163,7 +163,7 @@ class Samples:
     def serves(self, others: Iterable[Element]) -> bool:
         """Whether the points serve functions that they were not made for."""
         elements = list(others)
-        plain = all(map(self.field.function_free, elements))
+        plain = all(map(self.field.is_function_free, elements))
         return plain and not _long_numbers(self.field, elements)
 
     @cached_property
@@ -325,7 +325,7 @@ def samples_of(motion: Motion) -> Samples:
 
 def leading(element: Element) -> Fraction:
     """The leading coefficient of the numerator, by whose sign functions are written down."""
-    return Fraction(str(element.combined().parts[0].numer.LC))
+    return Fraction(str(element.combine().parts[0].numer.LC))
 
 
 def random_numbers(motion: Motion) -> dict[str, Fraction]:

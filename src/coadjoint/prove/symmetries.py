@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.interpret import Quantity, entries
+from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.mechanics.driving import explicit, turned_by_time
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
@@ -36,7 +36,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     """Claims about actions, their momentum maps, and brackets."""
     first, spec, field, known = motion.equations, motion.spec, motion.field, motion.emitted
     energy = first.exact.energy
-    for symmetry in spec.symmetries:
+    for symmetry in () if spec.constraints else spec.symmetries:
         J = momentum_map(first, symmetry)
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
@@ -114,13 +114,13 @@ def _noether(
 # -- integrals and their symmetries ---------------------------------------------------------------
 
 
-def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterator[Examined]:
+def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[Examined]:
     """Of each claimed integral, that its Hamiltonian vector field commutes with the motion.
 
     On phase spaces, where no force acts; over an algebra the reduced space has no positions to be
-    moved.
+    moved, and under constraints the bracket does not satisfy the Jacobi identity.
     """
-    if first.spec.algebra is not None or first.spec.is_driven:
+    if first.spec.algebra is not None or first.spec.is_driven or first.spec.constraints:
         return
     for place, claim in enumerate(first.spec.conserved):
         if claim.where or claim.everywhere == "energy":
@@ -136,7 +136,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Quantity]) -> Iterato
         yield from mark_accepted(first.spec, key, follows, first.setting.field)
 
 
-def _flows(first: Equations, formula: Formula, known: Mapping[str, Quantity]) -> list[VectorField]:
+def _flows(first: Equations, formula: Formula, known: Mapping[str, Value]) -> list[VectorField]:
     """The Hamiltonian vector field of each component of an integral."""
     structure = structure_of(first)
     parts = map(first.close, first.setting.components(formula, known))
@@ -186,7 +186,7 @@ def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element
 
 
 def _claimed_bracket(
-    first: Equations, claim: ClaimedBracket, known: Mapping[str, Quantity]
+    first: Equations, claim: ClaimedBracket, known: Mapping[str, Value]
 ) -> list[Element]:
     """``{left_i, right_j} - value_ij``."""
     structure = structure_of(first)

@@ -163,7 +163,7 @@ def decide_zero(
         return _decide_where(elements, where, defined)
     left = [element for element in map(ring.normal, elements) if element != 0]
     if not left:
-        plain = all(map(ring.function_free, defined))
+        plain = all(map(ring.is_function_free, defined))
         if not plain and next(iter(Points(ring, (), None, defined)), None) is None:
             raise UndecidedError(f"no point is found at which it has a value. {ADVICE}")
         return prove_by_normal_form(ring)
@@ -294,7 +294,7 @@ ADVICE = (
 def _is_polynomial(element: Element, ring: Field) -> bool:
     """Whether an element has a value at every point."""
     divided = any(written.divisors for written in ring.quotients(element))
-    return ring.function_free(element) and not divided
+    return ring.is_function_free(element) and not divided
 
 
 def _poles(elements: Sequence[Element], where: Ideal) -> list[Element]:
@@ -340,12 +340,12 @@ def _look(
                 value = _value(element, ring, point, branch)
             if value:
                 written = (element, *branch.solved.values())
-                exact = not branch.rest and all(map(ring.function_free, written))
+                exact = not branch.rest and all(map(ring.is_function_free, written))
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
                 shown = show_point(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)
             # without functions the element is not zero, and another point shows it
-            seen += value is not None and (bool(branch.rest) or not ring.function_free(element))
+            seen += value is not None and (bool(branch.rest) or not ring.is_function_free(element))
             if seen == POINTS:
                 break
         counts.append(seen)
@@ -359,7 +359,7 @@ def _value(element: Element, ring: Field, point: Values, branch: Branch) -> str 
     try:
         if branch.rest:
             return _near_value(element, ring, point)
-        if ring.function_free(element):
+        if ring.is_function_free(element):
             exact = ring.evaluate(element, point, Fraction, real_function)
             return str(exact) if exact else ""
         return _certain_value(element, ring, point)

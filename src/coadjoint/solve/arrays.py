@@ -2,29 +2,42 @@
 
 Comes in: whatever a person passes. Goes out: a `Call` of float64, C-contiguous, component-first
 arrays, or an error that says what was found and what is expected. Nothing is cast with loss.
+Read next: `coadjoint.render.targets.protocol`, which has the `Call`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
+from coadjoint.render.targets.protocol import FEW, Call, Evaluate
 from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.functions import Values
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
 
 
-class Call:
-    """One evaluation, checked.
+def check_call(
+    system: System,
+    function: str,
+    state: Values,
+    parameters: Values | None,
+    inputs: Values | None,
+    *,
+    time: ArrayLike | None = None,
+    out: Array | None = None,
+    bound: bool = False,
+) -> tuple[Call, Array]:
+    """One evaluation, checked, and its result in full shape.
 
     Args:
         system: Whose function it is.
@@ -36,80 +49,92 @@ class Call:
         out: Result array, or None for a new one.
         bound: Whether ``state`` and ``out`` must be used in place.
 
-    Attributes:
-        state: ``(n, members)``.
-        parameters: ``(k,)`` shared or ``(k, members)``.
-        driving: Inputs and time, as far as the system has them, in the same form.
-        block: The result as its shape for one member followed by ``members``, a view of `result`.
-        result: The result in its full shape.
-        members: Number of members.
-
     Raises:
         KernelArgumentError: Something has a wrong shape, name, sign, or overlaps.
         KernelTypeError: Something is not numeric in a way that float64 can hold.
     """
+    if function not in system.functions:
+        raise KernelArgumentError(
+            f"{system.name} has no function {function!r}; expected one of "
+            f"{', '.join(system.functions)}.",
+            found=function,
+        )
+    rows = system.rows(function)
+    packed = as_float64(state, "state") if bound else pack(state, rows, "state")
+    if bound and packed is not state:
+        raise KernelArgumentError(
+            "bind reads the state in place; expected a C-contiguous float64 array.",
+            found=str(type(state).__name__),
+        )
+    _check_rows(packed, rows, "state", system.name)
+    batch = packed.shape[1:]
+    given = {
+        "parameters": pack_parameters(system, parameters),
+        **_inputs(system, inputs),
+        **_time(system, time),
+    }
+    for name, array in given.items():
+        if array.shape[1:] not in ((), batch):
+            raise KernelArgumentError(
+                f"{name} {'has' if name == 'time' else 'have'} the batch shape "
+                f"{array.shape[1:]}, the state {batch}; expected the same, or {name} shared "
+                "by all members.",
+                found=list(array.shape[1:]),
+                expected=list(batch),
+            )
+    shape = system.functions[function] + batch
+    if bound and out is None:
+        raise KernelArgumentError(
+            f"bind writes into out; expected an array of shape {shape}.", expected=list(shape)
+        )
+    result = np.empty(shape) if out is None else _check_out(out, shape)
+    members = math.prod(batch)
+    by_member = {
+        name: array if array.ndim == 1 else array.reshape(array.shape[0], members)
+        for name, array in given.items()
+    }
+    block = result.reshape(*system.functions[function], members)
+    call = Call(packed.reshape(rows.size, members), by_member.pop("parameters"), block, by_member)
+    for name, array in call.given.items() if out is not None else ():
+        if np.shares_memory(out, array):
+            raise KernelArgumentError(
+                f"out shares memory with {name}; the kernel would read what it has written. "
+                "Pass an array of its own.",
+                found=name,
+            )
+    return call, result
 
-    def __init__(
-        self,
-        system: System,
-        function: str,
-        state: ArrayLike | Mapping[str, ArrayLike],
-        parameters: ArrayLike | Mapping[str, ArrayLike] | None,
-        inputs: ArrayLike | Mapping[str, ArrayLike] | None,
-        *,
-        time: ArrayLike | None = None,
-        out: Array | None = None,
-        bound: bool = False,
-    ) -> None:
-        if function not in system.functions:
-            raise KernelArgumentError(
-                f"{system.name} has no function {function!r}; expected one of "
-                f"{', '.join(system.functions)}.",
-                found=function,
-            )
-        rows = system.rows(function)
-        packed = as_float64(state, "state") if bound else pack(state, rows, "state")
-        if bound and packed is not state:
-            raise KernelArgumentError(
-                "bind reads the state in place; expected a C-contiguous float64 array.",
-                found=str(type(state).__name__),
-            )
-        _check_rows(packed, rows, "state", system.name)
-        batch = packed.shape[1:]
-        values = pack_parameters(system, parameters)
-        driving = [*_inputs(system, inputs), *_time(system, time)]
-        for name, array in (("parameters", values), *driving):
-            if array.shape[1:] not in ((), batch):
-                raise KernelArgumentError(
-                    f"{name} {'has' if name == 'time' else 'have'} the batch shape "
-                    f"{array.shape[1:]}, the state {batch}; expected the same, or {name} shared "
-                    "by all members.",
-                    found=list(array.shape[1:]),
-                    expected=list(batch),
-                )
-        shape = system.functions[function] + batch
-        self.members = math.prod(batch)
-        self.state = packed.reshape(rows.size, self.members)
-        self.parameters = self._by_member(values)
-        self.driving = {name: self._by_member(array) for name, array in driving}
-        if bound and out is None:
-            raise KernelArgumentError(
-                f"bind writes into out; expected an array of shape {shape}.", expected=list(shape)
-            )
-        self.result = np.empty(shape) if out is None else _check_out(out, shape)
-        given = {"state": self.state, "parameters": self.parameters, **self.driving}
-        for name, array in given.items():
-            if out is not None and np.shares_memory(out, array):
-                raise KernelArgumentError(
-                    f"out shares memory with {name}; the kernel would read what it has written. "
-                    "Pass an array of its own.",
-                    found=name,
-                )
-        self.block = self.result.reshape(*system.functions[function], self.members)
 
-    def _by_member(self, values: Array) -> Array:
-        """Values shared by all members, or with one axis of members."""
-        return values if values.ndim == 1 else values.reshape(values.shape[0], self.members)
+def evaluate_ready(
+    shape: tuple[int, ...], rows: int, evaluate: Evaluate
+) -> Callable[[Any], Array | None]:
+    """A function of one or a few states for arrays that are ready, and None for all else.
+
+    It looks at what `check_call` looks at, and at nothing twice: what is not a writable,
+    C-contiguous array ``(n,)`` or ``(n, N)`` of float64 goes through the checks that explain.
+
+    Args:
+        shape: Of the result for one member.
+        rows: Of the state.
+        evaluate: The function with its defaults, by the kernel.
+    """
+    float64, single = np.dtype(np.float64), (rows,)
+
+    def call(state: Any) -> Array | None:
+        if type(state) is not np.ndarray or state.dtype is not float64 or not state.flags.carray:
+            return None
+        given = state.shape
+        if given == single:
+            members, out = 1, np.empty(shape)
+        elif len(given) == 2 and given[0] == rows and 0 < given[1] <= FEW:
+            members = given[1]
+            out = np.empty((*shape, members))
+        else:
+            return None
+        evaluate(members, state, out)
+        return out
+
+    return call
 
 
 def as_float64(value: Any, name: str) -> Array:
@@ -226,14 +251,14 @@ def pack_inputs(system: System, inputs: Any) -> Array:
     return packed
 
 
-def _inputs(system: System, inputs: Any) -> list[tuple[str, Array]]:
+def _inputs(system: System, inputs: Any) -> dict[str, Array]:
     """The array of inputs, where a system has some."""
     if not system.INPUTS and inputs is None:
-        return []
-    return [("inputs", pack_inputs(system, inputs))]
+        return {}
+    return {"inputs": pack_inputs(system, inputs)}
 
 
-def _time(system: System, time: Any) -> list[tuple[str, Array]]:
+def _time(system: System, time: Any) -> dict[str, Array]:
     """The time as an array of one row, where the functions of a system take it.
 
     Raises:
@@ -241,7 +266,7 @@ def _time(system: System, time: Any) -> list[tuple[str, Array]]:
     """
     if not system.TIME:
         if time is None:
-            return []
+            return {}
         raise KernelArgumentError(
             f"{system.name} does not depend on time, and found time = {_short(time)}. "
             "Leave it out.",
@@ -253,7 +278,7 @@ def _time(system: System, time: Any) -> list[tuple[str, Array]]:
             "each member. Write time=0.0.",
             found=None,
         )
-    return [("time", as_float64(time, "time")[np.newaxis])]
+    return {"time": as_float64(time, "time")[np.newaxis]}
 
 
 def _short(value: Any) -> str:

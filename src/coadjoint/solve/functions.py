@@ -6,8 +6,9 @@ Read next: `coadjoint.solve.system`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, Protocol, TypeVar
 
 from coadjoint.declared import KernelFunction
@@ -50,21 +51,26 @@ _Result = TypeVar("_Result")
 def by_name(method: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
     """Refuse what is passed by position and goes by name, with the spelling that works."""
     most = method.__code__.co_argcount
-    names = ", ".join(method.__code__.co_varnames[1:most])
+    names = method.__code__.co_varnames[1:most]
 
     @wraps(method)
     def call(*given: _Given.args, **named: _Given.kwargs) -> _Result:
         if len(given) > most:
-            raise KernelArgumentError(
-                f"{method.__name__} takes {names} by position, and found {len(given) - most} more; "
-                "expected the others by name. "
-                f'Write {method.__name__}({names}, target="c", out=out).',
-                found=len(given) - 1,
-                expected=most - 1,
-            )
+            raise _refusal(method.__name__, names, len(given) - most)
         return method(*given, **named)
 
     return call
+
+
+def _refusal(method: str, names: Sequence[str], more: int) -> KernelArgumentError:
+    """What to write where more was passed by position than a method takes so."""
+    taken = ", ".join(names)
+    return KernelArgumentError(
+        f"{method} takes {taken} by position, and found {more} more; expected the others by name. "
+        f'Write {method}({taken}, target="c", out=out).',
+        found=len(names) + more,
+        expected=len(names),
+    )
 
 
 class Method(Protocol):
@@ -94,30 +100,42 @@ class Functions:
 
         def __getattr__(self, name: str) -> Method: ...
 
-    def _evaluate(self, function: str, target: Target, *given: Any) -> Array:
+    def _evaluate(
+        self,
+        function: str,
+        target: Target,
+        state: Values,
+        parameters: Values | None,
+        inputs: Values | None,
+        time: ArrayLike | None,
+        out: Array | None,
+    ) -> Array:
         """A function at state, parameters, inputs and time, into a result."""
         raise NotImplementedError
 
 
 def make_method(function: KernelFunction) -> Callable[..., Array]:
     """The method of a System that evaluates a function of the table."""
+    name = function.name
 
     def method(
         self: Functions,
         state: Values,
         parameters: Values | None = None,
         inputs: Values | None = None,
-        *,
+        *more: Any,
         time: ArrayLike | None = None,
         target: Target = "c",
         out: Array | None = None,
     ) -> Array:
-        return self._evaluate(function.name, target, state, parameters, inputs, time, out)
+        if more:  # as `by_name`, which would take a third of the time of a call
+            raise _refusal(name, ("state", "parameters", "inputs"), len(more))
+        return self._evaluate(name, target, state, parameters, inputs, time, out)
 
-    method.__name__ = function.name
-    method.__qualname__ = f"Functions.{function.name}"
+    method.__name__, method.__qualname__ = name, f"Functions.{name}"
     method.__doc__ = _text(function)
-    return by_name(method)
+    method.__signature__ = signature(Method.__call__)  # type: ignore[attr-defined]
+    return method
 
 
 def _text(function: KernelFunction) -> str:

@@ -10,16 +10,19 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning, compilers
 from coadjoint.errors import CompilerError, CrossCheckError, KernelArgumentError
 from coadjoint.render.targets import BUILDS
+from coadjoint.solve.arrays import evaluate_ready
 
 if TYPE_CHECKING:
-    from coadjoint.render.targets.protocol import Kernel
-    from coadjoint.solve.arrays import Call
+    from coadjoint.render.targets.protocol import Call, Kernel
     from coadjoint.solve.system import System
 
 #: What was said about missing kernels: each message comes once in a process, whatever the system.
@@ -32,11 +35,21 @@ class Kernels:
     def __init__(self, system: System) -> None:
         self.system = system
         self._loaded: dict[str, Kernel] = {}
+        #: Functions of a ready state alone, by name and target; those that were called so before.
+        self.ready: dict[tuple[str, str], Callable[[Any], Any]] = {}
 
     def run(self, function: str, call: Call, target: str) -> None:
         """Evaluate a call into its result."""
         for piece in self._kernel(target).calls(function, call):
             piece()
+
+    def make_ready(self, function: str, call: Call, target: str) -> None:
+        """Keep a function of a ready state alone; the rest is that of a call with defaults."""
+        if (function, target) not in self.ready:
+            shape, rows = self.system.functions[function], len(call.state)
+            like = replace(call, state=np.empty((rows, 1)), block=np.empty((*shape, 1)))
+            evaluate = self._kernel(target).evaluate_with(function, like)
+            self.ready[function, target] = evaluate_ready(shape, rows, evaluate)
 
     def bind(self, function: str, call: Call, target: str) -> Callable[[], None]:
         """The call as a function without arguments."""
@@ -68,9 +81,10 @@ class Kernels:
         self._numpy()
         with compilers() as pool:
             loading = {target: pool.submit(self._load, target) for target in targets}
-            found = {target: done.result() for target, done in loading.items()}
-        self._loaded |= found
-        return {target: kernel.source for target, kernel in found.items()}
+            kernels = {target: done.result() for target, done in loading.items()}
+        self._loaded |= kernels
+        self.ready.clear()
+        return {target: kernel.source for target, kernel in kernels.items()}
 
     def _kernel(self, target: str) -> Kernel:
         """The kernel of a target, or that of NumPy, which is said, where a compiler cannot make it.
@@ -90,7 +104,7 @@ class Kernels:
                     warnings.warn(
                         f"{error} The NumPy kernels are used instead. {advice}".rstrip(),
                         CompilerWarning,
-                        stacklevel=6,
+                        stacklevel=5,
                     )
         return self._loaded[target]
 

@@ -79,7 +79,7 @@ class System(Functions):
         self.STATE = state
         self.PARAMETERS = parameters
         self.OBSERVABLES = observables
-        self.functions = MappingProxyType(dict(functions))
+        self.functions: Mapping[str, tuple[int, ...]] = MappingProxyType(dict(functions))
         self.elementary = tuple(elementary)
         self.id = identity
         self.DOMAIN = tuple(domain)
@@ -94,6 +94,12 @@ class System(Functions):
         if KERNEL_FUNCTIONS[function].below:
             return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
         return self.STATE
+
+    def sizes(self, function: str) -> dict[str, int]:
+        """How many rows each array has that a function takes."""
+        driving = {"inputs": self.INPUTS.size, "time": self.TIME.size}
+        given = {"state": self.rows(function).size, "parameters": self.PARAMETERS.size}
+        return given | {name: size for name, size in driving.items() if size}
 
     @by_name
     def evaluate(
@@ -110,14 +116,29 @@ class System(Functions):
         """One of the ``functions`` by name; arguments as in `rhs`."""
         return self._evaluate(function, target, state, parameters, inputs, time, out)
 
-    def _evaluate(self, function: str, target: Target, *given: Any) -> Array:
-        """A function at the state, parameters, inputs, time and result of a `Call`."""
-        from coadjoint.solve.arrays import Call
+    def _evaluate(
+        self,
+        function: str,
+        target: Target,
+        state: Values,
+        parameters: Values | None,
+        inputs: Values | None,
+        time: ArrayLike | None,
+        out: Array | None,
+    ) -> Array:
+        """A function of a state that is ready, at once; or after all checks of the arguments."""
+        by_default = parameters is None and inputs is None and time is None and out is None
+        if by_default and (ready := self._kernels.ready.get((function, target))):
+            values: Array | None = ready(state)
+            if values is not None:
+                return values
+        from coadjoint.solve.arrays import check_call
 
-        *arrays, time, out = given
-        call = Call(self, function, *arrays, time=time, out=out)
+        call, result = check_call(self, function, state, parameters, inputs, time=time, out=out)
         self._kernels.run(function, call, target)
-        return call.result
+        if by_default:
+            self._kernels.make_ready(function, call, target)
+        return result
 
     @by_name
     def bind(
@@ -146,9 +167,10 @@ class System(Functions):
             time: As in `rhs`; an array of float64, also one without axes, is read at each call.
             target: As in `rhs`.
         """
-        from coadjoint.solve.arrays import Call
+        from coadjoint.solve.arrays import check_call
 
-        call = Call(self, function, state, parameters, inputs, time=time, out=out, bound=True)
+        named: dict[str, Any] = {"time": time, "out": out, "bound": True}
+        call, _ = check_call(self, function, state, parameters, inputs, **named)
         return self._kernels.bind(function, call, target)
 
     def pack(self, parameters: Values | None = None) -> Array:

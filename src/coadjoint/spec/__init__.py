@@ -15,7 +15,7 @@ from coadjoint.spec.model import (
     Spec,
     Variable,
     component_names,
-    unpacked,
+    unpack,
 )
 from coadjoint.spec.reader import read_spec, read_spec_text
 from coadjoint.spec.schema import json_schema
@@ -34,5 +34,5 @@ __all__ = [
     "read_spec",
     "read_spec_text",
     "tree",
-    "unpacked",
+    "unpack",
 ]

@@ -16,7 +16,7 @@ from typing import Any
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
-from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpacked
+from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpack
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
@@ -69,7 +69,7 @@ __all__ = [
     "component_names",
     "matrix_size",
     "state_of",
-    "unpacked",
+    "unpack",
 ]
 
 
@@ -218,8 +218,8 @@ class Spec:
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""
-        found = (variable for variable in self.having_role(role) if variable.of == coordinate)
-        return next(found, None)
+        partners = (variable for variable in self.having_role(role) if variable.of == coordinate)
+        return next(partners, None)
 
     @property
     def attitude(self) -> Variable | None:
@@ -264,12 +264,14 @@ class Spec:
         """The Spec of the motion on a submanifold, where some variables follow from the others."""
         section, where = submanifold.section, submanifold.where
         # what follows from the state is named and emitted as velocities are
+        follows = {*section, *(each.name for each in self.defined)}
         variables = tuple(
             replace(
                 variable,
-                role="velocity" if variable.name in section else "coordinate",
+                role="velocity" if variable.name in follows else "coordinate",
                 block=(),
                 representation=None,
+                of="",
             )
             for variable in self.variables
         )

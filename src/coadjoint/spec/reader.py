@@ -120,16 +120,16 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
 
 def _read_tables(reading: Reading) -> dict[str, Any]:
     """The record of every table, by the attribute of a `Spec` that it is."""
-    own, found = {each.name for each in fields(Spec)}, dict[str, Any](records={})
+    own, attributes = {each.name for each in fields(Spec)}, dict[str, Any](records={})
     for table in TABLES:
         record = table.of(reading)
         if table.place is None:
-            found |= vars(record)
+            attributes |= vars(record)
         elif table.place not in own:
-            found["records"][table.key] = record
-        elif found.get(table.place) is None:  # two tables may give one attribute
-            found[table.place] = record
-    return found
+            attributes["records"][table.key] = record
+        elif attributes.get(table.place) is None:  # two tables may give one attribute
+            attributes[table.place] = record
+    return attributes
 
 
 def _list_accepted(part: Any, key: KeyPath = ()) -> Iterator[KeyPath]:
@@ -154,7 +154,7 @@ def read_file(path: str) -> bytes:
         # blocking, because opening a pipe would wait for a writer.
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
     except (OSError, ValueError) as error:
-        raise _not_opened(path, error) from None
+        raise _explain_unopened(path, error) from None
     try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
@@ -164,22 +164,18 @@ def read_file(path: str) -> bytes:
         with os.fdopen(os.dup(descriptor), "rb") as file:
             data = file.read(SPEC_BYTES + 1)  # it may have grown since
     except OSError as error:
-        raise _not_opened(path, error) from None
+        raise _explain_unopened(path, error) from None
     finally:
         os.close(descriptor)
     check_bytes(path, len(data))
     if not data.strip():
         raise file_fault(
-            path,
-            "the file is empty",
-            "a spec",
-            "Write one with: coadjoint new NAME.",
-            found="",
+            path, "the file is empty", "a spec", "Write one with: coadjoint new NAME.", found=""
         )
     return data
 
 
-def _not_opened(path: str, error: OSError | ValueError) -> CoadjointError:
+def _explain_unopened(path: str, error: OSError | ValueError) -> CoadjointError:
     """Why a file could not be opened, and which one may have been meant."""
     number = error.errno if isinstance(error, OSError) else None
     if number == errno.ELOOP and Path(path).is_symlink():

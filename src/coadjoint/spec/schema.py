@@ -33,11 +33,9 @@ class Head(Part):
     license: License = Field(
         "", description="SPDX expression of the licence of this file and of what is generated"
     )
-    routes: Annotated[
-        list[RouteName],
-        Field(min_length=1),
-        AfterValidator(is_unique),
-    ] = Field(description="routes to derive by; the first is emitted, the others proved equal")
+    routes: Annotated[list[RouteName], Field(min_length=1), AfterValidator(is_unique)] = Field(
+        description="routes to derive by; the first is emitted, the others proved equal"
+    )
 
 
 def compose(tables: Iterable[Table[Any]]) -> type[Head]:
@@ -53,18 +51,18 @@ SpecFile = compose(TABLES)
 
 def json_schema() -> dict[str, Any]:
     """The JSON Schema of a spec, for editors; ``#:schema`` in a spec's first line names it."""
-    schema = _without_null(SpecFile.model_json_schema())
+    schema = _drop_null(SpecFile.model_json_schema())
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "coadjoint spec"}
     return {**head, **schema}
 
 
-def _without_null(schema: Any) -> Any:
+def _drop_null(schema: Any) -> Any:
     """A schema without the null that pydantic allows for optional keys; TOML has none."""
     if isinstance(schema, list):
-        return [_without_null(part) for part in schema if part != {"type": "null"}]
+        return [_drop_null(part) for part in schema if part != {"type": "null"}]
     if not isinstance(schema, dict):
         return schema
-    kept = {k: _without_null(v) for k, v in schema.items() if (k, v) != ("default", None)}
+    kept = {k: _drop_null(v) for k, v in schema.items() if (k, v) != ("default", None)}
     if len(kept.get("anyOf", "  ")) == 1:
         kept |= kept.pop("anyOf")[0]
     return kept

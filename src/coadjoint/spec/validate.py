@@ -64,7 +64,7 @@ def validate(source: Source) -> Head:
     try:
         return SpecFile.model_validate(document)
     except ValidationError as error:
-        details = _without_echoes(error.errors(include_url=False))
+        details = _drop_echoes(error.errors(include_url=False))
         faults = [_fault(source, document, detail) for detail in details[:MOST_FAULTS]]
         raise join_faults(faults, len(details) - len(faults)) from None
 
@@ -85,27 +85,14 @@ def _parse(source: Source) -> dict[str, Any]:
     except ValueError:  # Python refuses to read integers beyond 4300 digits
         long = re.search(r"\d[\d_]{4000,}", source.text)
         span = long.span() if long else (0, 0)
-        raise source.fault(
-            (),
-            "an integer is too long",
-            found=source.text[span[0] : span[0] + 40],
-            expected=f"at most {limits.INTEGER_DIGITS} digits (INTEGER_DIGITS)",
-            at=span,
-            kind=LimitError,
-            limit="INTEGER_DIGITS",
-        ) from None
+        shown = source.text[span[0] : span[0] + 40]
+        problem = "an integer has too many digits"
+        raise source.too_many((), problem, shown, "INTEGER_DIGITS", at=span) from None
 
 
 def _too_deep(source: Source, at: int) -> CoadjointError:
-    return source.fault(
-        (),
-        "tables or arrays nest too deep",
-        found=source.text[at : at + 20],
-        expected=f"at most {limits.SPEC_NESTING} levels (SPEC_NESTING)",
-        at=(at, at + 1),
-        kind=LimitError,
-        limit="SPEC_NESTING",
-    )
+    problem, shown = "tables or arrays nest too deep", source.text[at : at + 20]
+    return source.too_many((), problem, shown, "SPEC_NESTING", at=(at, at + 1))
 
 
 def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointError:
@@ -148,7 +135,7 @@ def _span(source: Source, place: re.Match[str] | None) -> Span:
 def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> CoadjointError:
     """One fault that pydantic found, in our words."""
     path, kind = tuple(detail["loc"]), detail["type"]
-    present = _present(path, document)
+    present = _find_present(path, document)
     if kind == "missing":
         return source.fault(
             present,
@@ -162,15 +149,15 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
         )
     if kind == "extra_forbidden":
         return _unknown_key(source, path)
-    expected, found = _expected(detail), detail["input"]
-    literal = kind == "literal_error" and isinstance(found, str)
+    expected, given = _describe_expected(detail), detail["input"]
+    literal = kind == "literal_error" and isinstance(given, str)
     limit = next(iter(_LIMIT.findall(expected)), "")
     return source.fault(
         present,
-        f"found {show_value(found)}",
-        found=found,
+        f"found {show_value(given)}",
+        found=given,
         expected=expected,
-        hint=did_you_mean(found, re.findall("'([^']+)'", expected)) if literal else "",
+        hint=did_you_mean(given, re.findall("'([^']+)'", expected)) if literal else "",
         kind=LimitError if limit else SpecError,
         limit=limit,
     )
@@ -191,7 +178,7 @@ def _advise_routes(document: Mapping[str, Any]) -> str:
     return f"Write routes = [{names}] at the top."
 
 
-def _without_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
+def _drop_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
     """Faults without the missing keys that a misspelt key beside them was meant to be."""
     meant = set()
     for detail in details:
@@ -231,7 +218,7 @@ def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
     )
 
 
-def _present(path: KeyPath, document: Any) -> KeyPath:
+def _find_present(path: KeyPath, document: Any) -> KeyPath:
     """The part of a path that the document has."""
     for length, part in enumerate(path):
         try:
@@ -241,7 +228,7 @@ def _present(path: KeyPath, document: Any) -> KeyPath:
     return path
 
 
-def _expected(detail: ErrorDetails) -> str:
+def _describe_expected(detail: ErrorDetails) -> str:
     """What would have been accepted, from the words of pydantic or our own."""
     if detail["type"] in _KINDS:
         return _KINDS[detail["type"]]

@@ -1,9 +1,8 @@
-"""Theory for library users: groups with their actions, Nambu brackets; the engine never comes here.
+"""Theory for library users: groups with their actions, Nambu brackets; the engine does not use it.
 
-The pipeline derives, proves and renders without these modules. They are what a book has beside
-the equations: matrix groups with AD, Ad, ad and their duals, exact in the group element; the Hopf
-map; relativity of force laws; central forces; and what holds for every Nambu bracket
-(`coadjoint.theory.nambu`).
+The pipeline derives, proves and renders without these modules. They hold matrix groups with AD, Ad,
+ad and their duals, exact in the group element; the Hopf map; relativity of force laws; central
+forces; and what holds for every Nambu bracket (`coadjoint.theory.nambu`).
 Comes in: a name as books write it. Goes out: matrices of field elements, and actions computed from
 them. Read next: `coadjoint.theory.group`.
 """

@@ -95,11 +95,11 @@ def _gl(n: int) -> Parts:
 
 
 def _se(n: int) -> Parts:
-    return _turning(algebra_by_name(f"se({n})"), n * (n - 1) // 2)
+    return _rotating_group(algebra_by_name(f"se({n})"), n * (n - 1) // 2)
 
 
-def _turning(algebra: LieAlgebra, count: int = 3) -> Parts:
-    """Rotations, which come first in the basis, beside nilpotent generators."""
+def _rotating_group(algebra: LieAlgebra, count: int = 3) -> Parts:
+    """Rotations, which come first in the basis, and nilpotent generators."""
     return _isometries(algebra, count, identity(size(algebra.matrices)), special=True)
 
 
@@ -128,7 +128,7 @@ def _unit_quaternions() -> Parts:
     return _whole(algebra_by_name("quaternions"), identity(4), structure=by_i, commuting=(by_j,))
 
 
-#: Patterns of names with what they build, each beside an example that messages show.
+#: Patterns of names with what they build, each with an example that messages show.
 CATALOGUE: tuple[tuple[str, str, Callable[..., Parts]], ...] = (
     (r"SO\((\d+)\)", "SO(3)", _so),
     (r"SO\((\d+),(\d+)\)", "SO(2,1)", _so_pq),
@@ -140,8 +140,8 @@ CATALOGUE: tuple[tuple[str, str, Callable[..., Parts]], ...] = (
     (r"SE\((\d+)\)", "SE(3)", _se),
     (r"H\((\d+)\)", "H(1)", lambda n: _unipotent(algebra_by_name(f"h({n})"))),
     (r"R\^(\d+)", "R^3", lambda n: _unipotent(algebra_by_name(f"R^{n}"))),
-    (r"G\(3\)", "G(3)", lambda: _turning(algebra_by_name("g(3)"))),
-    (r"Bargmann", "Bargmann", lambda: _turning(algebra_by_name("bargmann"))),
+    (r"G\(3\)", "G(3)", lambda: _rotating_group(algebra_by_name("g(3)"))),
+    (r"Bargmann", "Bargmann", lambda: _rotating_group(algebra_by_name("bargmann"))),
     (r"Aff\(1\)", "Aff(1)", _aff1),
     (r"SL\(2,R\)\(s\)R\^2", "SL(2,R)(s)R^2", _sl2_r2),
     (r"unitquaternions", "unit quaternions", _unit_quaternions),

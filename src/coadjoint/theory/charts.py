@@ -16,7 +16,7 @@ from typing import Any
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Vector
 from coadjoint.groups.complex_numbers import Complex
-from coadjoint.groups.lifts import cotangent_lift
+from coadjoint.groups.vector_fields import cotangent_lift
 from coadjoint.theory.vector_fields import tangent_lift
 
 Chart = Callable[[Sequence[Any]], Complex]

@@ -18,13 +18,14 @@ from coadjoint.exact.dense import (
     add,
     commutator,
     identity,
+    inverse,
     product,
     scale,
     subtract,
     transpose,
     weighted_sum,
 )
-from coadjoint.theory.matrix import determinant, inverse, resolvent
+from coadjoint.theory.matrix import determinant, resolvent
 
 #: What a matrix of the group must be, as ``(statement, matrix that must be zero)``.
 Condition = tuple[str, Matrix]

@@ -36,16 +36,6 @@ def resolvent(a: Matrix, J: Matrix | None = None) -> tuple[Matrix, Complex]:
     return reduce(add, (M for M, _ in steps)), determinant
 
 
-def inverse(a: Matrix) -> Matrix:
-    """``a^-1`` of a matrix of field elements, the adjugate over the determinant.
-
-    Raises:
-        ZeroDivisionError: The determinant is zero.
-    """
-    *_, (M, (c, _)) = _faddeev_leverrier(a, None)
-    return scale(-1 / c, M)
-
-
 def determinant(a: Matrix, J: Matrix | None = None) -> Complex:
     """``det a``, as a complex number where a complex structure is given."""
     *_, (_, c) = steps = list(_faddeev_leverrier(a, J))
@@ -96,12 +86,10 @@ def unipotent_inverse(u: Matrix) -> Matrix:
 
 def unipotent_logarithm(u: Matrix) -> Matrix:
     """``log u = sum -(1 - u)^k / k``, which ends because ``1 - u`` is nilpotent."""
-    rest = power = subtract(identity(len(u)), u)
-    total = scale(-1, rest)
-    for k in range(2, len(u)):
-        power = product(power, rest)
-        total = add(total, scale(Fraction(-1, k), power))
-    return total
+    one = identity(len(u))
+    # 1 + n + n^2/2 + n^3/3 + ..., each term from the one before
+    series = _series(subtract(one, u), lambda k, term: scale(Fraction(max(k - 1, 1), k), term))
+    return subtract(one, series)
 
 
 def _series(nilpotent: Matrix, scale: Any) -> Matrix:

@@ -13,9 +13,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations, pairwise
+from itertools import combinations
 
 from coadjoint.algebra import LieAlgebra, from_brackets
+from coadjoint.algebra.invariants import signature
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
 from coadjoint.poisson.brackets import nambu, nambu_tensor
@@ -52,7 +53,7 @@ def undetermined_nambu(dimension: int = 3, functions: Sequence[str] = ()) -> Poi
 
 @dataclass(frozen=True)
 class Mixing:
-    """The motion of ``(alpha c + beta h, gamma c + delta h)`` beside that of ``(c, h)``.
+    """The motion of ``(alpha c + beta h, gamma c + delta h)`` and that of ``(c, h)``.
 
     Attributes:
         field: Holds the derivatives of c and h and the four coefficients as symbols.
@@ -134,26 +135,10 @@ def quadratic_nambu(C: Sequence[Sequence[Number]]) -> QuadraticNambu:
             )
     cyclic = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
     brackets = {(i, j): {m: Fraction(C[k][m]) for m in range(3) if C[k][m]} for i, j, k in cyclic}
-    plus, minus, zero = _signature(C)
+    plus, minus, zero = signature(C)
     kind = KINDS[max(plus, minus), min(plus, minus)]
     algebra = from_brackets(f"Nambu {kind}", ("e1", "e2", "e3"), brackets)
     return QuadraticNambu(algebra, kind, (plus, minus, zero))
-
-
-def _signature(C: Sequence[Sequence[Number]]) -> tuple[int, int, int]:
-    """Signs of the eigenvalues: all are real, so Descartes' rule counts them exactly."""
-    minors = [C[i][i] * C[j][j] - C[i][j] ** 2 for i, j in combinations(range(3), 2)]
-    trace = C[0][0] + C[1][1] + C[2][2]
-    determinant = (
-        C[0][0] * minors[2]
-        - C[0][1] * (C[0][1] * C[2][2] - C[1][2] * C[0][2])
-        + C[0][2] * (C[0][1] * C[1][2] - C[1][1] * C[0][2])
-    )
-    polynomial = [1, -trace, sum(minors), -determinant]
-    rank = max(n for n, value in enumerate(polynomial) if value)
-    signs = [value > 0 for value in polynomial if value]
-    plus = sum(a != b for a, b in pairwise(signs))
-    return plus, rank - plus, 3 - rank
 
 
 # -- the rigid body as a pendulum -----------------------------------------------------------------

@@ -93,15 +93,15 @@ def trace_pairing(algebra: LieAlgebra, form: str, space: str = "algebra") -> Tra
     return TracePairing(algebra, form, tuple(dual))
 
 
-def _check_known(found: str, known: Sequence[str]) -> None:
+def _check_known(word: str, known: Sequence[str]) -> None:
     """Refuse a word that is not one of those known."""
-    if found in known:
+    if word in known:
         return
-    near = get_close_matches(found, known, n=1)
+    near = get_close_matches(word, known, n=1)
     raise AlgebraError(
-        f"{found!r} is no trace pairing; expected one of {', '.join(known)}."
+        f"{word!r} is no trace pairing; expected one of {', '.join(known)}."
         + (f" Did you mean {near[0]!r}?" if near else ""),
-        found=found,
+        found=word,
     )
 
 

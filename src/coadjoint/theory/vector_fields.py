@@ -22,8 +22,7 @@ from typing import Any
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Vector, add, apply, scale, subtract, trace
-from coadjoint.groups.lifts import cotangent_lift, jacobian
-from coadjoint.groups.vector_fields import VectorField, lie_derivative
+from coadjoint.groups.vector_fields import VectorField, cotangent_lift, jacobian, lie_derivative
 
 
 def jacobi_lie_bracket(X: VectorField, Y: VectorField) -> VectorField:

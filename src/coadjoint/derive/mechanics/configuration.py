@@ -20,7 +20,7 @@ from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import apply, determinant, dot, inverse
-from coadjoint.exact.regular import witness_regular
+from coadjoint.exact.ranks import witness_regular
 from coadjoint.spec import Formula
 
 #: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.

@@ -1,33 +1,66 @@
-"""Emission: what a route from a Lagrangian over an algebra hands over beside its rates.
+"""Emission: the Equations of a route in the declared state, with all that is emitted with them.
 
-Comes in: the rates of the declared state. Goes out: the `Exact` part of
-its Equations: velocities, energy, observables and the bracket, the same on every such route.
-Read next: `coadjoint.derive.structure`.
+Comes in: the rates of the declared state, and the energy with what gives the velocities in it.
+Goes out: Equations with observables and the bracket; and the steps that routes from a Lagrangian
+over an algebra have in common. Read next: `coadjoint.derive.structure`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from coadjoint.derive.emitted import list_emitted
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Exact, Step, symbol
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.mechanics.solver import Definition, Solve
+from coadjoint.derive.records import Exact, Step, write_slopes, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_structure
+from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element
 
-
-def emission(setting: Setting, rates: tuple[Element, ...]) -> Exact:
-    """The equations in momenta, velocities as definitions."""
-    transform = legendre(setting)
-    seen = list_emitted(setting, transform.energy)
-    tensor = poisson_structure(setting).tensor
-    return Exact(transform.definitions, rates, transform.energy, seen, tensor, transform.solves)
+Rates = tuple[Element, ...]
 
 
-def velocities_step(transform: LegendreTransform) -> Step:
+def emit(
+    setting: Setting,
+    route: str,
+    rates: Rates,
+    steps: Sequence[Step],
+    energy: Element | None,
+    definitions: Sequence[Definition] = (),
+    solves: tuple[Solve, ...] = (),
+) -> Equations:
+    """The Equations of a route that moves the declared state.
+
+    Args:
+        setting: The spec and its field.
+        route: Name of the route.
+        rates: In the order of the state.
+        steps: The derivation.
+        energy: The energy, if the route or the spec knows one.
+        definitions: Velocities that rates and energy name.
+        solves: What the kernel solves for these.
+    """
+    tensor = poisson_structure(setting).tensor if has_structure(setting) else None
+    emitted = list_emitted(setting, energy)
+    exact = Exact(tuple(definitions), rates, energy, emitted, tensor, solves)
+    return Equations(setting, route, exact, tuple(steps))
+
+
+def emit_in_momenta(setting: Setting, route: str, rates: Rates, steps: Sequence[Step]) -> Equations:
+    """The Equations of a Lagrangian with momenta as the state, and velocities as definitions."""
+    known = legendre(setting)
+    return emit(setting, route, rates, steps, known.energy, known.definitions, known.solves)
+
+
+def show_momenta(setting: Setting, title: str = "Momenta") -> Step:
+    """The step that gives the momenta."""
+    lines = write_slopes("l", setting.velocities, legendre(setting).momenta)
+    return write_step(title, "mu = dl/dxi", r"\mu = \partial l / \partial \xi", lines)
+
+
+def show_velocities(setting: Setting) -> Step:
     """The step that solves for the velocities."""
-    return Step(
-        "Legendre transform",
-        "xi solved from mu = dl/dxi",
-        r"\xi = \xi(\mu, a)",
-        tuple((symbol(name), value) for name, value in transform.definitions),
-    )
+    lines = legendre(setting).definitions
+    law = "xi solved from mu = dl/dxi"
+    return write_step("Legendre transform", law, r"\xi = \xi(\mu, a)", lines)

@@ -26,7 +26,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import Matrix, mechanics
 from coadjoint.derive.mechanics.parts import in_parts, slopes
-from coadjoint.derive.records import Step, rate, symbol
+from coadjoint.derive.records import rate, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
@@ -80,8 +80,7 @@ def add_forces(free: Equations) -> Equations:
     setting = free.setting
     if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
         return free
-    named = zip(symbols(setting.spec), free.exact.rates, strict=False)
-    shown = [(symbol(name), value) for name, value in named]
+    shown = list(zip(symbols(setting.spec), free.exact.rates, strict=False))
     free, forces = _name_rates(free), added_rates(setting)
     added = tuple(f + x for f, x in zip(forces, relaxed_rates(free), strict=True))
     rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
@@ -89,13 +88,13 @@ def add_forces(free: Equations) -> Equations:
     moved = [(name, force, whole) for name, force, whole in lines if force != 0]
     relaxation = setting.spec.relaxation
     text = ["f - dR/dxi"] * setting.spec.is_forced + ([relaxation.added] if relaxation else [])
-    step = Step(
+    step = write_step(
         "Forces and dissipation, added to the rates",
         f"dx/dt = ... + {' + '.join(text)}",
         rf"\dot x = \dots + {' + '.join(LATEX[each] for each in text)}",
         (
             *shown,
-            *((symbol(f"f_{name}"), force) for name, force, _ in moved),
+            *((f"f_{name}", force) for name, force, _ in moved),
             *((rate(name), whole) for name, _, whole in moved),
         ),
     )

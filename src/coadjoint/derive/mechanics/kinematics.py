@@ -88,7 +88,7 @@ def _moving_roots(found: Distribution) -> list[str]:
     return [
         name
         for name, known in field.adjoined.items()
-        if name in present and known.function == "sqrt" and field.function_free(known.argument)
+        if name in present and known.function == "sqrt" and field.is_function_free(known.argument)
     ]
 
 

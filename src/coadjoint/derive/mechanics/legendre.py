@@ -25,12 +25,9 @@ from coadjoint.derive.setting import Setting, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
-from coadjoint.exact.regular import certain_minors, witness_regular
+from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec
-
-#: The way out where velocities cannot be solved for.
-_HINT = "Give a [hamiltonian] and the route lie-poisson instead."
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     """
     setting, mass = of.setting, of.mass
     field, names = setting.field, setting.velocities
-    of.check_quadratic(_HINT)
+    of.check_quadratic(f"Give {_way_out(setting)} instead.")
     known = known_side(setting, of.momenta)
     velocities: dict[str, Element] = {}
     solves: list[Solve] = []
@@ -157,7 +154,7 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
             setting,
             f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
             f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
-            "that decouple them, or give a [hamiltonian] and the route lie-poisson.",
+            f"that decouple them, or give {_way_out(setting)}.",
             names[0],
             LimitError,
         )
@@ -170,9 +167,15 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
         setting,
         f"the kinetic energy of {', '.join(names[: minors + 1])} alone is degenerate, and the "
         "kernel solves for velocities in the order of the algebra; expected a kinetic energy that "
-        "is positive for each. Give a [hamiltonian] and the route lie-poisson instead.",
+        f"is positive for each. Give {_way_out(setting)} instead.",
         names[minors],
     )
+
+
+def _way_out(setting: Setting) -> str:
+    """What does without solving for velocities."""
+    route = "canonical" if setting.spec.algebra is None else "lie-poisson"
+    return f"a [hamiltonian] and the route {route}"
 
 
 def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError | LimitError:

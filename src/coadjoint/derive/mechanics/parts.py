@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from coadjoint.derive.interpret import Quantity, entries, interpret
+from coadjoint.derive.interpret import Value, entries, interpret
 from coadjoint.derive.setting import Setting, once, shape
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -80,7 +80,7 @@ def in_parts(setting: Setting, formula: Formula) -> tuple[Element, ...]:
 
 
 @once
-def _values(setting: Setting) -> dict[str, Quantity]:
+def _values(setting: Setting) -> dict[str, Value]:
     """Reactions and parts by their names, and what a spec declares."""
     known = {each.name: each for each in setting.spec.definitions}
     return {**setting.values, **setting.reactions} | {

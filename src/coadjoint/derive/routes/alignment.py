@@ -22,7 +22,7 @@ from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.records import Relation, Step, rate, symbol
+from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import leave_route
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
@@ -78,25 +78,23 @@ def _check_particle(setting: Setting) -> None:
 
 def _steps(found: Equations, v: Vector, source: Quaternion) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    letters = zip(("v1", "v2", "v3"), v, strict=True)
-    forces = zip(("beta", "psi1", "psi2", "psi3"), source.components, strict=True)
     return (
-        Step(
+        write_step(
             "Velocity by its components along and across r",
             "v = alpha r + chi x r,  chi . r = 0",
             r"v = \alpha r + \chi \times r, \quad \chi \cdot r = 0",
-            tuple((symbol(name), value) for name, value in letters),
+            zip(("v1", "v2", "v3"), v, strict=True),
         ),
-        Step(
+        write_step(
             "Force along and across r",
             "beta = r . F/r^2,  psi = r x F/r^2",
             r"\beta = r \cdot F / r^2, \quad \psi = r \times F / r^2",
-            tuple((symbol(name), value) for name, value in forces),
+            zip(("beta", "psi1", "psi2", "psi3"), source.components, strict=True),
         ),
-        Step(
+        write_step(
             "Riccati equation of quaternions",
             "dr/dt = v,  d[alpha, chi]/dt = [beta, psi] - [alpha, chi]^2",
             r"\dot r = v, \quad \frac{d}{dt}[\alpha, \chi] = [\beta, \psi] - [\alpha, \chi]^2",
-            tuple(zip(map(rate, found.variables), found.exact.rates, strict=True)),
+            write_rates(found.variables, found.exact.rates),
         ),
     )

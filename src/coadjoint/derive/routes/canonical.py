@@ -21,7 +21,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 from coadjoint.derive.charts import in_chart
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import (
     conjugates,
@@ -29,12 +28,12 @@ from coadjoint.derive.mechanics.configuration import (
     in_state_order,
     mechanics,
 )
+from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
-from coadjoint.derive.records import Exact, Step, partial, rate, symbol
+from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_structure
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
@@ -66,9 +65,8 @@ def derive(setting: Setting) -> Equations:
     ]
     named = {p: field[v] for p, v in velocities.items()}
     rates = in_state_order(setting, _hamilton(setting, pairs, slopes, named, _magnetic(setting)))
-    tensor = poisson_structure(setting).tensor
-    exact = Exact((*solved, *written), rates, h, list_emitted(setting, h), tensor, solves)
-    return Equations(setting, "canonical", exact, _steps(setting.state, h, slopes, rates))
+    steps = _steps(setting.state, h, slopes, rates)
+    return emit(setting, "canonical", rates, steps, h, (*solved, *written), solves)
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
@@ -148,16 +146,13 @@ def _in_own_momenta(setting: Setting) -> Equations:
         named[name] += field.substitute(force, solved)
     rates = {x: named[x] for x in variables}
     found = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
-    steps = (
-        Step(
-            "Legendre transform",
-            "v solved from p = dl/dv",
-            r"p = \partial l / \partial v",
-            tuple((symbol(name), value) for name, value in solved.items()),
-        ),
-        *_steps(variables, h, slopes, found.exact.rates),
+    transform = write_step(
+        "Legendre transform",
+        "v solved from p = dl/dv",
+        r"p = \partial l / \partial v",
+        solved,
     )
-    return replace(found, steps=steps)
+    return replace(found, steps=(transform, *_steps(variables, h, slopes, found.exact.rates)))
 
 
 def _steps(
@@ -168,18 +163,18 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     return (
-        Step("Hamiltonian", "h(q, p)", "h(q, p)", ((symbol("h"), h),)),
-        Step(
+        write_step("Hamiltonian", "h(q, p)", lines={"h": h}),
+        write_step(
             "Derivatives of the Hamiltonian",
             "dh/dq, dh/dp",
             r"\partial h / \partial q, \quad \partial h / \partial p",
-            tuple((partial("h", name), slopes[name]) for name in names),
+            write_slopes("h", names, (slopes[name] for name in names)),
         ),
-        Step(
+        write_step(
             "Hamilton's equations",
             "dq/dt = dh/dp,  dp/dt = -dh/dq + B dh/dp",
             r"\dot q = \partial h / \partial p, \quad "
             r"\dot p = -\partial h / \partial q + B\, \partial h / \partial p",
-            tuple(zip(map(rate, names), rates, strict=True)),
+            write_rates(names, rates),
         ),
     )

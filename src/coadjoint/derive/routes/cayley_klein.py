@@ -33,9 +33,9 @@ from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.algebra.representation import adjoint
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.emission import emission
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Exact, Relation, Step, rate, symbol
+from coadjoint.derive.mechanics.emission import emit_in_momenta
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
@@ -85,6 +85,18 @@ class _Body:
         return whole
 
     @property
+    def seen_components(self) -> dict[str, Element]:
+        """The same by component."""
+        return {
+            name: value
+            for variable in self.setting.advected
+            if variable.name in self.seen
+            for name, value in zip(
+                variable.components, self.seen[variable.name].vector, strict=True
+            )
+        }
+
+    @property
     def q_rate(self) -> Quaternion:
         """``dq/dt = q Omega / 2``."""
         return HALF * self.product(self.q, self.omega)
@@ -97,16 +109,14 @@ def derive(setting: Setting) -> Equations:
         DerivationError: The algebra is not so(3), or what is advected is no vector.
     """
     check_rotations(setting)
-    lagrangian = setting.lagrangian
     body = _body(setting)
-    transform = legendre(setting)
-    momentum_rate = _momentum_rate(body, _slopes(body, lagrangian))
+    momentum_rate = _momentum_rate(body, _slopes(body, setting.lagrangian))
     if _declared_quaternion(setting.spec) is not None:
         rates = setting.in_state_order(momentum_rate, _advection(body))
-        exact = emission(setting, rates)
-        return Equations(setting, ROUTE, exact, _steps(body, lagrangian, exact, setting.state))
-    found = _in_chart(body, transform, momentum_rate)
-    return replace(found, steps=_steps(body, lagrangian, found.exact, found.variables))
+        motion = emit_in_momenta(setting, ROUTE, rates, ())
+    else:
+        motion = _in_chart(body, momentum_rate)
+    return replace(motion, steps=_steps(body, motion))
 
 
 def check_rotations(setting: Setting) -> None:
@@ -158,13 +168,8 @@ def _slopes(body: _Body, lagrangian: Element) -> Quaternion:
     ``-Im(h Omega)`` and a by ``a h - h a``.
     """
     setting, field = body.setting, body.setting.field
-    names = [n for v in setting.advected for n in v.components if v.name in body.seen]
-    image = {
-        name: value
-        for v in setting.advected
-        if v.name in body.seen
-        for name, value in zip(v.components, body.seen[v.name].vector, strict=True)
-    }
+    image = body.seen_components
+    names = list(image)
     slopes = field.gradient(lagrangian, names)
     dl_da = dict(zip(names, (field.substitute(s, image) for s in slopes), strict=True))
     pi = setting.elements(setting.momenta)
@@ -215,32 +220,19 @@ def _advection(body: _Body) -> dict[str, tuple[Element, ...]]:
     return found | {declared.name: field.vector(body.q_rate.components)}
 
 
-def _in_chart(
-    body: _Body, transform: LegendreTransform, momentum_rate: tuple[Element, ...]
-) -> Equations:
+def _in_chart(body: _Body, momentum_rate: tuple[Element, ...]) -> Equations:
     """The motion of q, Pi and the fixed vectors, which stand still."""
     setting, field = body.setting, body.setting.field
     names = symbols(setting.spec)
-    image = {
-        name: value
-        for v in setting.advected
-        for name, value in zip(v.components, body.seen[v.name].vector, strict=True)
-    }
+    image = body.seen_components
     rates = dict(zip(names[:4], field.vector(body.q_rate.components), strict=True))
     rates |= zip(setting.momenta, momentum_rate, strict=True)
     rates |= dict.fromkeys(names[4:], field.zero)
-    velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
-    length = field.vector((body.q.norm - 1,))[0]
-    relation = Relation("dot(q, q) = 1", length)
-    return in_chart(
-        setting,
-        ROUTE,
-        rates,
-        image,
-        _through(setting),
-        relations=[relation],
-        definitions=velocities,
-    )
+    definitions = legendre(setting).definitions
+    velocities = [(name, field.substitute(x, image)) for name, x in definitions]
+    length = [Relation("dot(q, q) = 1", field.vector((body.q.norm - 1,))[0])]
+    through = _through(setting)
+    return in_chart(setting, ROUTE, rates, image, through, relations=length, definitions=velocities)
 
 
 def _through(setting: Setting) -> str:
@@ -251,37 +243,32 @@ def _through(setting: Setting) -> str:
     return ", ".join((cover, *seen))
 
 
-def _steps(
-    body: _Body, lagrangian: Element, exact: Exact, variables: tuple[str, ...]
-) -> tuple[Step, ...]:
+def _steps(body: _Body, motion: Equations) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    left = body.setting.sign == 1
-    law = "Omega = 2 Im(q^-1 dq/dt),  a = q^-1 a0 q"
-    latex = r"\Omega = 2\,\mathrm{Im}(q^{-1} \dot q), \qquad a = q^{-1} a_0 q"
-    if not left:
+    law, latex = (
+        "Omega = 2 Im(q^-1 dq/dt),  a = q^-1 a0 q",
+        r"\Omega = 2\,\mathrm{Im}(q^{-1} \dot q), \qquad a = q^{-1} a_0 q",
+    )
+    q_star_p, star_latex = "q* p", "q^* p"
+    if body.setting.sign == -1:
         law = "Omega = 2 Im(dq/dt q^-1),  a = q a0 q^-1"
         latex = r"\Omega = 2\,\mathrm{Im}(\dot q q^{-1}), \qquad a = q a_0 q^{-1}"
-    seen = [
-        (symbol(name), x)
-        for variable in body.setting.advected
-        if variable.name in body.seen
-        for name, x in zip(variable.components, body.seen[variable.name].vector, strict=True)
-    ]
-    q_star_p = "q* p" if left else "p q*"
+        q_star_p, star_latex = "p q*", "p q^*"
+    lagrangian = body.setting.lagrangian
     return (
-        Step("Lagrangian", "l(Omega, a)", r"l(\Omega, a)", ((symbol("l"), lagrangian),)),
-        Step("Attitude as a quaternion", law, latex, tuple(seen)),
-        Step(
+        write_step("Lagrangian", "l(Omega, a)", r"l(\Omega, a)", {"l": lagrangian}),
+        write_step("Attitude as a quaternion", law, latex, body.seen_components),
+        write_step(
             "Angular velocity",
             "Omega solved from Pi = dl/dOmega",
             r"\Omega = \Omega(\Pi, a)",
-            tuple((symbol(name), value) for name, value in exact.definitions),
+            motion.exact.definitions,
         ),
-        Step(
+        write_step(
             "Lagrange's equations for q",
             f"p = dL/d(dq/dt),  dp/dt = dL/dq,  Pi = Im({q_star_p})/2",
             r"p = \partial L / \partial \dot q, \quad \dot p = \partial L / \partial q, \quad "
-            rf"\Pi = \tfrac12 \mathrm{{Im}}({'q^* p' if left else 'p q^*'})",
-            tuple(zip(map(rate, variables), exact.rates, strict=True)),
+            rf"\Pi = \tfrac12 \mathrm{{Im}}({star_latex})",
+            write_rates(motion.variables, motion.exact.rates),
         ),
     )

@@ -32,7 +32,7 @@ from coadjoint.algebra.representation import adjoint
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import legendre
-from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
@@ -149,36 +149,30 @@ def _steps(found: Equations, action: Element, image: Mapping[str, Element]) -> t
     setting, exact, n = found.setting, found.exact, len(found.variables) // 2
     sign = "+" if setting.sign == 1 else "-"
     turn, back = ("", "-") if setting.sign == 1 else ("-", "")
-    lines = tuple(zip(map(rate, found.variables), exact.rates, strict=True))
+    lines = tuple(write_rates(found.variables, exact.rates))
     return (
-        Step(
+        write_step(
             "Clebsch action",
             f"L = <p, dq/dt> + l(xi, q) {sign} <p, rho(xi) q>",
             rf"L = \langle p, \dot q \rangle + l(\xi, q) {sign} \langle p, \rho(\xi) q \rangle",
-            ((symbol("L - <p, dq/dt>"), action),),
+            {"L - <p, dq/dt>": action},
         ),
-        Step(
+        write_step(
             "Variation of xi: the momentum map",
             f"dl/dxi = {turn}p <> q,  <p <> q, xi> = -<p, rho(xi) q>",
             rf"\partial l / \partial \xi = {turn}p \diamond q",
-            tuple(
-                (partial("l", xi), image[mu])
-                for xi, mu in zip(setting.velocities, setting.momenta, strict=True)
-            ),
+            write_slopes("l", setting.velocities, (image[mu] for mu in setting.momenta)),
         ),
-        Step(
-            "Velocities",
-            "xi solved from mu = dl/dxi",
-            r"\xi = \xi(\mu, q)",
-            tuple((symbol(name), value) for name, value in exact.definitions),
+        write_step(
+            "Velocities", "xi solved from mu = dl/dxi", r"\xi = \xi(\mu, q)", exact.definitions
         ),
-        Step(
+        write_step(
             "Variation of p: advection",
             f"dq/dt = {back}rho(xi) q",
             rf"\dot q = {back}\rho(\xi) q",
             lines[:n],
         ),
-        Step(
+        write_step(
             "Variation of q: the conjugate momentum",
             f"dp/dt = dl/dq {sign} rho(xi)^T p",
             rf"\dot p = \partial l / \partial q {sign} \rho(\xi)^T p",

@@ -23,12 +23,11 @@ from functools import reduce
 from operator import add
 
 from coadjoint.algebra import LieAlgebra, complexification, same_constants
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.records import Exact, Step, partial, rate, symbol
+from coadjoint.derive.mechanics.emission import emit
+from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.exact.dense import identity
 from coadjoint.groups.complex_numbers import Complex
@@ -54,9 +53,7 @@ def derive(setting: Setting) -> Equations:
     energy = setting.field.zero + _continue(setting, h, L).re
     halves = (*(z.re for z in zeta), *(-z.im for z in zeta))
     pairs = zip(setting.velocities, setting.field.vector(halves), strict=bool(setting.velocities))
-    tensor = poisson_structure(setting).tensor
-    exact = Exact(tuple(pairs), rates, energy, list_emitted(setting, energy), tensor)
-    return Equations(setting, ROUTE, exact, _steps(setting, h, zeta, rates))
+    return emit(setting, ROUTE, rates, _steps(setting, h, zeta, rates), energy, tuple(pairs))
 
 
 def real_algebra(setting: Setting) -> LieAlgebra:
@@ -96,7 +93,7 @@ def _at_real(setting: Setting, h: Element, real: LieAlgebra) -> Element:
     """The Hamiltonian of the real system: h at y = 0."""
     still = dict.fromkeys(setting.momenta[real.dimension :], setting.field.zero)
     found = setting.field.substitute(h, still)
-    if not setting.field.function_free(found):
+    if not setting.field.is_function_free(found):
         raise refusal(
             setting,
             ROUTE,
@@ -137,23 +134,23 @@ def _steps(
     """The derivation as a person would write it down."""
     turn = "" if setting.sign == 1 else "-"
     names = setting.momenta[: len(zeta)]
-    slopes = [
-        (partial(f"{part} h", name), setting.field.zero + getattr(z, attribute))
-        for part, attribute in (("Re", "re"), ("Im", "im"))
-        for name, z in zip(names, zeta, strict=True)
-    ]
+    zero = setting.field.zero
+    slopes = (
+        *write_slopes("Re h", names, (zero + z.re for z in zeta)),
+        *write_slopes("Im h", names, (zero + z.im for z in zeta)),
+    )
     return (
-        Step("Hamiltonian of the real system", "h(x)", "h(x)", ((symbol("h"), h),)),
-        Step(
+        write_step("Hamiltonian of the real system", "h(x)", lines={"h": h}),
+        write_step(
             "Velocity at complex momenta L = x + i y",
             "zeta = dh/dx at x + i y",
             r"\zeta = (\partial h / \partial x)(x + i y)",
-            tuple(slopes),
+            slopes,
         ),
-        Step(
+        write_step(
             "Real and imaginary parts",
             f"dx/dt + i dy/dt = {turn}ad*_zeta (x + i y)",
             rf"\dot x + i \dot y = {turn}\mathrm{{ad}}^*_\zeta (x + i y)",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )

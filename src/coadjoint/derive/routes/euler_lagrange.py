@@ -21,14 +21,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics, in_state_order, mechanics
 from coadjoint.derive.mechanics.driving import explicit_rate
+from coadjoint.derive.mechanics.emission import emit, emit_in_momenta
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.records import Step, write_entries, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
 
@@ -59,9 +58,7 @@ def _in_velocities(known: Mechanics) -> Equations:
     moved = apply(known.inverse_mass, forces)
     named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
     rates = in_state_order(setting, named)
-    tensor = poisson_structure(setting).tensor
-    exact = Exact((), rates, known.energy, list_emitted(setting, known.energy), tensor)
-    return Equations(setting, "euler-lagrange", exact, _steps(known, rates))
+    return emit(setting, "euler-lagrange", rates, _steps(known, rates), known.energy)
 
 
 def _in_momenta(known: Mechanics) -> Equations:
@@ -72,10 +69,7 @@ def _in_momenta(known: Mechanics) -> Equations:
     named = dict(zip(setting.positions, setting.elements(setting.velocities), strict=True))
     named |= {p: slope * weight for p, slope, weight in pairs}
     rates = in_state_order(setting, named)
-    tensor = poisson_structure(setting).tensor
-    h, values = transform.energy, list_emitted(setting, transform.energy)
-    exact = Exact(transform.definitions, rates, h, values, tensor, transform.solves)
-    return Equations(setting, "euler-lagrange", exact, _steps(known, rates, transform))
+    return emit_in_momenta(setting, "euler-lagrange", rates, _steps(known, rates, transform))
 
 
 # -- geodesics ------------------------------------------------------------------------------------
@@ -129,26 +123,30 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     setting = known.setting
-    momenta = zip((partial("l", v) for v in setting.velocities), known.momenta, strict=True)
     steps = [
-        Step("Lagrangian", "l(q, v)", "l(q, v)", ((symbol("l"), known.lagrangian),)),
-        Step("Momenta", "p = dl/dv", r"p = \partial l / \partial v", tuple(momenta)),
-        Step(
+        write_step("Lagrangian", "l(q, v)", lines={"l": known.lagrangian}),
+        write_step(
+            "Momenta",
+            "p = dl/dv",
+            r"p = \partial l / \partial v",
+            write_slopes("l", setting.velocities, known.momenta),
+        ),
+        write_step(
             "Mass matrix",
             "M_ab = d2l/dv_a dv_b",
             r"M_{ab} = \partial^2 l / \partial v_a \partial v_b",
-            _entries("M", known.mass),
+            write_entries("M", known.mass),
         ),
     ]
     if transform is not None:
-        solved = tuple((symbol(name), value) for name, value in transform.definitions)
-        steps.append(Step("Velocities", "v solved from p = dl/dv", "v = v(q, p)", solved))
+        solved = transform.definitions
+        steps.append(write_step("Velocities", "v solved from p = dl/dv", "v = v(q, p)", solved))
     elif is_natural(known):
         steps += _geometry(known)
-    energy = Step("Energy", "E = v . dl/dv - l", r"E = v \cdot \partial l / \partial v - l")
-    steps.append(Step(energy.title, energy.text, energy.latex, ((symbol("E"), known.energy),)))
-    motion = tuple(zip(map(rate, setting.state), rates, strict=True))
-    return (*steps, Step("Euler-Lagrange equations", _LAW, _LATEX, motion))
+    latex = r"E = v \cdot \partial l / \partial v - l"
+    steps.append(write_step("Energy", "E = v . dl/dv - l", latex, {"E": known.energy}))
+    motion = write_rates(setting.state, rates)
+    return (*steps, write_step("Euler-Lagrange equations", _LAW, _LATEX, motion))
 
 
 def _geometry(known: Mechanics) -> list[Step]:
@@ -157,40 +155,27 @@ def _geometry(known: Mechanics) -> list[Step]:
     if not any(entry for row in first for line in row for entry in line):
         return []
     return [
-        Step(
+        write_step(
             "Christoffel symbols of the first kind",
             "Gamma_cab = (dM_ca/dq_b + dM_cb/dq_a - dM_ab/dq_c)/2",
             r"\Gamma_{cab} = \tfrac12(\partial_b M_{ca} + \partial_a M_{cb} - \partial_c M_{ab})",
-            _symbols("Gamma_", first),
+            _symbols("Gamma_{}{}", first),
         ),
-        Step(
+        write_step(
             "Christoffel symbols of the second kind",
             "Gamma^c_ab = (M^-1)_cd Gamma_dab,  dv_c/dt = -Gamma^c_ab v_a v_b + forces",
             r"\Gamma^c_{ab} = (M^{-1})_{cd} \Gamma_{dab}",
-            _symbols("Gamma^", second),
+            _symbols("Gamma^{}_{}", second),
         ),
     ]
 
 
-def _entries(
-    name: str, matrix: tuple[tuple[Element, ...], ...]
-) -> tuple[tuple[Left, Element], ...]:
-    """The entries on and above the diagonal that are not zero."""
-    return tuple(
-        (symbol(f"{name}_{i + 1}{j + 1}"), entry)
-        for i, row in enumerate(matrix)
-        for j, entry in enumerate(row)
-        if j >= i and entry
-    )
-
-
-def _symbols(name: str, table: Table) -> tuple[tuple[Left, Element], ...]:
-    """Christoffel symbols that are not zero, a <= b."""
-    joint = "_" if name.endswith("^") else ""
-    return tuple(
-        (symbol(f"{name}{c + 1}{joint}{a + 1}{b + 1}"), entry)
-        for c, rows in enumerate(table)
-        for a, row in enumerate(rows)
-        for b, entry in enumerate(row)
+def _symbols(form: str, table: Table) -> list[tuple[str, Element]]:
+    """Christoffel symbols that are not zero, a <= b; the form has places for c and for a, b."""
+    return [
+        (form.format(c, f"{a}{b}"), entry)
+        for c, rows in enumerate(table, 1)
+        for a, row in enumerate(rows, 1)
+        for b, entry in enumerate(row, 1)
         if a <= b and entry
-    )
+    ]

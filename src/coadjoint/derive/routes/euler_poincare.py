@@ -17,9 +17,8 @@ l/\partial\xi`, with the velocities as definitions. Read next:
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.emission import emission, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, partial, rate, sign_text, symbol
+from coadjoint.derive.mechanics.emission import emit_in_momenta, show_momenta, show_velocities
+from coadjoint.derive.records import Step, sign_text, write_rates, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
@@ -30,16 +29,11 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    lagrangian = setting.lagrangian
-    transform = legendre(setting)
-    rates = _rates(setting, lagrangian)
-    exact = emission(setting, rates)
-    return Equations(
-        setting, "euler-poincare", exact, _steps(setting, lagrangian, transform, rates)
-    )
+    rates = _rates(setting)
+    return emit_in_momenta(setting, "euler-poincare", rates, _steps(setting, rates))
 
 
-def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
+def _rates(setting: Setting) -> tuple[Element, ...]:
     """Right-hand sides in state, velocities and parameters, in the order of the state."""
     sign, xi = setting.sign, setting.elements(setting.velocities)
     mu = setting.elements(setting.momenta)
@@ -48,39 +42,28 @@ def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     for variable in setting.advected:
         action = setting.actions[variable.name]
         a = setting.elements(variable.components)
-        dl_da = setting.field.gradient(lagrangian, variable.components)
+        dl_da = setting.field.gradient(setting.lagrangian, variable.components)
         torque = action.diamond(dl_da, a)
         momentum = [m + t for m, t in zip(momentum, torque, strict=True)]
         advected[variable.name] = [-sign * x for x in action.act(xi, a)]
     return setting.in_state_order([sign * m for m in momentum], advected)
 
 
-def _steps(
-    setting: Setting,
-    lagrangian: Element,
-    transform: LegendreTransform,
-    rates: tuple[Element, ...],
-) -> tuple[Step, ...]:
+def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     back = "-" if setting.sign == 1 else ""
     turned = sign_text(setting.sign, "ad*_xi mu + dl/da <> a")
     turned_latex = sign_text(
         setting.sign, r"\mathrm{ad}^*_\xi \mu + (\partial l / \partial a) \diamond a"
     )
-    momenta = (partial("l", velocity) for velocity in setting.velocities)
     return (
-        Step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", ((symbol("l"), lagrangian),)),
-        Step(
-            "Momenta",
-            "mu = dl/dxi",
-            r"\mu = \partial l / \partial \xi",
-            tuple(zip(momenta, transform.momenta, strict=True)),
-        ),
-        velocities_step(transform),
-        Step(
+        write_step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", {"l": setting.lagrangian}),
+        show_momenta(setting),
+        show_velocities(setting),
+        write_step(
             "Euler-Poincare equations and advection",
             f"dmu/dt = {turned},  da/dt = {back}rho(xi) a",
             rf"\dot\mu = {turned_latex}, \qquad \dot a = {back}\rho(\xi) a",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )

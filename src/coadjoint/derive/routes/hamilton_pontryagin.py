@@ -27,9 +27,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.emission import emission, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.mechanics.emission import emit_in_momenta, show_momenta, show_velocities
+from coadjoint.derive.records import Step, write_rates, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import fresh
 from coadjoint.exact import Element
@@ -49,13 +48,10 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    lagrangian = setting.lagrangian
-    action = action_near(setting, lagrangian, setting.elements(setting.momenta))
-    transform = legendre(setting)
+    action = action_near(setting, setting.lagrangian, setting.elements(setting.momenta))
     rates = setting.in_state_order(momentum_equation(setting, action), advection(setting, action))
-    exact = emission(setting, rates)
-    steps = _steps(setting, action, transform, rates)
-    return Equations(setting, "hamilton-pontryagin", exact, steps)
+    steps = _steps(setting, action, rates)
+    return emit_in_momenta(setting, "hamilton-pontryagin", rates, steps)
 
 
 @dataclass(frozen=True)
@@ -138,50 +134,36 @@ def advection(setting: Setting, action: Action) -> dict[str, list[Element]]:
     return {each.name: [carried(name) for name in each.components] for each in setting.advected}
 
 
-def _steps(
-    setting: Setting, action: Action, transform: LegendreTransform, rates: tuple[Element, ...]
-) -> tuple[Step, ...]:
+def _steps(setting: Setting, action: Action, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    left = setting.sign == 1
-    velocity = ("g^-1 dg/dt", r"g^{-1} \dot g") if left else ("dg/dt g^-1", r"\dot g g^{-1}")
-    motion = ("dg/dt = g xi", r"\dot g = g \xi") if left else ("dg/dt = xi g", r"\dot g = \xi g")
-    near = (
-        ("g = g0 exp(eps)", r"g = g_0 e^\epsilon")
-        if left
-        else ("g = exp(eps) g0", r"g = e^\epsilon g_0")
-    )
-    momenta = (partial("l", name) for name in setting.velocities)
+    velocity, motion = ("g^-1 dg/dt", r"g^{-1} \dot g"), ("dg/dt = g xi", r"\dot g = g \xi")
+    near = ("g = g0 exp(eps)", r"g = g_0 e^\epsilon")
+    if setting.sign == -1:
+        velocity, motion = ("dg/dt g^-1", r"\dot g g^{-1}"), ("dg/dt = xi g", r"\dot g = \xi g")
+        near = ("g = exp(eps) g0", r"g = e^\epsilon g_0")
     by_name = dict(zip(setting.state, rates, strict=True))
-    advected = [name for name in setting.state if name not in setting.momenta]
-    xi = setting.elements(setting.velocities)
+    moving = [*action.coordinates, *(n for n in setting.state if n not in setting.momenta)]
+    by_name |= zip(action.coordinates, setting.elements(setting.velocities), strict=True)
     return (
-        Step(
+        write_step(
             "Hamilton-Pontryagin action",
             f"L = l(xi, a) + <mu, {velocity[0]} - xi>,  {near[0]}, first order in eps",
             rf"L = l(\xi, a) + \langle \mu, {velocity[1]} - \xi \rangle, \qquad {near[1]}",
-            ((symbol("L"), action.integrand),),
+            {"L": action.integrand},
         ),
-        Step(
-            "Variation of xi: the Legendre relation",
-            "mu = dl/dxi",
-            r"\mu = \partial l / \partial \xi",
-            tuple(zip(momenta, transform.momenta, strict=True)),
-        ),
-        velocities_step(transform),
-        Step(
+        show_momenta(setting, "Variation of xi: the Legendre relation"),
+        show_velocities(setting),
+        write_step(
             f"Variation of mu: the reconstruction {motion[0]}",
             f"{motion[0]}, that is deps/dt = xi at eps = 0",
             rf"{motion[1]}, \qquad \dot\epsilon = \xi",
-            (
-                *zip(map(rate, action.coordinates), xi, strict=True),
-                *((rate(name), by_name[name]) for name in advected),
-            ),
+            write_rates(moving, map(by_name.__getitem__, moving)),
         ),
-        Step(
+        write_step(
             "Variation of g: the momentum equation",
             "d/dt dL/d(deps/dt) = dL/deps at eps = 0",
             r"\frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
             r"= \frac{\partial L}{\partial \epsilon}",
-            tuple((rate(name), by_name[name]) for name in setting.momenta),
+            write_rates(setting.momenta, map(by_name.__getitem__, setting.momenta)),
         ),
     )

@@ -31,10 +31,10 @@ from coadjoint.derive.mechanics.legendre import legendre_transform
 from coadjoint.derive.records import (
     Relation,
     Step,
-    partial,
-    rate,
     sign_text,
-    symbol,
+    write_rates,
+    write_slopes,
+    write_step,
 )
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
@@ -170,38 +170,35 @@ def _steps(
     work_latex = sign_text(setting.sign, r"\langle\mu, [\xi, \eta]\rangle - p \cdot \rho(\eta) a")
     momenta = setting.field.gradient(whole, setting.velocities)
     return (
-        Step(
+        write_step(
             "Lagrangian with cyclic coordinates",
             "l = T(xi) + |dq/dt + a|^2/2",
             r"l = T(\xi) + \tfrac12 |\dot q + a|^2",
-            ((symbol("l"), whole),),
+            {"l": whole},
         ),
-        Step(
+        write_step(
             "Momenta",
             "mu = dl/dxi,  p = dl/d(dq/dt) = dq/dt + a",
             r"\mu = \partial l / \partial \xi, \quad p = \partial l / \partial \dot q = \dot q + a",
-            (
-                *zip((partial("l", xi) for xi in setting.velocities), momenta, strict=True),
-                *((symbol(name), value) for name, value in solved.items()),
-            ),
+            (*write_slopes("l", setting.velocities, momenta), *solved.items()),
         ),
-        Step(
+        write_step(
             "Hamiltonian, quadratic",
             "h = T + |p|^2/2 - p . a",
             r"h = T + \tfrac12 |p|^2 - p \cdot a",
-            ((symbol("h"), energy),),
+            {"h": energy},
         ),
-        Step(
+        write_step(
             "Variation of the group with dl/da = p",
             f"<dmu/dt, eta> = {work},  da/dt = {back}rho(xi) a,  dp/dt = 0",
             rf"\langle\dot\mu, \eta\rangle = {work_latex}, \quad "
             rf"\dot a = {back}\rho(\xi) a, \quad \dot p = 0",
-            tuple(zip(map(rate, found.variables), found.exact.rates, strict=True)),
+            write_rates(found.variables, found.exact.rates),
         ),
-        Step(
+        write_step(
             "Level set of the conserved momentum",
             "p = dl/da of the Lagrangian with the potential",
             r"p = \partial l / \partial a",
-            tuple(zip(map(symbol, _cyclic(setting)[1]), level, strict=True)),
+            zip(_cyclic(setting)[1], level, strict=True),
         ),
     )

@@ -12,15 +12,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
-from coadjoint.derive.records import Exact, Left, Step, rate, symbol
+from coadjoint.derive.records import Step, write_rates, write_step
 from coadjoint.derive.routes.poisson import velocities_of
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -55,10 +54,8 @@ def equations_of_pair(
     h, solves = hamiltonian(setting) if setting.has_energy else (None, ())
     definitions = () if h is None else velocities_of(setting, h, solves)
     rates = rates_of(setting, pair, route)
-    tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    exact = Exact(definitions, rates, h, list_emitted(setting, h), tensor, solves)
     steps = (*search, *_steps(setting, pair, definitions, rates))
-    return replace(Equations(setting, route, exact, steps), pair=pair)
+    return replace(emit(setting, route, rates, steps, h, definitions, solves), pair=pair)
 
 
 def _steps(
@@ -69,34 +66,30 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     texts = f"L = {pair.texts[0]},  M = {pair.texts[1]}"
-    velocities = Step(
-        "Velocities",
-        "xi = dh/dmu",
-        r"\xi = \partial h / \partial \mu",
-        tuple((symbol(name), value) for name, value in definitions),
-    )
+    law = ("xi = dh/dmu", r"\xi = \partial h / \partial \mu")
+    velocities = write_step("Velocities", *law, definitions)
     return (
         *([velocities] if setting.has_energy else []),
-        Step("Lax pair", texts, "L(\\lambda), M(\\lambda)", _entries(pair)),
-        Step(
+        write_step("Lax pair", texts, "L(\\lambda), M(\\lambda)", _entries(pair)),
+        write_step(
             "Lax equation, power by power",
             f"dL/dt = L M - M L for every {pair.spectral}",
             r"\dot L = L M - M L",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
         _integrals(setting),
     )
 
 
-def _entries(pair: LaxPair) -> tuple[tuple[Left, Element], ...]:
+def _entries(pair: LaxPair) -> dict[str, Element]:
     """The entries of L and of M that are not zero."""
-    return tuple(
-        (symbol(f"{name}_{i}_{j}" if len(matrix) > 9 else f"{name}_{i}{j}"), entry)
+    return {
+        f"{name}_{i}_{j}" if len(matrix) > 9 else f"{name}_{i}{j}": entry
         for name, matrix in (("L", pair.L), ("M", pair.M))
         for i, row in enumerate(matrix, 1)
         for j, entry in enumerate(row, 1)
         if entry != 0
-    )
+    }
 
 
 def _integrals(setting: Setting) -> Step:
@@ -109,9 +102,9 @@ def _integrals(setting: Setting) -> Step:
     )
     known = ["the energy"] * setting.has_energy
     known += ["the claimed Casimirs"] * bool(known or setting.spec.casimirs)
-    return Step(
+    return write_step(
         f"Integrals{' beside ' * bool(known)}{' and '.join(known)}",
         f"coefficients of tr L^k: {words or 'none'}",
         r"\mathrm{tr}\, L^k = \mathrm{const}",
-        tuple((symbol(name), value) for name, value in found.named),
+        found.named,
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.planes import ROUTE, SPECTRAL, body_of, find_pair
-from coadjoint.derive.records import Step, symbol
+from coadjoint.derive.records import Step, write_step
 from coadjoint.derive.routes.lax import equations_of_pair
 from coadjoint.derive.setting import Setting
 from coadjoint.spec import Spec
@@ -30,15 +30,12 @@ def derive(setting: Setting) -> Equations:
 
 def _search(setting: Setting) -> tuple[Step, ...]:
     """What Manakov's equations were solved for."""
-    inertia = body_of(setting).inertia
+    lines = {f"I{i + 1}{j + 1}": value for (i, j), value in body_of(setting).inertia.items()}
     return (
-        Step(
-            "Inertia in the planes",
-            "M_ij = I_ij Omega_ij",
-            r"M_{ij} = I_{ij} \Omega_{ij}",
-            tuple((symbol(f"I{i + 1}{j + 1}"), value) for (i, j), value in inertia.items()),
+        write_step(
+            "Inertia in the planes", "M_ij = I_ij Omega_ij", r"M_{ij} = I_{ij} \Omega_{ij}", lines
         ),
-        Step(
+        write_step(
             "Manakov's equations",
             "[B, Omega] + [M, A] = 0: I_ij (a_i - a_j) = b_i - b_j, solved for A and B",
             r"[B, \Omega] + [M, A] = 0: \quad I_{ij} (a_i - a_j) = b_i - b_j",

@@ -21,16 +21,16 @@ from collections.abc import Callable, Sequence
 
 from coadjoint.algebra.matrices import SparseMatrix
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.emission import emission, velocities_step
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, partial, rate, sign_text
+from coadjoint.derive.mechanics.emission import emit_in_momenta, show_velocities
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Step, sign_text, write_rates, write_slopes, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, weigh
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, add, commutator, product, scale, transpose
 from coadjoint.exact.linear import Span
 from coadjoint.spec.core.faults import list_names
-from coadjoint.spec.model import Variable, unpacked
+from coadjoint.spec.model import Variable, unpack
 
 ROUTE = "matrix-euler-poincare"
 #: A rate and a matrix C whose trace tr(C e) is the torque along e.
@@ -45,11 +45,8 @@ def derive(setting: Setting) -> Equations:
             way, or the Lagrangian has no invertible Legendre transform.
     """
     _check_matrices(setting)
-    lagrangian = setting.lagrangian
-    transform = legendre(setting)
-    rates = _rates(setting, lagrangian)
-    exact = emission(setting, rates)
-    return Equations(setting, ROUTE, exact, _steps(setting, transform, rates))
+    rates = _rates(setting)
+    return emit_in_momenta(setting, ROUTE, rates, _steps(setting, rates))
 
 
 def _check_matrices(setting: Setting) -> None:
@@ -65,7 +62,7 @@ def _check_matrices(setting: Setting) -> None:
         )
 
 
-def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
+def _rates(setting: Setting) -> tuple[Element, ...]:
     """Right-hand sides in state, velocities and parameters, in the order of the state."""
     field, sign = setting.field, setting.sign
     xi = weigh(setting.elements(setting.velocities), setting.algebra.matrices)
@@ -76,7 +73,7 @@ def _rates(setting: Setting, lagrangian: Element) -> tuple[Element, ...]:
     for variable in setting.advected:
         move = _advection(setting, variable)
         a = _as_matrix(setting, variable, setting.elements(variable.components))
-        slopes = field.gradient(lagrangian, variable.components)
+        slopes = field.gradient(setting.lagrangian, variable.components)
         speed, push = move(xi, a, _slope_matrix(setting, variable, slopes))
         torque = add(torque, push)
         advected[variable.name] = [sign * x for x in _kept_entries(variable, speed)]
@@ -158,7 +155,7 @@ def _as_matrix(setting: Setting, variable: Variable, values: Sequence[Element]) 
     name = setting.actions[variable.name].name
     if name in ("vector", "defining"):
         return tuple((value,) for value in values)
-    return unpacked(values, "symmetric" if name == "symmetric" else "matrix")
+    return unpack(values, "symmetric" if name == "symmetric" else "matrix")
 
 
 def _slope_matrix(setting: Setting, variable: Variable, slopes: Sequence[Element]) -> Matrix:
@@ -178,11 +175,8 @@ def _kept_entries(variable: Variable, a: Matrix) -> list[Element]:
     return [x for i, row in enumerate(a) for j, x in enumerate(row) if j >= i or not symmetric]
 
 
-def _steps(
-    setting: Setting, transform: LegendreTransform, rates: tuple[Element, ...]
-) -> tuple[Step, ...]:
+def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    momenta = (partial("l", velocity) for velocity in setting.velocities)
     sign = "" if setting.sign == 1 else "-"
     turned = sign_text(setting.sign, "tr(M^T (xi e - e xi)) + tr((dl/da)^T delta a)")
     turned_latex = sign_text(
@@ -191,18 +185,18 @@ def _steps(
         r"+ \mathrm{tr}((\partial l/\partial a)^T \delta a)",
     )
     return (
-        Step(
+        write_step(
             "Momentum matrix in the span of the algebra",
             "tr(M^T e) = dl/dxi along each matrix e of the basis",
             r"\mathrm{tr}(M^T e) = \langle \partial l / \partial \xi, e \rangle",
-            tuple(zip(momenta, transform.momenta, strict=True)),
+            write_slopes("l", setting.velocities, legendre(setting).momenta),
         ),
-        velocities_step(transform),
-        Step(
+        show_velocities(setting),
+        write_step(
             "Matrix Euler-Poincare equations and advection",
             f"d tr(M^T e)/dt = {turned}, with delta a and {sign}da/dt by products of -e and -xi "
             "with a",
             rf"\tfrac{{d}}{{dt}} \mathrm{{tr}}(M^T e) = {turned_latex}",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )

@@ -23,10 +23,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.legendre import hamiltonian
-from coadjoint.derive.records import Exact, Left, Step, partial, rate, symbol
+from coadjoint.derive.records import Step, symbol, write_rates, write_slopes, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
@@ -60,10 +60,8 @@ def derive(setting: Setting) -> Equations:
     rates = tuple(-multiplier * rate for rate in product)
     slopes = dict(zip(names, gradients[-1], strict=True))
     definitions = tuple((xi, slopes[momentum]) for momentum, xi in velocities)
-    tensor = poisson_structure(setting).tensor
-    exact = Exact(definitions, rates, h, list_emitted(setting, h), tensor)
     steps = _steps(setting, [*functions, h], rates, gradients, multiplier)
-    return Equations(setting, "nambu", exact, steps)
+    return emit(setting, "nambu", rates, steps, h, definitions)
 
 
 def _velocities(setting: Setting) -> list[tuple[str, str]]:
@@ -149,26 +147,26 @@ def _steps(
     """The derivation as a person would write it down; h is the last function."""
     *functions, h = functions
     labels = ["c"] if len(functions) == 1 else [f"c{n + 1}" for n in range(len(functions))]
-    named: list[tuple[Left, Element]] = list(zip(map(symbol, labels), functions, strict=True))
+    named = dict(zip(labels, functions, strict=True))
     slopes = [
-        (partial(label, name), slope)
+        line
         for label, gradient in zip((*labels, "h"), gradients, strict=True)
-        for name, slope in zip(setting.state, gradient, strict=True)
+        for line in write_slopes(label, setting.state, gradient)
     ]
     factors, sign = ((*labels, "h"), "") if len(labels) == 1 else (("h", *labels), "-")
     if multiplier != 1:
-        named.append((symbol("m"), multiplier))
+        named["m"] = multiplier
         sign += "m "
     wedge = sign + " x ".join(f"grad {label}" for label in factors)
     wedge_latex = sign + r" \times ".join(rf"\nabla {symbol(label).latex}" for label in factors)
     return (
-        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), h),)),
-        Step("Distinguished functions", "c(x)", "c(x)", tuple(named)),
-        Step("Gradients", "grad c, grad h", r"\nabla c, \nabla h", tuple(slopes)),
-        Step(
+        write_step("Hamiltonian", "h(x)", lines={"h": h}),
+        write_step("Distinguished functions", "c(x)", lines=named),
+        write_step("Gradients", "grad c, grad h", r"\nabla c, \nabla h", slopes),
+        write_step(
             "Nambu's equations",
             f"dx/dt = {wedge}",
             rf"\dot x = {wedge_latex}",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )

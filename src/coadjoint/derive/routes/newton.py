@@ -13,14 +13,12 @@ Read next: `coadjoint.prove.galilean`.
 
 from __future__ import annotations
 
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.configuration import declared_energy, in_state_order
+from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.records import Exact, Left, Step, rate, symbol
+from coadjoint.derive.records import Step, write_rates, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element
 from coadjoint.spec.model import Formula, component_names
 
@@ -35,10 +33,7 @@ def derive(setting: Setting) -> Equations:
     named = dict(zip(setting.positions, velocities, strict=True))
     named |= zip(setting.velocities, accelerations(setting), strict=True)
     rates = in_state_order(setting, named)
-    energy = declared_energy(setting)
-    tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    exact = Exact((), rates, energy, list_emitted(setting, energy), tensor)
-    return Equations(setting, "newton", exact, _steps(setting, rates))
+    return emit(setting, "newton", rates, _steps(setting, rates), declared_energy(setting))
 
 
 def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
@@ -46,18 +41,21 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     laws = setting.spec.newton
     forces = [line for law in laws for line in _lines("F", law.coordinate, law.force, setting)]
     masses = [line for law in laws for line in _lines("M", law.coordinate, law.mass, setting)]
-    motion = tuple(zip(map(rate, setting.state), rates, strict=True))
     return (
-        Step("Forces", "F(q, v)", "F(q, v)", tuple(forces)),
-        Step("Masses", "M", "M", tuple(masses)),
-        Step("Newton's law", "dq/dt = v,  M dv/dt = F", r"\dot q = v, \quad M \dot v = F", motion),
+        write_step("Forces", "F(q, v)", lines=forces),
+        write_step("Masses", "M", lines=masses),
+        write_step(
+            "Newton's law",
+            "dq/dt = v,  M dv/dt = F",
+            r"\dot q = v, \quad M \dot v = F",
+            write_rates(setting.state, rates),
+        ),
     )
 
 
 def _lines(
     letter: str, coordinate: str, formula: Formula, setting: Setting
-) -> list[tuple[Left, Element]]:
+) -> list[tuple[str, Element]]:
     """The entries of a formula, with names after the coordinate; zeros are left out."""
     names = component_names(f"{letter}_{coordinate}", formula.shape)
-    values = entries(setting.value(formula))
-    return [(symbol(name), value) for name, value in zip(names, values, strict=True) if value]
+    return [pair for pair in zip(names, setting.components(formula), strict=True) if pair[1]]

@@ -26,9 +26,9 @@ from functools import reduce
 from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.emission import emission
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, rate, symbol
+from coadjoint.derive.mechanics.emission import emit_in_momenta
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text
@@ -72,12 +72,9 @@ def derive(setting: Setting) -> Equations:
     """
     _check_motions(setting)
     lagrangian = setting.lagrangian
-    transform = legendre(setting)
-    points = mass_points(setting, lagrangian)
-    forces = _forces(setting, lagrangian)
+    points, forces = mass_points(setting, lagrangian), _forces(setting, lagrangian)
     rates = _rates(setting, points, forces)
-    exact = emission(setting, rates)
-    return Equations(setting, ROUTE, exact, _steps(setting, transform, points, forces, rates))
+    return emit_in_momenta(setting, ROUTE, rates, _steps(setting, points, forces, rates))
 
 
 def _check_motions(setting: Setting) -> None:
@@ -226,49 +223,42 @@ def _total(vectors: Iterable[Vector]) -> Vector:
 
 
 def _steps(
-    setting: Setting,
-    transform: LegendreTransform,
-    points: MassPoints,
-    forces: Vector,
-    rates: tuple[Element, ...],
+    setting: Setting, points: MassPoints, forces: Vector, rates: tuple[Element, ...]
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    field = setting.field
-    names = [f"S{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]
-    second = zip(names, (x for row in points.second for x in row), strict=True)
-    moments = [(symbol(name), field.zero + x) for name, x in second if x != 0]
+    moments = {
+        **{f"c{n}": x for n, x in enumerate(points.first, 1)},
+        **{f"S{i}{j}": x for i, r in enumerate(points.second, 1) for j, x in enumerate(r, 1)},
+    }
+    lines = {name: setting.field.zero + x for name, x in moments.items() if x != 0}
     if forces[3:]:
-        first = zip(("c1", "c2", "c3"), points.first, strict=True)
-        named = [(symbol(name), field.zero + x) for name, x in first if x != 0]
-        moments = [(symbol("m"), points.mass), *named, *moments]
-    labels = ("T1", "T2", "T3", "F1", "F2", "F3")
-    works = [(symbol(name), work) for name, work in zip(labels, forces, strict=False)]
-    definitions = ((symbol(name), value) for name, value in transform.definitions)
+        lines = {"m": points.mass, **lines}
+    works = zip(("T1", "T2", "T3", "F1", "F2", "F3"), forces, strict=False)
     return (
-        Step(
+        write_step(
             "Moments of the mass points",
             "m = sum m,  c = sum m X,  S = sum m X X^T = (tr I/2) - I",
             r"m = \sum m, \quad c = \sum m X, \quad S = \sum m X X^T = \tfrac12 \mathrm{tr} I - I",
-            tuple(moments),
+            lines,
         ),
-        Step(
+        write_step(
             "Torque and force by virtual work",
             "T_j = -dU(a - theta rho(e_j) a)/dtheta",
             r"T_j = -\partial U(a - \theta \rho(e_j) a) / \partial\theta",
-            tuple(works),
+            works,
         ),
-        Step(
+        write_step(
             "Velocities from momenta",
             "Pi = sum m X x (V + Omega x X),  P = sum m (V + Omega x X)",
             r"\Pi = \sum m X \times (V + \Omega \times X), \quad P = \sum m (V + \Omega \times X)",
-            tuple(definitions),
+            legendre(setting).definitions,
         ),
-        Step(
+        write_step(
             "Newton's law, summed over the points",
             "dPi/dt = T - sum m X x (Omega x V + Omega x (Omega x X)),  "
             "dP/dt = F - sum m (Omega x V + Omega x (Omega x X))",
             r"\dot\Pi = T - \sum m X \times (\Omega \times V + \Omega \times (\Omega \times X)), "
             r"\quad \dot P = F - \sum m (\Omega \times V + \Omega \times (\Omega \times X))",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )

@@ -18,9 +18,9 @@ Read next: `coadjoint.derive.routes.hamilton_pontryagin`.
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.emission import emission
-from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.mechanics.emission import emit_in_momenta
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
@@ -31,15 +31,11 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
-    lagrangian = setting.lagrangian
-    transform = legendre(setting)
-    fields = _vector_fields(setting)
-    inertial, forces = _inertial(setting, transform.momenta), _along(setting, fields, lagrangian)
+    fields, slopes = _vector_fields(setting), legendre(setting).momenta
+    inertial, forces = _inertial(setting, slopes), _along(setting, fields, setting.lagrangian)
     momentum = [a + b for a, b in zip(inertial, forces, strict=True)]
     rates = setting.in_state_order(momentum, _advection(setting, fields))
-    exact = emission(setting, rates)
-    steps = _steps(setting, lagrangian, transform, forces, rates)
-    return Equations(setting, "poincare", exact, steps)
+    return emit_in_momenta(setting, "poincare", rates, _steps(setting, forces, rates))
 
 
 #: X_s of every component of the advected quantities, by name, for each s.
@@ -87,44 +83,32 @@ def _advection(setting: Setting, fields: _Fields) -> dict[str, list[Element]]:
     return {each.name: [carried(name) for name in each.components] for each in setting.advected}
 
 
-def _steps(
-    setting: Setting,
-    lagrangian: Element,
-    transform: LegendreTransform,
-    forces: list[Element],
-    rates: tuple[Element, ...],
-) -> tuple[Step, ...]:
+def _steps(setting: Setting, forces: list[Element], rates: tuple[Element, ...]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    momenta = (partial("T", velocity) for velocity in setting.velocities)
-    basis = setting.algebra.basis
-    sign = "" if setting.sign == 1 else "-"
+    transform, sign = legendre(setting), "" if setting.sign == 1 else "-"
+    fields = [f"X_{name}" for name in setting.algebra.basis]
     return (
-        Step("Kinetic energy and force function", "T + U", "T + U", ((symbol("L"), lagrangian),)),
-        Step(
+        write_step("Kinetic energy and force function", "T + U", lines={"L": setting.lagrangian}),
+        write_step(
             "Momenta of the quasi-velocities",
             "p_s = dT/deta_s",
             r"p_s = \partial T / \partial \eta_s",
-            tuple(zip(momenta, transform.momenta, strict=True)),
+            write_slopes("T", setting.velocities, transform.momenta),
         ),
-        Step(
+        write_step(
             "Quasi-velocities",
             "eta solved from p = dT/deta",
             r"\eta = \eta(p, a)",
-            tuple((symbol(name), value) for name, value in transform.definitions),
+            transform.definitions,
         ),
-        Step(
-            "Forces",
-            "X_s (T + U)",
-            "X_s (T + U)",
-            tuple((symbol(f"X_{name}"), force) for name, force in zip(basis, forces, strict=True)),
-        ),
-        Step(
+        write_step("Forces", "X_s (T + U)", lines=zip(fields, forces, strict=True)),
+        write_step(
             "Poincare's equations",
             f"d/dt dT/deta_s = {sign}sum c_ks^i eta_k dT/deta_i + X_s (T + U),  "
             "da/dt = eta_s X_s a",
             r"\frac{d}{dt} \frac{\partial T}{\partial \eta_s} = "
             rf"{sign}\sum c_{{ks}}^i \eta_k \frac{{\partial T}}{{\partial \eta_i}} + X_s (T + U), "
             r"\qquad \dot a = \eta_s X_s a",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
+            write_rates(setting.state, rates),
         ),
     )

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
-from coadjoint.derive.records import Exact, Step, bracket, partial, rate, symbol
+from coadjoint.derive.records import bracket, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
@@ -59,18 +59,28 @@ def hamiltonian_equations(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
         for row in tensor
     )
-    exact = Exact(definitions, rates, h, list_emitted(setting, h), tensor, solves)
-    brackets = tuple(
+    brackets = [
         (bracket(a, b), tensor[i][j])
         for (i, a), (j, b) in combinations(enumerate(setting.state), 2)
         if tensor[i][j] != 0
-    )
+    ]
     steps = (
-        Step("Hamiltonian", "h(x)", "h(x)", ((symbol("h"), h),)),
-        Step(*law, brackets),
-        *_motion(setting, gradient, rates),
+        write_step("Hamiltonian", "h(x)", lines={"h": h}),
+        write_step(*law, brackets),
+        write_step(
+            "Derivatives of the Hamiltonian",
+            "dh/dx",
+            r"\partial h / \partial x",
+            write_slopes("h", setting.state, gradient.values()),
+        ),
+        write_step(
+            "Hamilton's equations",
+            "dx/dt = {x, h}",
+            r"\dot x = \{x, h\}",
+            write_rates(setting.state, rates),
+        ),
     )
-    return Equations(setting, route, exact, steps)
+    return emit(setting, route, rates, steps, h, definitions, solves)
 
 
 def velocities_of(
@@ -93,25 +103,5 @@ def velocities_of(
             (xi, weight * field.derivative(h, mu))
             for mu, weight, xi in zip(setting.momenta, setting.weights, given, strict=bool(given))
             if xi not in known
-        ),
-    )
-
-
-def _motion(
-    setting: Setting, gradient: dict[str, Element], rates: tuple[Element, ...]
-) -> tuple[Step, ...]:
-    """How the motion follows from Hamiltonian and bracket."""
-    return (
-        Step(
-            "Derivatives of the Hamiltonian",
-            "dh/dx",
-            r"\partial h / \partial x",
-            tuple((partial("h", name), value) for name, value in gradient.items()),
-        ),
-        Step(
-            "Hamilton's equations",
-            "dx/dt = {x, h}",
-            r"\dot x = \{x, h\}",
-            tuple(zip(map(rate, setting.state), rates, strict=True)),
         ),
     )

@@ -9,43 +9,38 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from coadjoint.errors import OutputError
-
-if TYPE_CHECKING:
-    from coadjoint.solve.system import System
+from coadjoint.render.targets.protocol import Generated, Kernel
 
 
-class KernelModule:
+class KernelModule(Kernel):
     """The functions of a file.
 
     Args:
         system: Whose kernel it is.
         file: The file in its folder.
 
-    Attributes:
-        source: SHA-256 of the text of the file.
-
     Raises:
         OutputError: The file cannot be loaded, or carries another id than the System.
     """
 
-    def __init__(self, system: System, file: str) -> None:
-        self.system, self.path = system, system.folder / file
+    def __init__(self, system: Generated, file: str) -> None:
+        self.path = system.folder / file
         module = ModuleType(f"_coadjoint_{system.name}_{self.path.stem}")
         try:
             content = self.path.read_bytes()
             exec(compile(content, self.path, "exec"), module.__dict__)  # noqa: S102 (it is a module)
-            found = module.ID
+            identity = module.ID
         except Exception as error:
             raise self.explain_broken(
                 f"cannot be loaded: {type(error).__name__}: {error}"
             ) from error
-        if found != system.id:
+        if identity != system.id:
             raise self.explain_broken(
-                f"carries the id {found!r}, its system {system.id!r}; expected one id",
-                found=found,
+                f"carries the id {identity!r}, its system {system.id!r}; expected one id",
+                found=identity,
                 expected=system.id,
             )
         self.source = hashlib.sha256(content).hexdigest()
@@ -57,10 +52,10 @@ class KernelModule:
         Raises:
             OutputError: It has none of this name.
         """
-        found: Callable[..., Any] | None = getattr(self._module, name, None)
-        if found is None:
+        function: Callable[..., Any] | None = getattr(self._module, name, None)
+        if function is None:
             raise self.explain_broken(f"has no function {name}")
-        return found
+        return function
 
     def explain_broken(self, problem: str, **parts: Any) -> OutputError:
         """What is wrong with the file."""

@@ -8,18 +8,68 @@ Read next: `coadjoint.render.targets.c`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from coadjoint.lower.program import Program
     from coadjoint.render.targets.body import Body
-    from coadjoint.solve.arrays import Call
-    from coadjoint.solve.system import System
+
+    Array = NDArray[Any]
 
 
-class Kernel(Protocol):
+class Generated(Protocol):
+    """What a loader reads of a System."""
+
+    name: str
+    folder: Path
+    id: str
+    functions: Mapping[str, tuple[int, ...]]
+    elementary: tuple[str, ...]
+
+    def sizes(self, function: str) -> Mapping[str, int]:
+        """How many rows each array has that a function takes."""
+        ...
+
+
+@dataclass(frozen=True)
+class Call:
+    """One evaluation of a function, its arrays checked: float64, C-contiguous, component first.
+
+    Attributes:
+        state: ``(n, members)``.
+        parameters: ``(k,)`` shared or ``(k, members)``.
+        block: Where the result goes: its shape for one member followed by ``members``.
+        driving: Inputs and time by name, in the form of parameters, as far as the system has them.
+    """
+
+    state: Array
+    parameters: Array
+    block: Array
+    driving: Mapping[str, Array] = field(default_factory=dict)
+
+    @property
+    def members(self) -> int:
+        """Number of members."""
+        return int(self.state.shape[1])
+
+    @property
+    def given(self) -> dict[str, Array]:
+        """What is read, by name, in the order in which kernels take it."""
+        return {"state": self.state, "parameters": self.parameters, **self.driving}
+
+
+#: Members of one call that is not taken apart into pieces.
+FEW = 1024
+#: Evaluates some members at a state, into a result.
+Evaluate = Callable[[int, "Array", "Array"], None]
+
+
+class Kernel:
     """A kernel that is loaded.
 
     Attributes:
@@ -30,7 +80,23 @@ class Kernel(Protocol):
 
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """What evaluates all members, called one after the other."""
-        ...
+        raise NotImplementedError
+
+    def evaluate_with(self, function: str, like: Call) -> Evaluate:
+        """A function evaluated with the parameters and inputs of a call, which members share.
+
+        It takes the number of members, their state and the result: writable, C-contiguous arrays
+        of float64 that are not empty, at most `FEW` members.
+        """
+        parameters, driving, shape = like.parameters, like.driving, like.block.shape[:-1]
+
+        def evaluate(members: int, state: Array, out: Array) -> None:
+            block = out.reshape(*shape, members)
+            call = Call(state.reshape(-1, members), parameters, block, driving)
+            for piece in self.calls(function, call):
+                piece()
+
+        return evaluate
 
 
 @dataclass(frozen=True)
@@ -62,8 +128,8 @@ class Target:
     @property
     def filters(self) -> Mapping[str, Callable[..., str]]:
         """The filters of the templates, ``FILTERS`` of its printer."""
-        found: Mapping[str, Callable[..., str]] = self._module("printer").FILTERS
-        return found
+        filters: Mapping[str, Callable[..., str]] = self._module("printer").FILTERS
+        return filters
 
     def read(self, text: str, program: Program, system: str) -> list[Body]:
         """What each branch of the function of a Program does, by ``read`` of its reader.
@@ -76,10 +142,10 @@ class Target:
         Raises:
             CrossCheckError: It is of no form that the template prints.
         """
-        found: list[Body] = self._module("reader").read(text, program, system)
-        return found
+        bodies: list[Body] = self._module("reader").read(text, program, system)
+        return bodies
 
-    def load(self, system: System, build: str, reference: Callable[[], Any]) -> Kernel:
+    def load(self, system: Generated, build: str, reference: Callable[[], Any]) -> Kernel:
         """The kernel of a System, by ``load`` of its loader.
 
         Args:
@@ -92,8 +158,8 @@ class Target:
             CrossCheckError: What was compiled differs from the NumPy kernel.
             OutputError: The file cannot be loaded.
         """
-        found: Kernel = self._module("loader").load(system, build, reference)
-        return found
+        kernel: Kernel = self._module("loader").load(system, build, reference)
+        return kernel
 
     def _module(self, name: str) -> Any:
         """A module of its package."""

@@ -15,7 +15,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, Protocol
 
 from coadjoint.limits import PARAMETRIC_TERMS
-from coadjoint.spec.core.components import Shape, unpacked
+from coadjoint.spec.core.components import Shape, unpack
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.formulas import ROLES, Quantity
@@ -23,7 +23,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, walk, walk_up
+from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, fold, walk
 
 if TYPE_CHECKING:
     from coadjoint.exact import Field
@@ -116,7 +116,6 @@ class Scalars:
                 tree.start,
                 tree.end,
                 found=str(self._terms),
-                expected=f"at most {PARAMETRIC_TERMS} (PARAMETRIC_TERMS)",
                 hint="Put numbers for some of the parameters.",
                 limit="PARAMETRIC_TERMS",
             )
@@ -135,7 +134,7 @@ def _entries(parameter: Constant) -> dict[tuple[int, ...], tuple[str, int]]:
     places = list(product(*(range(1, length + 1) for length in shape)))
     kept: Sequence[int] = range(1, len(names) + 1)
     if parameter.form:
-        kept = [entry for row in unpacked(kept, parameter.form) for entry in row]
+        kept = [entry for row in unpack(kept, parameter.form) for entry in row]
     return {
         place: (names[abs(n) - 1], (n > 0) - (n < 0)) for place, n in zip(places, kept, strict=True)
     }
@@ -186,16 +185,17 @@ class _Reading:
         scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
         shape_of(tree, scope)
         self.scalars.check_terms(tree, check_size(tree, scope))
-        found: dict[int, _Linear] = {}
-        for node in walk_up(tree):
-            result = self._value(node, found)
-            found[id(node)] = {place: value for place, value in result.items() if value != 0}
-        total = found[id(tree)]
+        total = fold(tree, self._value)
         if self.places and None in total:
             raise self._refusal(tree)
         return total
 
-    def _value(self, node: Node, found: Mapping[int, _Linear]) -> _Linear:
+    def _value(self, node: Node, below: list[_Linear]) -> _Linear:
+        """The coefficients of a node that are not 0, by those of its children."""
+        value = self._sum(node, below)
+        return {place: each for place, each in value.items() if each != 0}
+
+    def _sum(self, node: Node, below: list[_Linear]) -> _Linear:
         match node:
             case Number(value=value):
                 return {None: value}
@@ -205,13 +205,13 @@ class _Reading:
                 return self._scalar(node, name)
             case Index(name=name, indices=indices):
                 return self._scalar(node, name, indices)
-            case Negate(operand=operand):
-                return _multiply(found[id(operand)], Fraction(-1))
-            case Power(base=base, exponent=exponent) if exponent >= 0:
-                self._check_constant(node, found[id(base)])
-                return {None: found[id(base)].get(None, Fraction(0)) ** exponent}
-            case Binary(operator=operator, left=left, right=right):
-                return self._join(node, operator, found[id(left)], found[id(right)])
+            case Negate():
+                return _multiply(below[0], Fraction(-1))
+            case Power(exponent=exponent) if exponent >= 0:
+                self._check_constant(node, below[0])
+                return {None: below[0].get(None, Fraction(0)) ** exponent}
+            case Binary(operator=operator):
+                return self._join(node, operator, *below)
         raise self._refusal(node)
 
     def _single(self, node: Node, name: str) -> str:

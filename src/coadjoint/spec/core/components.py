@@ -67,16 +67,16 @@ def matrix_size(count: int, form: str) -> int | None:
     return next(sizes, None)
 
 
-def unpacked(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
+def unpack(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
     """The rows of the matrix that the kept entries stand for.
 
     Args:
         values: The kept entries, of any kind that negates and multiplies by 0.
         form: ``"antisymmetric"``, ``"symmetric"`` or ``"matrix"``.
 
-    >>> unpacked([3, -2, 1], "antisymmetric")
+    >>> unpack([3, -2, 1], "antisymmetric")
     ((0, 3, -2), (-3, 0, 1), (2, -1, 0))
-    >>> unpacked([1, 2, 3], "symmetric")
+    >>> unpack([1, 2, 3], "symmetric")
     ((1, 2), (2, 3))
     """
     size = matrix_size(len(values), form)

@@ -62,10 +62,10 @@ def read_number(value: object) -> Fraction:
 
 
 def _from_text(text: str) -> Fraction:
-    found = _TEXT.fullmatch(text)
-    if found is None:
+    match = _TEXT.fullmatch(text)
+    if match is None:
         raise ValueError("is not a decimal number")
-    _, whole, decimals, divisor = found.groups(default="")
+    _, whole, decimals, divisor = match.groups(default="")
     _check_digits(max(len(whole), len(divisor)), len(decimals))
     if divisor and int(divisor) == 0:
         raise ValueError("divides by zero")

@@ -21,17 +21,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import (
-    Call,
-    Component,
-    Index,
-    Name,
-    Node,
-    children,
-    rebuild,
-    walk,
-    walk_up,
-)
+from coadjoint.spec.core.tree import Call, Component, Index, Name, Node, fold, rebuild, walk
 
 
 @dataclass(frozen=True)
@@ -91,36 +81,32 @@ def expand(
         return tree
     spent = Counter() if spent is None else spent
     total = sum(1 for _ in walk(tree))
-    made: dict[int, tuple[Node, int]] = {}  # with the number of parts
-    for node in walk_up(tree):
-        below = [made[id(child)] for child in children(node)]
-        found = rebuild(node, [part for part, _ in below]), 1 + sum(count for _, count in below)
-        definition = definitions.get(_called(node))
-        if definition is not None:
-            put = _put_in(node, definition, below)
-            total += put[1] - found[1]
-            spent["DEFINED_PARTS"] += put[1]
-            found = put
-            if total > limits.EXPRESSION_NODES:
-                raise _too_large(node, definition, "EXPRESSION_NODES", "the expression has")
-            if spent["DEFINED_PARTS"] > limits.DEFINED_PARTS:
-                raise _too_large(node, definition, "DEFINED_PARTS", "all expressions have")
-        made[id(node)] = found
-    return made[id(tree)][0]
+
+    def expand_node(node: Node, below: list[tuple[Node, int]]) -> tuple[Node, int]:
+        """A node with its number of parts."""
+        nonlocal total
+        count = 1 + sum(count for _, count in below)
+        definition = definitions.get(_name_called(node))
+        if definition is None:
+            return rebuild(node, [part for part, _ in below]), count
+        expanded = _expand_call(node, definition, below)
+        total += expanded[1] - count
+        spent["DEFINED_PARTS"] += expanded[1]
+        if total > limits.EXPRESSION_NODES:
+            raise _too_large(node, definition, "EXPRESSION_NODES", "the expression has")
+        if spent["DEFINED_PARTS"] > limits.DEFINED_PARTS:
+            raise _too_large(node, definition, "DEFINED_PARTS", "all expressions have")
+        return expanded
+
+    return fold(tree, expand_node)[0]
 
 
 def _too_large(node: Node, definition: Definition, limit: str, what: str) -> ExpressionError:
-    return ExpressionError(
-        f"with {definition.name} expanded, {what} too many parts",
-        node.start,
-        node.end,
-        found=definition.name,
-        expected=f"at most {getattr(limits, limit)} ({limit})",
-        limit=limit,
-    )
+    problem = f"with {definition.name} expanded, {what} too many parts"
+    return ExpressionError(problem, node.start, node.end, found=definition.name, limit=limit)
 
 
-def _called(node: Node) -> str:
+def _name_called(node: Node) -> str:
     """What a node may be a definition of; empty for operators."""
     match node:
         case Name(name=name) | Index(name=name) | Call(function=name):
@@ -128,7 +114,7 @@ def _called(node: Node) -> str:
     return ""
 
 
-def _put_in(
+def _expand_call(
     node: Node, definition: Definition, given: Sequence[tuple[Node, int]]
 ) -> tuple[Node, int]:
     """The expression of a definition in the place of its call, and the number of its parts."""
@@ -141,17 +127,18 @@ def _put_in(
             expected=definition.signature,
         )
     values = dict(zip(definition.arguments, given, strict=True))
-    made: dict[int, Node] = {}
     count = 0
-    for part in walk_up(definition.tree):
-        fresh = rebuild(part, [made[id(child)] for child in children(part)])
+
+    def place(part: Node, below: list[Node]) -> Node:
+        nonlocal count
+        fresh = rebuild(part, below)
         fresh = replace(fresh, start=node.start, end=node.end, within=definition.name)
-        argument = values.get(_called(part)) if isinstance(part, (Name, Index)) else None
-        if argument is not None:
-            fresh = _component(fresh, argument[0])
+        argument = values.get(_name_called(part)) if isinstance(part, (Name, Index)) else None
         count += 1 if argument is None else argument[1] + isinstance(part, Index)
-        made[id(part)] = fresh
-    return _component(node, made[id(definition.tree)]), count + isinstance(node, Index)
+        return fresh if argument is None else _component(fresh, argument[0])
+
+    whole = fold(definition.tree, place)
+    return _component(node, whole), count + isinstance(node, Index)
 
 
 def _component(node: Node, whole: Node) -> Node:

@@ -10,18 +10,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 from coadjoint.spec.core.faults import fault_at
-from coadjoint.spec.core.tree import (
-    Binary,
-    Call,
-    Index,
-    Name,
-    Negate,
-    Node,
-    Number,
-    Power,
-    children,
-    walk_up,
-)
+from coadjoint.spec.core.tree import Binary, Call, Index, Name, Negate, Node, Number, Power, fold
 
 #: Functions that are linear in each argument, so that degrees add up.
 _MULTILINEAR = ("dot", "cross", "outer", "commutator")
@@ -41,11 +30,7 @@ def degree_in(tree: Node, names: Sequence[str]) -> int | None:
     >>> degree_in(read_expression("vector(0, xi)"), ["xi"])
     1
     """
-    degrees: dict[int, int | None] = {}
-    for node in walk_up(tree):
-        below = [degrees[id(child)] for child in children(node)]
-        degrees[id(node)] = _degree(node, below, names)
-    return degrees[id(tree)]
+    return fold(tree, lambda node, below: _degree(node, below, names))
 
 
 def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> int | None:
@@ -54,8 +39,8 @@ def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> in
     match node:
         case Number(value=value):
             return 0 if value else None
-        case Name(name=found) | Index(name=found):
-            return int(found in names)
+        case Name(name=name) | Index(name=name):
+            return int(name in names)
         case Binary(operator="*"):
             return sum(known) if len(known) == len(below) else None
         case Call(function=function) if function in _MULTILINEAR:

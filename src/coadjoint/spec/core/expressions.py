@@ -127,18 +127,18 @@ class _Reader:
         while _BINDING.get(self.next.kind, 0) > binding:
             operator = self._take().kind
             right = self._climb(_BINDING[operator])
-            left = self._made(Binary(operator, left, right, start=left.start, end=right.end))
+            left = self._count(Binary(operator, left, right, start=left.start, end=right.end))
         return left
 
     def _unary(self) -> Node:
         if self.next.kind not in ("+", "-"):
             return self._power()
         sign = self._take()
-        with self._deeper(sign):
+        with self._nest(sign):
             operand = self._unary()
         if sign.kind == "+":
             return operand
-        return self._made(Negate(operand, start=sign.start, end=operand.end))
+        return self._count(Negate(operand, start=sign.start, end=operand.end))
 
     def _power(self) -> Node:
         base = self._atom()
@@ -155,7 +155,9 @@ class _Reader:
                 expected="parentheses",
                 hint="Write (a^b)^c, or multiply the exponents out.",
             )
-        return self._made(Power(base, exponent, start=base.start, end=self.tokens[self.at - 1].end))
+        return self._count(
+            Power(base, exponent, start=base.start, end=self.tokens[self.at - 1].end)
+        )
 
     def _exponent(self) -> int:
         """A literal integer, perhaps with a minus, perhaps in parentheses."""
@@ -191,10 +193,10 @@ class _Reader:
                 return self._number(token)
             case "name":
                 self._take()
-                return self._named(token)
+                return self._read_name(token)
             case "(":
                 self._take()
-                with self._deeper(token):
+                with self._nest(token):
                     inner = self._climb(0)
                 self._close(token, ")")
                 return inner
@@ -205,9 +207,9 @@ class _Reader:
         for digits, limit in ((whole, "INTEGER_DIGITS"), (decimals, "DECIMAL_DIGITS")):
             if len(digits) > getattr(limits, limit):
                 raise _limit(limit, f"the number has {len(digits)} digits", token.start, token.end)
-        return self._made(Number(Fraction(token.text), start=token.start, end=token.end))
+        return self._count(Number(Fraction(token.text), start=token.start, end=token.end))
 
-    def _named(self, name: _Token) -> Node:
+    def _read_name(self, name: _Token) -> Node:
         """A name, a component of it, or a function of something."""
         if self.next.kind == "(":
             return self._call(name)
@@ -221,7 +223,7 @@ class _Reader:
             )
         if self.next.kind == "[":
             return self._index(name)
-        return self._made(Name(name.text, start=name.start, end=name.end))
+        return self._count(Name(name.text, start=name.start, end=name.end))
 
     def _call(self, name: _Token) -> Node:
         if name.text not in self.functions:
@@ -238,13 +240,13 @@ class _Reader:
                 ),
             )
         opening = self._take()
-        with self._deeper(opening):
+        with self._nest(opening):
             arguments = [self._climb(0)]
             while self.next.kind == ",":
                 self._take()
                 arguments.append(self._climb(0))
         closing = self._close(opening, ")")
-        return self._made(Call(name.text, tuple(arguments), start=name.start, end=closing.end))
+        return self._count(Call(name.text, tuple(arguments), start=name.start, end=closing.end))
 
     def _index(self, name: _Token) -> Node:
         opening = self._take()
@@ -261,7 +263,7 @@ class _Reader:
                 found=self.text[name.start : self.next.end],
                 expected=f"{name.text}[1, 2]",
             )
-        return self._made(Index(name.text, tuple(indices), start=name.start, end=closing.end))
+        return self._count(Index(name.text, tuple(indices), start=name.start, end=closing.end))
 
     def _subscript(self, opening: _Token) -> int:
         token = self.next
@@ -278,7 +280,7 @@ class _Reader:
 
     # -- faults and limits --------------------------------------------------------------
 
-    def _made(self, node: Node) -> Node:
+    def _count(self, node: Node) -> Node:
         """``node``, counted."""
         self.nodes += 1
         if self.nodes > limits.EXPRESSION_NODES:
@@ -291,7 +293,7 @@ class _Reader:
         return node
 
     @contextmanager
-    def _deeper(self, token: _Token) -> Iterator[None]:
+    def _nest(self, token: _Token) -> Iterator[None]:
         """One level of nesting; so the reader cannot run out of stack."""
         self.depth += 1
         if self.depth > limits.EXPRESSION_NESTING:
@@ -342,31 +344,31 @@ def _tokens(text: str) -> Iterator[_Token]:
     """The tokens of a text, and an empty one at its end."""
     at = 0
     while at < len(text):
-        found = _TOKEN.match(text, at)
-        if found is None:
+        match = _TOKEN.match(text, at)
+        if match is None:
             raise _unknown_character(text, at)
-        kind, token = str(found.lastgroup), found[0]
+        kind, token = str(match.lastgroup), match[0]
         if kind == "number":
             _check_number(text, at)
-        if kind == "name" and text.startswith("_", found.end()):
-            raise _unknown_character(text, found.end())
+        if kind == "name" and text.startswith("_", match.end()):
+            raise _unknown_character(text, match.end())
         if kind == "name" and len(token) > limits.NAME_CHARACTERS:
             problem = f"the name {token[:40]!r} has {len(token)} characters"
-            raise _limit("NAME_CHARACTERS", problem, at, found.end())
+            raise _limit("NAME_CHARACTERS", problem, at, match.end())
         if kind != "space":
-            yield _Token(token if kind == "operator" else kind, token, at, found.end())
-        at = found.end()
+            yield _Token(token if kind == "operator" else kind, token, at, match.end())
+        at = match.end()
     yield _Token("", "", len(text), len(text))
 
 
 def _check_number(text: str, at: int) -> None:
     """Refuse 1e5, which is not exact arithmetic's way to write a number."""
-    found = _SCIENTIFIC.match(text, at)
-    if found is not None:
-        value = Fraction(found[0]) if abs(int(re.split("[eE]", found[0])[1])) <= 20 else None
+    match = _SCIENTIFIC.match(text, at)
+    if match is not None:
+        value = Fraction(match[0]) if abs(int(re.split("[eE]", match[0])[1])) <= 20 else None
         shown = f"Write {_decimal(value)}." if value is not None else "Write the digits out."
-        problem = f"{found[0]!r} has an exponent"
-        raise _fault(problem, at, found.end(), found[0], "a decimal number", shown)
+        problem = f"{match[0]!r} has an exponent"
+        raise _fault(problem, at, match.end(), match[0], "a decimal number", shown)
 
 
 def _decimal(value: Fraction) -> str:
@@ -419,7 +421,4 @@ def _fault(
 
 def _limit(limit: str, problem: str, start: int, end: int) -> ExpressionError:
     """A refusal that names its limit."""
-    most = getattr(limits, limit)
-    return ExpressionError(
-        problem, start, end, found=problem, expected=f"at most {most} ({limit})", limit=limit
-    )
+    return ExpressionError(problem, start, end, found=problem, limit=limit)

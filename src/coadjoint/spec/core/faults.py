@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from coadjoint import limits
 from coadjoint.spec.core.tree import Node
 
 
@@ -20,7 +21,7 @@ class ExpressionError(Exception):
         start: Offset of the guilty characters in the expression.
         end: Offset after them.
         found: The guilty text.
-        expected: What would have been accepted.
+        expected: What would have been accepted; with a limit, its value.
         hint: The likely fix, as a sentence.
         limit: Name of the constant in `coadjoint.limits` that was passed, or "".
     """
@@ -38,7 +39,8 @@ class ExpressionError(Exception):
     ) -> None:
         super().__init__(problem)
         self.problem, self.start, self.end = problem, start, end
-        self.found, self.expected, self.hint, self.limit = found, expected, hint, limit
+        self.found, self.hint, self.limit = found, hint, limit
+        self.expected = f"at most {getattr(limits, limit)} ({limit})" if limit else expected
 
 
 def fault_at(node: Node, problem: str, **parts: str) -> ExpressionError:
@@ -74,5 +76,5 @@ def list_names(names: Iterable[str], most: int = 12) -> str:
     >>> list_names(["a", "b"])
     'a, b'
     """
-    found = list(names)
-    return ", ".join(found[:most]) + (", ..." if len(found) > most else "")
+    listed = list(names)
+    return ", ".join(listed[:most]) + (", ..." if len(listed) > most else "")

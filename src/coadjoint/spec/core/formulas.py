@@ -214,5 +214,5 @@ def misfit(
     source: Source, key: KeyPath, formula: Formula, expected: str, hint: str = ""
 ) -> CoadjointError:
     """A formula whose value has another shape than it may have."""
-    found = words(formula.shape)
-    return source.fault(key, f"the value is {found}", found=found, expected=expected, hint=hint)
+    value = words(formula.shape)
+    return source.fault(key, f"the value is {value}", found=value, expected=expected, hint=hint)

@@ -57,14 +57,14 @@ def refusal(name: str) -> tuple[str, str, str] | None:
     if kind is None and (name in _OURS or _OURS_PATTERN.fullmatch(name)):
         kind = "a name that generated code or results use"
     if kind is not None:
-        return f"{name!r} is {kind}", "a free name", f"Call it {better(name)!r}."
+        return f"{name!r} is {kind}", "a free name", f"Call it {suggest_name(name)!r}."
     return None
 
 
-def better(name: str) -> str:
+def suggest_name(name: str) -> str:
     """A free name close to a reserved one.
 
-    >>> better("state")
+    >>> suggest_name("state")
     'state_0'
     """
     return _BETTER.get(name, f"my_{name}" if _OURS_PATTERN.fullmatch(name) else f"{name}_0")

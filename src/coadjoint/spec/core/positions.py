@@ -76,8 +76,8 @@ def scan(text: str) -> Positions:
     except _LostError:
         pass  # tomllib says what is wrong, and where
     except _TooDeepError:
-        scanner.found.too_deep = scanner.at
-    return scanner.found
+        scanner.positions.too_deep = scanner.at
+    return scanner.positions
 
 
 class _LostError(Exception):
@@ -92,7 +92,7 @@ class _Scanner:
     """One walk over a text; every method starts at ``self.at`` and leaves it after what it read."""
 
     def __init__(self, text: str) -> None:
-        self.text, self.at, self.found = text, 0, Positions()
+        self.text, self.at, self.positions = text, 0, Positions()
         self._tables_in: dict[KeyPath, int] = {}  # how many [[path]] headers so far
 
     def document(self) -> None:
@@ -154,18 +154,18 @@ class _Scanner:
     def _value(self, path: KeyPath, key: Span | None = None) -> None:
         """A value, of which ``key`` is the last part of the key."""
         start = self.at
-        if key is not None and path in self.found.values:
-            self.found.doubled = self.found.doubled or (path, key)
-        self.found.values[path] = (start, start)
+        if key is not None and path in self.positions.values:
+            self.positions.doubled = self.positions.doubled or (path, key)
+        self.positions.values[path] = (start, start)
         if self.text.startswith(("'", '"'), start):
-            self.found.characters[path] = self._string()[1]
+            self.positions.characters[path] = self._string()[1]
         elif self._take("["):
             self._array(path)
         elif self._take("{"):
             self._inline_table(path)
         else:
             self._match(_SCALAR)
-        self.found.values[path] = (start, self.at)
+        self.positions.values[path] = (start, self.at)
 
     def _array(self, path: KeyPath) -> None:
         for index in range(len(self.text)):
@@ -233,7 +233,7 @@ class _Scanner:
     def _enter(self, path: KeyPath, part: str, span: Span) -> KeyPath:
         """The path below ``path``, with its key noted where it is first written."""
         path = self._below(path, part)
-        self.found.keys.setdefault(path, span)
+        self.positions.keys.setdefault(path, span)
         return path
 
     def _below(self, path: KeyPath, part: str | int) -> KeyPath:
@@ -243,21 +243,21 @@ class _Scanner:
 
     def _note(self, path: KeyPath, span: Span) -> None:
         """Note the header of a table."""
-        if path in self.found.values:
-            self.found.doubled = self.found.doubled or (path, span)
-        self.found.values[path] = span
+        if path in self.positions.values:
+            self.positions.doubled = self.positions.doubled or (path, span)
+        self.positions.values[path] = span
 
     def _skip(self, pattern: re.Pattern[str]) -> None:
-        found = pattern.match(self.text, self.at)
-        assert found is not None, pattern
-        self.at = found.end()
+        match = pattern.match(self.text, self.at)
+        assert match is not None, pattern
+        self.at = match.end()
 
     def _match(self, pattern: re.Pattern[str]) -> str:
-        found = pattern.match(self.text, self.at)
-        if found is None:
+        match = pattern.match(self.text, self.at)
+        if match is None:
             raise _LostError
-        self.at = found.end()
-        return found[0]
+        self.at = match.end()
+        return match[0]
 
     def _take(self, mark: str) -> bool:
         if not self.text.startswith(mark, self.at):

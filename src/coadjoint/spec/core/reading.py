@@ -15,7 +15,8 @@ from typing import Annotated, Any, Generic, TypeVar
 
 from pydantic import Field
 
-from coadjoint.errors import CoadjointError, LimitError
+from coadjoint import limits
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import (
@@ -248,7 +249,7 @@ class Reading:
         )
 
     def check_count(
-        self, what: str, table: str, quantities: Iterable[Quantity], limit: str, most: int
+        self, what: str, table: str, quantities: Iterable[Quantity], limit: str
     ) -> None:
         """Refuse too many components.
 
@@ -256,12 +257,6 @@ class Reading:
             LimitError: There are.
         """
         count = sum(len(quantity.components) for quantity in quantities)
-        if count > most:
-            raise self.source.fault(
-                (table,),
-                f"the {what} have {count} components",
-                found=count,
-                expected=f"at most {most} ({limit})",
-                kind=LimitError,
-                limit=limit,
-            )
+        if count > getattr(limits, limit):
+            problem = f"the {what} have {count} components"
+            raise self.source.too_many((table,), problem, count, limit)

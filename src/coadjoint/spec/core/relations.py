@@ -33,10 +33,10 @@ def read_relation(
     Raises:
         SpecError: No sign of those allowed, or two; sides of different shapes, or a fault in one.
     """
-    found = list(_SIGN.finditer(text))
-    if len(found) != 1 or found[0].group() not in signs:
-        raise _no_relation(source, key, text, signs, found)
-    sign = found[0]
+    matches = list(_SIGN.finditer(text))
+    if len(matches) != 1 or matches[0].group() not in signs:
+        raise _no_relation(source, key, text, signs, matches)
+    sign = matches[0]
     left, right = (
         read_formula(source, key, side, scope, any_shape=True)
         for side in (text[: sign.start()], " " * sign.end() + text[sign.end() :])
@@ -59,11 +59,11 @@ def read_relation(
 
 
 def _no_relation(
-    source: Source, key: KeyPath, text: str, signs: tuple[str, ...], found: list[re.Match[str]]
+    source: Source, key: KeyPath, text: str, signs: tuple[str, ...], matches: list[re.Match[str]]
 ) -> CoadjointError:
     """Why a text is no relation."""
-    wanted = found[1] if len(found) > 1 else found[0] if found else None
-    problem = "there are two signs" if len(found) > 1 else f"there is no {list_names(signs)}"
+    wanted = matches[1] if len(matches) > 1 else matches[0] if matches else None
+    problem = "there are two signs" if len(matches) > 1 else f"there is no {list_names(signs)}"
     example = "Y == cross(Omega, s)" if signs == EQUATION else "1 - Gamma3^2 > 0"
     return source.fault(
         key,

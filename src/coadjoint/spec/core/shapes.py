@@ -23,8 +23,7 @@ from coadjoint.spec.core.tree import (
     Node,
     Number,
     Power,
-    children,
-    walk_up,
+    evaluate_nodes,
 )
 
 #: The functions that are adjoined to the field, by their own names.
@@ -177,10 +176,7 @@ def shape_of(tree: Node, scope: Mapping[str, Shape]) -> Shape:
 
 def shapes(tree: Node, scope: Mapping[str, Shape]) -> dict[int, Shape]:
     """The shape of every node of a tree, by ``id``."""
-    found: dict[int, Shape] = {}
-    for node in walk_up(tree):
-        found[id(node)] = _shape(node, [found[id(child)] for child in children(node)], scope)
-    return found
+    return evaluate_nodes(tree, lambda node, below: _shape(node, below, scope))
 
 
 def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
@@ -189,9 +185,9 @@ def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
         case Number():
             return ()
         case Name(name=name):
-            return _declared(node, name, scope)
+            return _find_shape(node, name, scope)
         case Index(name=name, indices=indices):
-            return _component(node, name, indices, _declared(node, name, scope))
+            return _component(node, name, indices, _find_shape(node, name, scope))
         case Component(name=name, indices=indices):
             return _component(node, name, indices, below[0])
         case Negate():
@@ -205,7 +201,7 @@ def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
     raise AssertionError(node)
 
 
-def _declared(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
+def _find_shape(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
     if name in scope:
         return scope[name]
     raise _fault(
@@ -274,12 +270,12 @@ def _call(node: Call, arguments: list[Shape]) -> Shape:
     shape = function.rule(*arguments)
     if shape is not None:
         return shape
-    found, hint = " and ".join(map(words, arguments)), ""
+    given, hint = " and ".join(map(words, arguments)), ""
     if name == "dot" and [len(a) for a in arguments] == [2, 2]:
         hint = "The product of matrices is trace(transpose(A)*B)."
     if name in ("det", "inverse") and _is_square(arguments[0]):
         hint = "Larger systems are solved inside the kernels: give the Lagrangian instead."
-    raise _fault(node, f"{name} is given {found}", found, function.takes, hint)
+    raise _fault(node, f"{name} is given {given}", given, function.takes, hint)
 
 
 def _fault(node: Node, problem: str, found: str, expected: str, hint: str = "") -> ExpressionError:

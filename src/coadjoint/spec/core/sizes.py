@@ -27,7 +27,7 @@ from coadjoint.spec.core.tree import (
     Number,
     Power,
     children,
-    walk_up,
+    fold,
 )
 
 
@@ -66,13 +66,14 @@ def check_size(tree: Node, scope: Mapping[str, Shape]) -> int:
     >>> check_size(read_expression("(x + 1)^32"), {"x": ()})
     33
     """
-    shape, size = shapes(tree, scope), dict[int, Size]()
-    for node in walk_up(tree):
-        below = children(node)
-        found = _size(node, [size[id(c)] for c in below], [shape[id(c)] for c in below])
-        _check(node, found)
-        size[id(node)] = found
-    return size[id(tree)].terms
+    shape = shapes(tree, scope)
+
+    def measure(node: Node, below: list[Size]) -> Size:
+        size = _size(node, below, [shape[id(child)] for child in children(node)])
+        _check(node, size)
+        return size
+
+    return fold(tree, measure).terms
 
 
 def _check(node: Node, size: Size) -> None:
@@ -92,15 +93,15 @@ def _size(node: Node, below: list[Size], shape: list[Shape]) -> Size:
         case Number(value=value):
             return _constant(value)
         case Negate():
-            return _negative(below[0])
+            return _negate(below[0])
         case Power(exponent=exponent):
             return _power(node, below[0], exponent, shape[0])
         case Binary(operator="*"):
-            return _product(below[0], below[1], _summed(below, shape))
+            return _product(below[0], below[1], _count_products(below, shape))
         case Binary(operator="/"):
             return _quotient(node, *below)
         case Binary(operator=operator):
-            return _sum(below[0], _negative(below[1]) if operator == "-" else below[1])
+            return _sum(below[0], _negate(below[1]) if operator == "-" else below[1])
         case Component():
             return replace(below[0], diagonal=False, constant=None)
         case Call(function=function) if function in ELEMENTARY:
@@ -115,7 +116,7 @@ def _constant(value: Fraction) -> Size:
     return Size(bits=bits, constant=value, fixed=True)
 
 
-def _negative(a: Size) -> Size:
+def _negate(a: Size) -> Size:
     return a if a.constant is None else _constant(-a.constant)
 
 
@@ -144,7 +145,7 @@ def _product(a: Size, b: Size, summed: int = 1) -> Size:
     )
 
 
-def _summed(below: list[Size], shape: list[Shape]) -> int:
+def _count_products(below: list[Size], shape: list[Shape]) -> int:
     """How many products of components a component of a product adds up."""
     left, right = shape
     return left[1] if left and right and not any(part.diagonal for part in below) else 1
@@ -205,7 +206,7 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
         case "cross":
             return _product(a, below[1], 2)
         case "commutator":
-            products = _product(a, below[1], _summed(below, shape))
+            products = _product(a, below[1], _count_products(below, shape))
             return _sum(products, products)
         case "trace":
             return Size(n * a.terms, a.degree, a.bits + n.bit_length())
@@ -245,8 +246,7 @@ def _determinant(a: Size, n: int) -> Size:
 
 
 def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:
-    expected = f"at most {getattr(limits, limit)} ({limit})"
-    return fault_at(node, problem, found=problem, expected=expected, limit=limit)
+    return fault_at(node, problem, found=problem, limit=limit)
 
 
 def _no_value(node: Node, problem: str, expected: str) -> ExpressionError:

@@ -12,12 +12,13 @@ with the parts as attributes. Read next: `coadjoint.spec.schema`, the first step
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
-from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
 from coadjoint.spec.core.positions import KeyPath, Positions, Span
 
 #: Characters of a source line that a message shows at the most.
@@ -122,6 +123,22 @@ class Source:
             hint=hint,
             **parts,
         )
+
+    def unknown(
+        self, key: KeyPath, problem: str, name: str, known: Iterable[str], otherwise: str = ""
+    ) -> CoadjointError:
+        """An error for a name that nothing has, with the nearest of those that are known."""
+        names = list(known)
+        expected, hint = f"one of {list_names(names)}", did_you_mean(name, names, otherwise)
+        return self.fault(key, problem, found=name, expected=expected, hint=hint)
+
+    def too_many(
+        self, key: KeyPath, problem: str, found: object, limit: str, **options: Any
+    ) -> CoadjointError:
+        """An error that names the limit of `coadjoint.limits` that is passed."""
+        expected = f"at most {getattr(limits, limit)} ({limit})"
+        options |= {"found": found, "expected": expected, "kind": LimitError, "limit": limit}
+        return self.fault(key, problem, **options)
 
     def expression_fault(self, key: KeyPath, error: ExpressionError) -> CoadjointError:
         """The error that a fault inside the expression at ``key`` is."""

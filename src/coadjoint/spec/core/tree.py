@@ -9,9 +9,12 @@ which turns them into exact field elements.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import TypeVar
+
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -139,3 +142,20 @@ def walk_up(node: Node) -> Iterator[Node]:
         else:
             pending.append((node, True))
             pending.extend((child, False) for child in reversed(children(node)))
+
+
+def evaluate_nodes(tree: Node, value_of: Callable[[Node, list[Value]], Value]) -> dict[int, Value]:
+    """The value of every node of a tree, by ``id``, from those of its children."""
+    values: dict[int, Value] = {}
+    for node in walk_up(tree):
+        values[id(node)] = value_of(node, [values[id(child)] for child in children(node)])
+    return values
+
+
+def fold(tree: Node, value_of: Callable[[Node, list[Value]], Value]) -> Value:
+    """The value of a tree, where that of each node follows from those of its children.
+
+    >>> fold(Negate(Number(Fraction(2))), lambda node, below: 1 + sum(below))
+    2
+    """
+    return evaluate_nodes(tree, value_of)[id(tree)]

@@ -28,7 +28,7 @@ def parse_unit(text: str) -> Unit | None:
     >>> parse_unit("kg m^2/s") == {"kg": 1, "m": 2, "s": -1}
     True
     """
-    found: dict[str, Fraction] = {}
+    exponents: dict[str, Fraction] = {}
     pieces = re.split(r"([ */.]+)", text.strip())
     for place, piece in enumerate(pieces[::2]):
         factor = _FACTOR.fullmatch(piece)
@@ -37,8 +37,8 @@ def parse_unit(text: str) -> Unit | None:
         divided = place > 0 and "/" in pieces[2 * place - 1]
         if factor[1]:
             exponent = Fraction(factor[2] or 1) * (-1 if divided else 1)
-            found[factor[1]] = found.get(factor[1], Fraction(0)) + exponent
-    return _nonzero(found)
+            exponents[factor[1]] = exponents.get(factor[1], Fraction(0)) + exponent
+    return _drop_zeros(exponents)
 
 
 def unit_text(unit: Unit | None) -> str:
@@ -63,10 +63,7 @@ def unit_of(node: tree.Node, units: Mapping[str, Unit | None]) -> Unit | None:
         node: A parsed expression.
         units: Unit of each name, quantities and components alike.
     """
-    found: dict[int, Unit | None] = {}
-    for part in tree.walk_up(node):
-        found[id(part)] = _unit(part, [found[id(child)] for child in tree.children(part)], units)
-    return found[id(node)]
+    return tree.fold(node, lambda part, below: _unit(part, below, units))
 
 
 def product_of(units: Mapping[str, Unit | None], powers: Iterable[tuple[str, int]]) -> Unit | None:
@@ -127,15 +124,17 @@ def _combine(operator: str, left: Unit | None, right: Unit | None) -> Unit | Non
     sign = 1 if operator == "*" else -1
     names = left.keys() | right.keys()
     zero = Fraction(0)
-    return _nonzero({name: left.get(name, zero) + sign * right.get(name, zero) for name in names})
+    return _drop_zeros(
+        {name: left.get(name, zero) + sign * right.get(name, zero) for name in names}
+    )
 
 
 def _raise_to(unit: Unit | None, exponent: Fraction) -> Unit | None:
     """A unit to a power."""
-    return None if unit is None else _nonzero({name: e * exponent for name, e in unit.items()})
+    return None if unit is None else _drop_zeros({name: e * exponent for name, e in unit.items()})
 
 
-def _nonzero(unit: Mapping[str, Fraction]) -> Unit:
+def _drop_zeros(unit: Mapping[str, Fraction]) -> Unit:
     return {name: exponent for name, exponent in unit.items() if exponent}
 
 

@@ -99,10 +99,7 @@ _NUMBER_OR_LISTS: dict[str, Any] = {
         {
             "type": "array",
             "items": {
-                "anyOf": [
-                    *NUMBER_SCHEMA["anyOf"],
-                    {"type": "array", "items": NUMBER_SCHEMA},
-                ]
+                "anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "array", "items": NUMBER_SCHEMA}]
             },
         },
     ]
@@ -174,7 +171,11 @@ def _shape_text(value: object) -> str:
 
 
 #: What says how many components the entries of a table have.
-_SIZED = {"variables": "block, representation or shape", "parameters": "shape"}
+_SIZED = {
+    "variables": "block, representation or shape",
+    "parameters": "shape",
+    "symmetries": "algebra",
+}
 
 
 def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:

@@ -11,13 +11,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from coadjoint.spec.core.parts import Part, TextPart, name_pattern
-from coadjoint.spec.core.values import (
-    BRACKET_PATTERN,
-    Entry,
-    Length,
-    Matrix,
-    Names,
-)
+from coadjoint.spec.core.values import BRACKET_PATTERN, Entry, Length, Matrix, Names
 
 #: The ways to declare an algebra, of which each takes exactly one.
 WAYS = (

@@ -28,7 +28,7 @@ from coadjoint.algebra import (
     semidirect_sum,
     subalgebra,
 )
-from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.errors import AlgebraError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
 from coadjoint.spec.core.faults import did_you_mean, list_names
@@ -126,7 +126,7 @@ class _Algebras:
         (way,) = [way for way in WAYS if getattr(part, way) is not None]
         declared, inner = getattr(part, way), (*key, way)
         if way == "name":
-            return self._by_name(declared, key)
+            return self._find_by_name(declared, key)
         if way in ("brackets", "matrices"):
             basis = tuple(part.basis or declared)
             check_basis_names(self.source, (*key, "basis"), basis)
@@ -138,14 +138,14 @@ class _Algebras:
         else:
             algebra = getattr(self, f"_{way}")(declared, inner)
             self._check_single(algebra, inner)
-        return self._with_blocks(algebra, part.blocks or {}, key)
+        return self._add_blocks(algebra, part.blocks or {}, key)
 
-    def _by_name(self, name: str, key: KeyPath) -> LieAlgebra:
+    def _find_by_name(self, name: str, key: KeyPath) -> LieAlgebra:
         key = self.source.place_of(key, "name")
         with point_at_faults(self.source, key):
             return algebra_by_name(name, most=STATE_COMPONENTS)
 
-    def _with_blocks(
+    def _add_blocks(
         self, algebra: LieAlgebra, declared: Mapping[str, list[str]], key: KeyPath
     ) -> LieAlgebra:
         """The algebra with the declared blocks beside its own."""
@@ -194,9 +194,9 @@ class _Algebras:
 
     def _pair(self, text: str, key: KeyPath, basis: Sequence[str]) -> tuple[int, int]:
         """The places of e1 and e2 in a key ``[e1, e2]``."""
-        found = _BRACKET.fullmatch(text)
-        unknown = [name for name in found.groups() if name not in basis] if found else [text]
-        if found is None or unknown:
+        match = _BRACKET.fullmatch(text)
+        unknown = [name for name in match.groups() if name not in basis] if match else [text]
+        if match is None or unknown:
             raise self.source.fault(
                 key,
                 f"{text!a} is not a bracket of the basis",
@@ -205,7 +205,7 @@ class _Algebras:
                 hint=did_you_mean(unknown[0], basis),
                 at=self.source.positions.key(key),
             )
-        return basis.index(found[1]), basis.index(found[2])
+        return basis.index(match[1]), basis.index(match[2])
 
     def _by_matrices(
         self,
@@ -299,9 +299,11 @@ class _Algebras:
         vectors = {}
         for name, text in part.basis.items():
             check_basis_names(self.source, (*inner, name), (name,))
-            found = read_combination(self.source, (*inner, name), text, algebra.basis, self.scalars)
+            coefficients = read_combination(
+                self.source, (*inner, name), text, algebra.basis, self.scalars
+            )
             places = range(algebra.dimension)
-            vectors[name] = tuple(found.get(place, Fraction(0)) for place in places)
+            vectors[name] = tuple(coefficients.get(place, Fraction(0)) for place in places)
         with point_at_faults(self.source, inner):
             return subalgebra(algebra, vectors)
 
@@ -310,14 +312,8 @@ class _Algebras:
     def _check_dimension(self, dimension: int, key: KeyPath) -> None:
         """Refuse a product that would be too large before it is built."""
         if dimension > STATE_COMPONENTS:
-            raise self.source.fault(
-                key,
-                f"the algebra would have {dimension} dimensions",
-                found=dimension,
-                expected=f"at most {STATE_COMPONENTS} (STATE_COMPONENTS)",
-                kind=LimitError,
-                limit="STATE_COMPONENTS",
-            )
+            problem = f"the algebra would have {dimension} dimensions"
+            raise self.source.too_many(key, problem, dimension, "STATE_COMPONENTS")
 
     def _check_single(self, algebra: LieAlgebra, key: KeyPath) -> None:
         """Refuse a product whose parts bring one name twice."""

@@ -150,7 +150,7 @@ def _read_conserved(reading: Reading) -> tuple[Integral, ...]:
     if reading.file.hamiltonian is None and reading.file.lagrangian is None:
         del named["energy"]
     scope = reading.scope("an integral", motion_roles(reading), named)
-    found = []
+    integrals = []
     for place, part in enumerate(reading.file.claims.conserved):
         key: KeyPath = ("claims", "conserved", place)
         formula = _read_claim(reading, key, part, scope)
@@ -158,8 +158,8 @@ def _read_conserved(reading: Reading) -> tuple[Integral, ...]:
             reading.formula((*key, "where", number), text, scope, any_shape=True)
             for number, text in enumerate(part.where)
         )
-        found.append(Integral(formula, where))
-    return tuple(found)
+        integrals.append(Integral(formula, where))
+    return tuple(integrals)
 
 
 def _read_claim(reading: Reading, key: KeyPath, part: ClaimPart, scope: Scope) -> Formula:
@@ -245,13 +245,13 @@ def _check_claims(reading: Reading) -> None:
     particles = [variable for variable in variables if variable.role == "coordinate"]
     flat = [q for q in particles if q.value_shape not in ((3,), (3, 3)) or q.form == "symmetric"]
     if claims.galilean.claim and (file.newton is None or flat):
-        found = flat[0].name if flat else "newton"
+        name = flat[0].name if flat else "newton"
         raise source.fault(
             ("claims", "galilean"),
-            f"the coordinate {found!r} is not a particle in space"
+            f"the coordinate {name!r} is not a particle in space"
             if flat
             else "there is no [newton]",
-            found=found,
+            found=name,
             expected="laws in [newton] of coordinates with shape = [3], one for each particle, or "
             'of one with shape = [9] and form = "matrix", a row for each particle',
         )

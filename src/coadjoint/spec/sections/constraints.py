@@ -93,12 +93,12 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
     }
-    scope, found = _scope(reading), []
+    scope, constraints = _scope(reading), []
     for name, text in texts.items():
         _check_names_no_reaction(reading, ("constraints", name), text)
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
-        found.append(Constraint(name, left, right, *solved.get(name, ())))
-    return tuple(found)
+        constraints.append(Constraint(name, left, right, *solved.get(name, ())))
+    return tuple(constraints)
 
 
 def _scope(reading: Reading) -> Scope:
@@ -140,23 +140,14 @@ def _check_unasked(source: Source, file: Any) -> None:
     """
     gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
     unbracketed = "none, since a constraint that gives no velocity leaves no bracket of the state"
-    asked: dict[KeyPath, tuple[str, bool, str]] = {
-        ("claims", "casimirs"): ("claims of Casimirs", not gives, unbracketed),
-        ("claims", "brackets"): ("claims of brackets", not gives, unbracketed),
-        ("symmetries",): (
-            "[symmetries]",
-            bool(file.constraints),
-            "none, since symmetries of a constrained motion need not keep their momenta",
-        ),
-    }
-    for key, (what, is_refused, expected) in asked.items():
-        table = getattr(file.claims, str(key[-1])) if len(key) > 1 else file.symmetries
-        if table and is_refused:
+    asked = {"casimirs": "claims of Casimirs", "brackets": "claims of brackets"}
+    for key, what in asked.items():
+        if getattr(file.claims, key) and not gives:
             raise source.fault(
-                key,
+                ("claims", key),
                 f"there are {what} with [constraints]",
-                found=key[-1],
-                expected=expected,
+                found=key,
+                expected=unbracketed,
                 hint="Declare momenta along the constraints in [momenta], and name what is "
                 "conserved in claims.conserved.",
             )

@@ -49,7 +49,7 @@ def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, 
     """
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("a condition", motion_roles(reading), reactions)
-    found = []
+    conditions = []
     for name, text in texts.items():
         key: KeyPath = ("domain", name)
         refused = refusal(name)  # a label of rows alone: a variable may have the same name
@@ -61,8 +61,8 @@ def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, 
             raise reading.source.fault(
                 key, f"both sides are {words(left.shape)}", found=text, expected="two scalars"
             )
-        found.append(Condition(name, left, sign, right))
-    return tuple(found)
+        conditions.append(Condition(name, left, sign, right))
+    return tuple(conditions)
 
 
 DOMAIN = Table[tuple[Condition, ...]](

@@ -12,14 +12,13 @@ from pydantic import Field
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import ROLES, Formula, Scope, misfit
+from coadjoint.spec.core.formulas import ROLES, Formula, Scope, read_fitting
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
-from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles
+from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles, state_of
 
 
 def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula]:
@@ -44,11 +43,21 @@ def _find_forced(reading: Reading) -> Mapping[str, Variable]:
     With a Lagrangian a force along a velocity says what it does; with a Hamiltonian momenta and the
     coordinates of a declared bracket may have no velocities.
     """
-    roles = {"velocity"}
-    if reading.file.lagrangian is None:
-        roles |= {"momentum"}
-        roles |= {"coordinate"} if reading.file.poisson is not None else set()
-    return {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
+    moving = {each.name: each for each in _list_moving(reading)}
+    if reading.file.lagrangian is not None:
+        return moving
+    roles = {"momentum"} | ({"coordinate"} if reading.file.poisson is not None else set())
+    return moving | {each.name: each for each in VARIABLES.of(reading) if each.role in roles}
+
+
+def _list_moving(reading: Reading) -> list[Variable]:
+    """The velocities on which forces work.
+
+    Those in a state that a Hamiltonian moves have no mass, by which a force would be divided.
+    """
+    variables = VARIABLES.of(reading)
+    massless = [] if reading.file.lagrangian is not None else state_of(variables)
+    return [each for each in variables if each.role == "velocity" and each not in massless]
 
 
 def read_along(
@@ -58,11 +67,7 @@ def read_along(
     name = str(key[-1])
     if name not in velocities:
         raise _no_velocity(reading, key, name, velocities)
-    formula = reading.formula(key, text, scope, any_shape=True)
-    wanted = velocities[name].shape
-    if formula.shape != wanted:
-        raise misfit(reading.source, key, formula, f"{words(wanted)}, as {name!r} is")
-    return formula
+    return read_fitting(reading.source, key, text, scope, velocities[name].shape, name)
 
 
 FORCES = Table[dict[str, Formula]](
@@ -94,8 +99,22 @@ def _no_velocity(
         problem = f"{name!r} is {ROLES[own.role]}"
         near = [v for v, each in velocities.items() if (each.block, each.of) == (own.block, own.of)]
         hint = f"Write {(near or list(velocities))[0]} in its place." if velocities else ""
+        if own.role == "velocity":
+            problem, hint = _say_massless(own)
     expected = f"one of {list_names(velocities)}" if velocities else "a declared velocity"
     return reading.at_key(key, problem, name, expected, hint or f"Remove {name}.")
+
+
+def _say_massless(velocity: Variable) -> tuple[str, str]:
+    """Why no force acts along a velocity of the state that a Hamiltonian moves, and what to do."""
+    name = velocity.name
+    hint = f'Write {name} = {{ role = "coordinate" }} in [variables], and in [forces] what is added'
+    problem = f"a Hamiltonian moves the velocity {name!r}, and says no mass to divide a force by"
+    return problem, f"{hint} to its rate."
+
+
+def _names_of(variable: Variable) -> set[str]:
+    return {variable.name, *variable.components}
 
 
 def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
@@ -108,9 +127,15 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("a dissipation", motion_roles(reading), reactions)
     formula = reading.formula(key, part.R, scope)
-    velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
-    known = {name for each in velocities for name in (each.name, *each.components)}
-    if not known & {getattr(node, "name", "") for node in walk(formula.tree)}:
+    velocities = _list_moving(reading)
+    named = {getattr(node, "name", "") for node in walk(formula.tree)}
+    for each in VARIABLES.of(reading):
+        if each.role == "velocity" and each not in velocities and named & _names_of(each):
+            problem, hint = _say_massless(each)
+            raise reading.source.fault(
+                key, problem, found=each.name, expected="velocities with a mass", hint=hint
+            )
+    if not named & {name for each in velocities for name in _names_of(each)}:
         raise reading.source.fault(
             key,
             "Rayleigh's function names no velocity",

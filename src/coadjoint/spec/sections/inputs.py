@@ -13,7 +13,6 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from coadjoint.limits import PARAMETER_COMPONENTS
 from coadjoint.spec.core.components import Components, Shape
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.parts import Part
@@ -69,14 +68,14 @@ def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input
         LimitError: There are too many.
     """
     source = reading.source
-    found = []
+    inputs = []
     for name, part in parts.items():
         shape = tuple(part.shape)
         default = read_default(source, ("inputs", name, "default"), part.default, shape)
         _check_rate(source, name, parts)
-        found.append(Input(name, shape, default, part.unit, part.doc, part.rate or ""))
-    reading.check_count("inputs", "inputs", found, "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS)
-    return tuple(found)
+        inputs.append(Input(name, shape, default, part.unit, part.doc, part.rate or ""))
+    reading.check_count("inputs", "inputs", inputs, "PARAMETER_COMPONENTS")
+    return tuple(inputs)
 
 
 def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> None:

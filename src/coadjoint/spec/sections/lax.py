@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from pydantic import Field
 
-from coadjoint.spec.core.formulas import Formula, Scope
+from coadjoint.spec.core.formulas import Formula, Scope, misfit
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
@@ -51,12 +51,7 @@ def read_lax(reading: Reading, part: LaxPart) -> Lax:
     L = _read_square(reading, "L", part.L, of_state)
     M = _read_square(reading, "M", part.M, of_motion)
     if L.shape != M.shape:
-        raise reading.source.fault(
-            ("lax", "M"),
-            f"M is {words(M.shape)} and L is {words(L.shape)}",
-            found=words(M.shape),
-            expected="two matrices of one size",
-        )
+        raise misfit(reading.source, ("lax", "M"), M, f"{words(L.shape)}, as L is")
     return Lax(part.spectral, L, M)
 
 
@@ -76,13 +71,8 @@ def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formu
     key: KeyPath = ("lax", which)
     formula = reading.formula(key, text, scope, any_shape=True)
     if len(formula.shape) != 2 or formula.shape[0] != formula.shape[1]:
-        raise reading.source.fault(
-            key,
-            f"{which} is {words(formula.shape)}",
-            found=words(formula.shape),
-            expected="a square matrix",
-            hint="Write hat(a) for the matrix of a vector a, diag(a) for a diagonal one.",
-        )
+        hint = "Write hat(a) for the matrix of a vector a, diag(a) for a diagonal one."
+        raise misfit(reading.source, key, formula, "a square matrix", hint)
     return formula
 
 

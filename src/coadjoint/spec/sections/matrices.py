@@ -31,9 +31,9 @@ def point_at_faults(source: Source, key: KeyPath) -> Iterator[None]:
         yield
     except (AlgebraError, LimitError) as error:
         kind, parts = type(error), dict(error.parts)
-        found = parts.pop("found", "")
+        value = parts.pop("found", "")
         parts.pop("expected", None)  # the message says it already
-        raise source.fault(key, str(error), found=found, kind=kind, **parts) from None
+        raise source.fault(key, str(error), found=value, kind=kind, **parts) from None
 
 
 def places_of(
@@ -46,13 +46,7 @@ def places_of(
     """
     for place, name in enumerate(names):
         if name not in basis:
-            raise source.fault(
-                (*key, place),
-                f"{name!a} is not in the basis",
-                found=name,
-                expected=f"names of the basis: {list_names(basis)}",
-                hint=did_you_mean(name, basis),
-            )
+            raise source.unknown((*key, place), f"{name!a} is not in the basis", name, basis)
     return tuple(basis.index(name) for name in names)
 
 
@@ -79,26 +73,14 @@ def block_places(
     if block in algebra.basis:
         return (algebra.basis.index(block),)
     known = (*algebra.blocks, *algebra.basis)
-    raise source.fault(
-        key,
-        f"{algebra.name} has no block {block!a}",
-        found=block,
-        expected=f"one of {list_names(known)}",
-        hint=did_you_mean(block, known),
-    )
+    raise source.unknown(key, f"{algebra.name} has no block {block!a}", block, known)
 
 
 def check_basis_names(source: Source, key: KeyPath, names: Sequence[str]) -> None:
     """Refuse a basis that is too long, and names that are none."""
     if len(names) > STATE_COMPONENTS:
-        raise source.fault(
-            key,
-            f"the basis has {len(names)} vectors",
-            found=len(names),
-            expected=f"at most {STATE_COMPONENTS} (STATE_COMPONENTS)",
-            kind=LimitError,
-            limit="STATE_COMPONENTS",
-        )
+        problem = f"the basis has {len(names)} vectors"
+        raise source.too_many(key, problem, len(names), "STATE_COMPONENTS")
     for place, name in enumerate(names):
         if not NAME.fullmatch(name):
             raise source.fault(
@@ -125,15 +107,11 @@ def read_matrices(
     size = len(next(iter(tables.values()), []))
     entries = sum(len(row) for rows in tables.values() for row in rows)
     if entries > MATRIX_ENTRIES:
-        raise source.fault(
-            key,
+        problem, hint = (
             f"the matrices have {entries} numbers",
-            found=entries,
-            expected=f"at most {MATRIX_ENTRIES} (MATRIX_ENTRIES)",
-            hint="Declare the algebra by its brackets.",
-            kind=LimitError,
-            limit="MATRIX_ENTRIES",
+            "Declare the algebra by its brackets.",
         )
+        raise source.too_many(key, problem, entries, "MATRIX_ENTRIES", hint=hint)
     for name, rows in tables.items():
         if name not in basis:
             raise source.fault(
@@ -152,11 +130,12 @@ def read_matrices(
                 found=list_names(map(str, lengths)),
                 expected=f"{size or 1} rows of {size or 1} numbers, like the first matrix",
             )
-    found = {name: _sparse(source, (*key, name), rows, scalars) for name, rows in tables.items()}
-    return found, size
+    return {
+        name: _read_matrix(source, (*key, name), rows, scalars) for name, rows in tables.items()
+    }, size
 
 
-def _sparse(
+def _read_matrix(
     source: Source, key: KeyPath, rows: list[list[Fraction | str]], scalars: Scalars
 ) -> SparseMatrix:
     entries = {
@@ -199,13 +178,9 @@ def representation_of(
     declared = declared or {}
     known = (*REPRESENTATIONS, *declared)
     if name not in known:
-        raise source.fault(
-            key,
-            f"there is no representation {name!a}",
-            found=name,
-            expected=f"one of {list_names(known)}",
-            hint=did_you_mean(name, known, f"Declare it under [representations.{name}]."),
-        )
+        problem = f"there is no representation {name!a}"
+        hint = f"Declare it under [representations.{name}]."
+        raise source.unknown(key, problem, name, known, hint)
     if name in declared:
         return declared[name]
     with point_at_faults(source, key):

@@ -37,8 +37,8 @@ from coadjoint.spec.core.tree import (
     Node,
     Number,
     Power,
-    children,
-    walk_up,
+    fold,
+    walk,
 )
 
 #: What the two matrices are called.
@@ -77,7 +77,7 @@ def read_bracket(
 
 def _check_free(tree: Node, scalars: Scalars) -> None:
     """X and Y are the matrices, so no parameter may have these names."""
-    for node in walk_up(tree):
+    for node in walk(tree):
         if isinstance(node, Name) and node.name in PAIR and node.name in scalars.shapes:
             raise fault_at(
                 node,
@@ -95,14 +95,10 @@ class _Evaluation:
         self.scalars = scalars
 
     def value(self, tree: Node, pair: Mapping[str, SparseMatrix]) -> Matrix:
-        found: dict[int, Any] = {}
-        for node in walk_up(tree):
-            below = [found[id(child)] for child in children(node)]
-            found[id(node)] = self._of(node, below, pair)
-        result: Matrix = found[id(tree)]
+        result: Matrix = fold(tree, lambda node, below: self._evaluate(node, below, pair))
         return {place: value for place, value in result.items() if value != 0}
 
-    def _of(self, node: Node, below: list[Any], pair: Mapping[str, SparseMatrix]) -> Any:
+    def _evaluate(self, node: Node, below: list[Any], pair: Mapping[str, SparseMatrix]) -> Any:
         match node:
             case Number(value=value):
                 return value
@@ -111,7 +107,7 @@ class _Evaluation:
             case Name(name=name):
                 return self._parameter(node, name)
             case Index(name=name, indices=indices):
-                return self._known(node, self.scalars.value(name, indices))
+                return self._require_value(node, self.scalars.value(name, indices))
             case Negate():
                 return _multiply(below[0], Fraction(-1))
             case Power(exponent=exponent) if exponent > 0:
@@ -135,12 +131,12 @@ class _Evaluation:
         """A scalar, or a matrix entry by entry."""
         shape = self.scalars.shapes[name]
         if len(shape) != 2:
-            return self._known(node, self.scalars.value(name))
+            return self._require_value(node, self.scalars.value(name))
         places = [(i, j) for i in range(shape[0]) for j in range(shape[1])]
         entries = {(i, j): self.scalars.value(name, (i + 1, j + 1)) for i, j in places}
         return {place: value for place, value in entries.items() if value != 0}
 
-    def _known(self, node: Node, value: Any) -> Any:
+    def _require_value(self, node: Node, value: Any) -> Any:
         if value is None:
             raise fault_at(node, "this is neither a scalar nor a matrix", expected=_EXPECTED)
         return value

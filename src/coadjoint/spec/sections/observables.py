@@ -56,12 +56,12 @@ def read_observables(
     """The observables, which may name the multipliers of constraints."""
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("an observable", motion_roles(reading), reactions)
-    found = []
+    observables = []
     for name, part in parts.items():
         key = reading.source.place_of(("observables", name), "expression")
         formula = reading.formula(key, part.expression, scope, any_shape=True)
-        found.append(Observable(name, formula, part.unit, part.doc))
-    return tuple(found)
+        observables.append(Observable(name, formula, part.unit, part.doc))
+    return tuple(observables)
 
 
 OBSERVABLES = Table[tuple[Observable, ...]](

@@ -14,7 +14,6 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from coadjoint.limits import PARAMETER_COMPONENTS
 from coadjoint.spec.core.components import Components, Shape, matrix_size
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
@@ -75,10 +74,9 @@ def read_parameters(reading: Reading, parts: Mapping[str, ParameterPart]) -> tup
             components fill no matrix of the form.
         LimitError: There are too many.
     """
-    found = tuple(_read_parameter(reading.source, name, part) for name, part in parts.items())
-    limit = "PARAMETER_COMPONENTS", PARAMETER_COMPONENTS
-    reading.check_count("parameters", "parameters", found, *limit)
-    return found
+    parameters = tuple(_read_parameter(reading.source, name, part) for name, part in parts.items())
+    reading.check_count("parameters", "parameters", parameters, "PARAMETER_COMPONENTS")
+    return parameters
 
 
 def _read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:

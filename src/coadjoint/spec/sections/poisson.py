@@ -14,7 +14,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from coadjoint.spec.core.components import unpacked
+from coadjoint.spec.core.components import unpack
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.parts import Part, name_pattern
@@ -163,9 +163,9 @@ class _Bracket:
     def _pair(self, key: KeyPath, text: str, allowed: Sequence[int]) -> tuple[int, int]:
         """The places of X1 and X2 in a key ``{X1, X2}``."""
         names = [self.state[place] for place in allowed]
-        found = _KEY.fullmatch(text)
-        unknown = [name for name in found.groups() if name not in names] if found else [text]
-        if found is None or unknown:
+        match = _KEY.fullmatch(text)
+        unknown = [name for name in match.groups() if name not in names] if match else [text]
+        if match is None or unknown:
             example = list_names(names[:2]) if len(names) > 1 else "X1, X2"
             raise self.source.fault(
                 key,
@@ -175,7 +175,7 @@ class _Bracket:
                 hint=did_you_mean(unknown[0], names),
                 at=self.source.positions.key(key),
             )
-        return self.state.index(found[1]), self.state.index(found[2])
+        return self.state.index(match[1]), self.state.index(match[2])
 
     def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
         """The places of positions and momenta with their brackets; others commute with all."""
@@ -186,12 +186,13 @@ class _Bracket:
             q, p = (self._places((*key, side), name) for side, name in enumerate(pair))
             forms = [self.forms.get(name, "") for name in pair]
             if len(q) != len(p) or forms[0] != forms[1]:
-                found = [
-                    f"{n!r} {_like(len(c), f)}" for n, c, f in zip(pair, (q, p), forms, strict=True)
+                sides = [
+                    f"{n!r} {_describe(len(c), f)}"
+                    for n, c, f in zip(pair, (q, p), forms, strict=True)
                 ]
                 raise self.source.fault(
                     key,
-                    " and ".join(found),
+                    " and ".join(sides),
                     found=list_names(pair),
                     expected="a position and a momentum of one shape and form",
                 )
@@ -202,13 +203,8 @@ class _Bracket:
 
     def _places(self, key: KeyPath, name: str) -> tuple[int, ...]:
         if name not in self.places:
-            raise self.source.fault(
-                key,
-                f"there is no coordinate {name!a}",
-                found=name,
-                expected=f"coordinates or their components: {list_names(self.places)}",
-                hint=did_you_mean(name, self.places),
-            )
+            problem = f"there is no coordinate {name!a}"
+            raise self.source.unknown(key, problem, name, self.places)
         return self.places[name]
 
     def _check_single(self, places: Sequence[int]) -> None:
@@ -227,7 +223,7 @@ class _Bracket:
                 )
 
 
-def _like(count: int, form: str) -> str:
+def _describe(count: int, form: str) -> str:
     """How a variable looks, in words."""
     return f"has {count} components" + (f" of the form {form!r}" if form else "")
 
@@ -239,7 +235,7 @@ def pairing_weights(count: int, form: str) -> list[Fraction]:
     """
     if form != "symmetric":
         return [Fraction(1)] * count
-    rows = unpacked(range(count), form)
+    rows = unpack(range(count), form)
     diagonal = {rows[n][n] for n in range(len(rows))}
     return [Fraction(1, 1 if n in diagonal else 2) for n in range(count)]
 

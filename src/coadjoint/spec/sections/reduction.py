@@ -6,7 +6,7 @@ That the motion keeps it is proved later. Read next: `coadjoint.derive.reduction
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -17,7 +17,7 @@ from coadjoint.spec.core.formulas import Declared, Formula, make_scope, read_fit
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.sections.variables import VARIABLES, Variable
+from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of
 
 
 class ReductionPart(Part):
@@ -50,21 +50,21 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
         SpecError: What is restricted is no vector or scalar of the state, something is left of no
             variable, or the spec has what a restricted motion cannot.
     """
-    variables = VARIABLES.of(reading)
-    _check_alone(reading, variables)
+    _check_alone(reading)
+    variables = state_of(VARIABLES.of(reading))
     known = {variable.name: variable for variable in variables}
     for name in part.section:
         _check_eliminated(reading, name, known)
     if len(part.section) == len(known):
         raise reading.source.fault(
             ("reduction", "section"),
-            "no variable is left",
+            "no variable of the state is left",
             found=list_names(part.section),
             expected="a section over at least one variable",
         )
     roles = tuple(dict.fromkeys(variable.role for variable in variables))
     left: list[Declared] = [q for q in reading.quantities if q.name not in part.section]
-    of_left = make_scope("a section", roles, left, driven=())
+    of_left = make_scope("a section", roles, left)
     scope = reading.scope("a function that vanishes", roles, driven=())
     return Submanifold(
         {
@@ -85,25 +85,23 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
     )
 
 
-def _check_alone(reading: Reading, variables: Sequence[Variable]) -> None:
+def _check_alone(reading: Reading) -> None:
     """There is a Hamiltonian, and nothing that belongs to a bracket of the state."""
     file = reading.file
-    velocities = [variable.name for variable in variables if variable.role == "velocity"]
-    tables = ("symmetries", "transformations", "lax", "newton", "reconstruction")
+    tables = ("symmetries", "transformations", "lax", "newton", "reconstruction", "lagrangian")
     alien: dict[KeyPath, object] = {
         ("claims", "casimirs"): file.claims.casimirs,
         ("claims", "brackets"): file.claims.brackets,
         **{(table,): getattr(file, table) for table in tables},
-        ("variables", *velocities[:1]): velocities,
     }
-    for key, found in alien.items():
-        if found:
+    for key, given in alien.items():
+        if given:
             name = str(key[-1])
             raise reading.source.fault(
                 key,
                 f"{name!r} does not go with [reduction], whose motion has no bracket",
                 found=name,
-                expected="momenta or coordinates, a Hamiltonian, observables and integrals",
+                expected="a state, a Hamiltonian, forces, observables and integrals",
                 hint="Declare it in a spec of the whole system.",
             )
     if file.hamiltonian is None:

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 from pydantic import Field
 
-from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.formulas import Formula, misfit
 from coadjoint.spec.core.parts import Accept, Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.core.shapes import words
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_of, state_roles
 
 
@@ -102,13 +101,8 @@ def _read_metric(reading: Reading, table: str, text: str) -> Formula:
     G = reading.formula(key, text, scope, any_shape=True)
     size = sum(len(each.components) for each in state_of(VARIABLES.of(reading)))
     if G.shape not in ((), (size, size)):
-        raise reading.source.fault(
-            key,
-            f"G is {words(G.shape)}",
-            found=words(G.shape),
-            expected=f"a number, or a {size} x {size} matrix with a row for each component of "
-            "the state",
-        )
+        matrix = f"a {size} x {size} matrix with a row for each component of the state"
+        raise misfit(reading.source, key, G, f"a number, or {matrix}")
     return G
 
 

@@ -59,7 +59,7 @@ def read_representations(
     source, algebra = reading.source, ALGEBRA.of(reading).algebra
     if algebra is None:
         return {}
-    found, scalars = {}, scalars_of(reading)
+    representations, scalars = {}, scalars_of(reading)
     for name, part in parts.items():
         key: KeyPath = ("representations", name)
         if not NAME.fullmatch(name) or name in KNOWN:
@@ -71,10 +71,12 @@ def read_representations(
                 at=source.positions.key(key),
             )
         if part.matrices is None:
-            found[name] = _on_matrices(source, key, algebra, name, part)
+            representations[name] = _on_matrices(source, key, algebra, name, part)
         elif part.left is None and part.right is None:
             inner = (*key, "matrices")
-            found[name] = by_matrices(source, inner, algebra, name, part.matrices, scalars)
+            representations[name] = by_matrices(
+                source, inner, algebra, name, part.matrices, scalars
+            )
         else:
             side = "right" if part.left is None else "left"
             raise source.fault(
@@ -83,7 +85,7 @@ def read_representations(
                 found=side,
                 expected="either matrices over the basis, or blocks that act from left and right",
             )
-    return found
+    return representations
 
 
 def _on_matrices(

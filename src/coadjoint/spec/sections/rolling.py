@@ -13,12 +13,11 @@ from pydantic import Field
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.faults import list_names
+from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.core.shapes import words
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.variables import VARIABLES, position_roles
 
@@ -72,21 +71,9 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
     _check_free(reading, key)
     normals = [v.name for v in VARIABLES.of(reading) if v.role == "advected" and v.shape == (3,)]
     if part.normal not in normals:
-        raise reading.source.fault(
-            (*key, "normal"),
-            f"there is no advected vector {part.normal!a}",
-            found=part.normal,
-            expected=f"one of {list_names(normals)}",
-            hint=did_you_mean(part.normal, normals),
-        )
-    arm = reading.formula((*key, "arm"), part.arm, scope, any_shape=True)
-    if arm.shape != (3,):
-        raise reading.source.fault(
-            (*key, "arm"),
-            f"the arm is {words(arm.shape)}",
-            found=words(arm.shape),
-            expected="a 3-vector",
-        )
+        problem = f"there is no advected vector {part.normal!a}"
+        raise reading.source.unknown((*key, "normal"), problem, part.normal, normals)
+    arm = read_fitting(reading.source, (*key, "arm"), part.arm, scope, (3,), part.normal)
     return Rolling(arm, part.normal, turning, velocity)
 
 

@@ -36,7 +36,7 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     if not is_in_frame(file):
         return None
     velocities = {name for name, part in file.variables.items() if part.role == "velocity"}
-    found: dict[str, tuple[str, int]] = {}
+    solved: dict[str, tuple[str, int]] = {}
     reached: dict[str, set[str]] = {}
     acting = [*file.forces.values(), *([file.dissipation.R] if file.dissipation else [])]
     pressing = find_constraints_named(file, acting)
@@ -46,20 +46,20 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
             continue
         left, right = sides
         for own, other, sign in ((left, right, 1), (right, left, -1)):
-            free = isinstance(own, Name) and own.name in velocities - set(found)
+            free = isinstance(own, Name) and own.name in velocities - set(solved)
             if not isinstance(own, Name) or not free or other is None:
                 continue
             names = _find_names(other, file) & velocities
             names = names.union(*(reached[name] for name in names if name in reached))
             if own.name not in names:
-                found[own.name] = constraint, sign
+                solved[own.name] = constraint, sign
                 reached = {
                     name: {*rest, *names} if own.name in rest else rest
                     for name, rest in reached.items()
                 }
                 reached[own.name] = names
                 break
-    return found
+    return solved
 
 
 def reaction_name(constraint: str) -> str:
@@ -100,16 +100,16 @@ def _parse(text: str, file: Any) -> Node | None:
 def _find_names(node: Node, file: Any) -> set[str]:
     """Variables that an expression names, whole or by component, through definitions, and these."""
     defined = {key.split("(")[0].strip(): text for key, text in file.definitions.items()}
-    pending, seen, found = [node], set[str](), set[str]()
+    pending, seen, names = [node], set[str](), set[str]()
     while pending:
         for part in walk(pending.pop()):
             name = str(getattr(part, "name", "") or getattr(part, "function", ""))
             if name in defined and name not in seen:
                 seen.add(name)
-                found.add(name)
+                names.add(name)
                 inner = _parse(defined[name], file)
                 pending += [] if inner is None else [inner]
             elif isinstance(part, Name | Index):
                 match = _COMPONENT.fullmatch(name)
-                found |= {name, match["name"]} if match else {name}
-    return found
+                names |= {name, match["name"]} if match else {name}
+    return names

@@ -17,13 +17,13 @@ from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.matrices import size
 from coadjoint.spec.core.components import Shape, component_names, matrix_size
 from coadjoint.spec.core.degrees import degree_in
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
+from coadjoint.spec.core.faults import ExpressionError, list_names
 from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.parts import Accept, Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
-from coadjoint.spec.core.values import Names, Prose, Unit
+from coadjoint.spec.core.values import Names, Prose, Unit, misfit_form
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra, scalars_of
 from coadjoint.spec.sections.momenta import Section
@@ -145,13 +145,8 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     """
     state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
     if name not in state:
-        raise reading.source.fault(
-            key,
-            f"{name!a} is not a variable of the state",
-            found=name,
-            expected=f"one of {list_names(state)}",
-            hint=did_you_mean(name, state),
-        )
+        problem = f"{name!a} is not a variable of the state"
+        raise reading.source.unknown(key, problem, name, state)
     return state[name]
 
 
@@ -180,23 +175,25 @@ class _Actions:
         )
         form = part.form or ""
         if form and matrix_size(algebra.dimension, form) is None:
-            raise self.source.fault(
-                (*key, "form"),
-                f"{algebra.dimension} components fill no matrix of the form {form!r}",
-                found=algebra.dimension,
-                expected="as many entries as the algebra has dimensions",
-                hint="Remove form.",
-            )
+            raise misfit_form(self.source, (*key, "form"), algebra.dimension, form)
         element = part.vector or part.matrix or ""
         shapes = self._element(part, key, algebra) if element else {}
         if part.linear is not None:
             self._check_linear(key, part.linear, algebra)
         generators = {
-            variable: self._moves(key, variable, text, shapes)
+            variable: self._read_generator(key, variable, text, shapes)
             for variable, text in (part.generators or {}).items()
         }
+        if part.time is not None and self.reading.file.constraints:
+            raise self.source.fault(
+                (*key, "time"),
+                "time moves under [constraints]",
+                found="time",
+                expected="generators of the state, since the momentum of time is minus the energy",
+                hint="Remove time: the balance of the energy is proved of every motion.",
+            )
         scalar = {
-            table: self._scalar((*key, table), getattr(part, table), shapes)
+            table: self._read_scalar((*key, table), getattr(part, table), shapes)
             for table in ("time", "map")
             if getattr(part, table) is not None
         }
@@ -261,18 +258,20 @@ class _Actions:
                 expected=f"variables with {rows} components together",
             )
 
-    def _moves(self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape]) -> Formula:
+    def _read_generator(
+        self, key: KeyPath, name: str, text: str, shapes: Mapping[str, Shape]
+    ) -> Formula:
         """How a variable moves under the element."""
         key = (*key, "generators", name)
         formula = read_move(self.reading, key, name, text, "a generator", shapes)
-        return self._linear(key, formula, shapes)
+        return self._require_linear(key, formula, shapes)
 
-    def _scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
+    def _read_scalar(self, key: KeyPath, text: str, shapes: Mapping[str, Shape]) -> Formula:
         kind = f"a {key[-1]} of a symmetry"
         scope = self.reading.scope(kind, state_roles(self.reading), shapes, driven=("time",))
-        return self._linear(key, self.reading.formula(key, text, scope), shapes)
+        return self._require_linear(key, self.reading.formula(key, text, scope), shapes)
 
-    def _linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
+    def _require_linear(self, key: KeyPath, formula: Formula, names: Iterable[str]) -> Formula:
         """The formula, if it is linear in the element."""
         element, *_ = names
         try:

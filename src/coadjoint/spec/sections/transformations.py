@@ -13,7 +13,6 @@ from typing import Annotated
 
 from pydantic import Field
 
-from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula, read_fitting
 from coadjoint.spec.core.parts import Accept, ClaimPart, Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
@@ -86,13 +85,8 @@ def _read_exchange(reading: Reading, name: str, observable: str, text: str) -> F
     key: KeyPath = ("transformations", name, "exchanges", observable)
     named = shapes_in_claims(reading)
     if observable not in named:
-        raise reading.at_key(
-            key,
-            f"{observable!a} is neither an observable nor a momentum map",
-            observable,
-            f"one of {list_names(named)}",
-            did_you_mean(observable, named),
-        )
+        problem = f"{observable!a} is neither an observable nor a momentum map"
+        raise reading.source.unknown(key, problem, observable, named)
     scope = reading.scope("an observable", state_roles(reading), named)
     at, shape = reading.source.place_of(key, "claim"), named[observable]
     return read_fitting(reading.source, at, text, scope, shape, observable)

@@ -21,7 +21,6 @@ from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
-from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.names import derived_names
@@ -151,10 +150,9 @@ def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple
         LimitError: The state has too many components.
     """
     solved = find_solved_velocities(reading.file)
-    found = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
-    limit = "STATE_COMPONENTS", STATE_COMPONENTS
-    reading.check_count("state", "variables", state_of(found), *limit)
-    return found
+    variables = tuple(_read_variable(reading, name, part, solved) for name, part in parts.items())
+    reading.check_count("state", "variables", state_of(variables), "STATE_COMPONENTS")
+    return variables
 
 
 def _read_variable(
@@ -221,10 +219,7 @@ def _read_variable(
 
 
 def _is_state(
-    name: str,
-    part: VariablePart,
-    parts: Mapping[str, VariablePart],
-    solved: Collection[str] | None,
+    name: str, part: VariablePart, parts: Mapping[str, VariablePart], solved: Collection[str] | None
 ) -> bool:
     """Whether a variable is part of the state; see `quantities.state_of`."""
     if solved is not None:
@@ -349,13 +344,13 @@ def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple
     size = matrix_size(len(block), "antisymmetric")
     assert size is not None, block
     place = {b: n for n, b in enumerate(block)}
-    found: dict[tuple[int, int], dict[int | None, object]] = {}
+    constants: dict[tuple[int, int], dict[int | None, object]] = {}
     for (i, j), row in algebra.constants.items():
         if i in place and j in place:
             a, b = place[i], place[j]
             sign = 1 if a < b else -1
-            found[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
-    if size > 2 and found != dict(so_indefinite(size, 0).constants):
+            constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
+    if size > 2 and constants != dict(so_indefinite(size, 0).constants):
         names = list_names(algebra.basis[b] for b in block)
         raise source.fault(
             key,

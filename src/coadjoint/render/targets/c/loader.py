@@ -7,6 +7,7 @@ Read next: `coadjoint.build.library`.
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -17,11 +18,10 @@ from numpy.typing import NDArray
 
 from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CrossCheckError
+from coadjoint.render.targets.protocol import Call, Evaluate, Generated, Kernel
 
 if TYPE_CHECKING:
     from coadjoint.render.targets.numpy.loader import NumpyKernel
-    from coadjoint.solve.arrays import Call
-    from coadjoint.solve.system import System
 
 #: The flags of each build, by the name that compilers know them under.
 FLAGS: Final = {"c": "exact", "c-fast": "fast"}
@@ -36,12 +36,8 @@ PROBES = 17
 ROUNDINGS = 1e-9
 
 
-class CKernel:
-    """A C kernel of a System.
-
-    Attributes:
-        source: SHA-256 of the ``kernel.c`` that it was compiled from.
-    """
+class CKernel(Kernel):
+    """A C kernel of a System."""
 
     def __init__(self, library: Library) -> None:
         self._library = library
@@ -49,34 +45,44 @@ class CKernel:
 
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], None]]:
         """C calls that together evaluate all members."""
-        item = call.state.itemsize
-        arrays = (call.state, call.parameters, *call.driving.values(), call.block)
-        places = [(array.ctypes.data, array.ndim == 1) for array in arrays[:-1]]
-        places.append((call.block.ctypes.data, False))  # that of a scalar has one axis, too
+        arrays = (*call.given.values(), call.block)
         size = max(1, CHUNK // sum(math.prod(array.shape[:-1]) for array in arrays))
-        stride = call.members
         for first in range(0, call.members, size):
-            piece = self._library.bind(
-                function,
-                min(size, call.members - first),
-                *(
-                    number
-                    for at, shared in places
-                    for number in ((at, 0) if shared else (at + first * item, stride))
-                ),
-            )
+            members = min(size, call.members - first)
+            piece = self._library.bind(function, members, *_places(call, first))
             piece.arrays = arrays  # type: ignore[attr-defined]  # they live as long as the call
             yield piece
 
+    def evaluate_with(self, function: str, like: Call) -> Evaluate:
+        """One C call, in which no array is looked at but for where it is."""
+        bound = self._library.bind_at(function, like.members, *_places(like, 0))
+        place, byref = ctypes.c_double.from_buffer, ctypes.byref
 
-def load(system: System, build: str, reference: Callable[[], NumpyKernel]) -> CKernel:
+        def evaluate(members: int, state: NDArray[Any], out: NDArray[Any]) -> None:
+            bound(members, byref(place(state)), byref(place(out)))  # type: ignore[arg-type]
+
+        evaluate.arrays = like  # type: ignore[attr-defined]  # they live as long as the function
+        return evaluate
+
+
+def _places(call: Call, first: int) -> Iterator[int]:
+    """Where each array of a call begins for a member, and its stride: 0 if members share it."""
+    for array in call.given.values():
+        shared = array.ndim == 1
+        yield array.ctypes.data + (0 if shared else first * array.itemsize)
+        yield 0 if shared else call.members
+    yield call.block.ctypes.data + first * call.block.itemsize
+    yield call.members
+
+
+def load(system: Generated, build: str, reference: Callable[[], NumpyKernel]) -> CKernel:
     """The C kernel of a build, verified."""
     verify = partial(_verify, system, build, reference)
     return CKernel(load_library(system.folder, system.name, system.id, FLAGS[build], verify))
 
 
 def _verify(
-    system: System, build: str, reference: Callable[[], NumpyKernel], library: Library
+    system: Generated, build: str, reference: Callable[[], NumpyKernel], library: Library
 ) -> None:
     """Compare a fresh library with the NumPy kernel at a few points.
 
@@ -84,40 +90,41 @@ def _verify(
         CrossCheckError: They differ.
         OutputError: The NumPy kernel does not run.
     """
+    for function, call in _probes(system):
+        expected = reference().values(function, call)
+        for piece in CKernel(library).calls(function, call):
+            piece()
+        if not _agree(call.block, expected, exact=build == "c" and not system.elementary):
+            raise CrossCheckError(
+                f"a wrong kernel was compiled: {system.name}.{function} of the target "
+                f"{build} differs from the NumPy kernel. Set CC to another compiler, or "
+                "run `coadjoint crosscheck` to see whether the files are at fault.",
+                rung=5,
+                system=system.name,
+                function=function,
+                target=build,
+            )
+
+
+def _probes(system: Generated) -> Iterator[tuple[str, Call]]:
+    """Points for each function: parameters and inputs of each member, then shared ones."""
     source = np.random.default_rng(0)
-    sizes = [system.PARAMETERS.size]
-    sizes += [each.size for each in (system.INPUTS, system.TIME) if each]
-    most = system.STATE.size + system.RECONSTRUCTED.size
-    wide = source.uniform(0.5, 2.0, (most, PROBES))
-    own = [source.uniform(0.5, 2.0, (size, PROBES)) for size in sizes]
-    shared = [array[:, 0].copy() for array in own]
-    exact = build == "c" and not system.elementary
     for function, shape in system.functions.items():
-        state = wide[: system.rows(function).size]
-        for others, stride in ((own, PROBES), (shared, 0)):
-            expected = reference().values(function, [state, *others], (*shape, PROBES))
-            found = np.full((*shape, PROBES), np.pi)
-            addresses = [state.ctypes.data, PROBES]
-            addresses += [n for array in others for n in (array.ctypes.data, stride)]
-            library.function(function)(PROBES, *addresses, found.ctypes.data, PROBES)
-            if not _agree(found, expected, exact=exact):
-                raise CrossCheckError(
-                    f"a wrong kernel was compiled: {system.name}.{function} of the target "
-                    f"{build} differs from the NumPy kernel. Set CC to another compiler, or "
-                    "run `coadjoint crosscheck` to see whether the files are at fault.",
-                    rung=5,
-                    system=system.name,
-                    function=function,
-                    target=build,
-                )
+        sizes = system.sizes(function).items()
+        own = {name: source.uniform(0.5, 2.0, (size, PROBES)) for name, size in sizes}
+        state = own.pop("state")
+        for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
+            block, (parameters, *_) = np.full((*shape, PROBES), np.pi), given.values()
+            driving = {name: array for name, array in given.items() if name != "parameters"}
+            yield function, Call(state, parameters, block, driving)
 
 
-def _agree(found: NDArray[Any], expected: NDArray[Any], *, exact: bool) -> bool:
+def _agree(values: NDArray[Any], expected: NDArray[Any], *, exact: bool) -> bool:
     """Whether two results are equal, or equal but for roundings; NaN equals NaN."""
     if exact:
-        return np.array_equal(found, expected, equal_nan=True)
+        return np.array_equal(values, expected, equal_nan=True)
     with np.errstate(all="ignore"):
         size = np.abs(expected[np.isfinite(expected)]).max(initial=0.0)
-        close = np.abs(found - expected) <= ROUNDINGS * size
-        same = (found == expected) | (np.isnan(found) & np.isnan(expected))
+        close = np.abs(values - expected) <= ROUNDINGS * size
+        same = (values == expected) | (np.isnan(values) & np.isnan(expected))
     return bool((close | same).all())

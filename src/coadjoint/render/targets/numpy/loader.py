@@ -6,57 +6,49 @@ is no compiler, and a compiled kernel is compared with it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coadjoint.errors import OutputError
 from coadjoint.render.targets.modules import KernelModule
-
-if TYPE_CHECKING:
-    from coadjoint.solve.arrays import Call
-    from coadjoint.solve.system import System
+from coadjoint.render.targets.protocol import Call, Generated
 
 
-def load(system: System, build: str, reference: Callable[[], Any]) -> NumpyKernel:
+def load(system: Generated, build: str, reference: Callable[[], Any]) -> NumpyKernel:
     """The NumPy kernel of a System."""
-    return NumpyKernel(system)
+    return NumpyKernel(system, "kernel.py")
 
 
 class NumpyKernel(KernelModule):
     """The NumPy kernel of a System."""
 
-    def __init__(self, system: System) -> None:
-        super().__init__(system, "kernel.py")
-
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """One call for all members."""
-        given = [call.state, call.parameters]
-        given += [array for name, array in call.driving.items() if name != "time"]
-        named = {"time": call.driving["time"][0, ...]} if "time" in call.driving else {}
-        yield partial(self.function(function), *given, out=call.block, **named)
+        yield partial(self._with_arguments(function, call), out=call.block)
 
-    def values(
-        self, function: str, arrays: Sequence[NDArray[Any]], shape: tuple[int, ...]
-    ) -> NDArray[Any]:
-        """What the kernel computes.
+    def values(self, function: str, call: Call) -> NDArray[Any]:
+        """What the kernel computes in an array of its own.
 
         Raises:
             OutputError: It does not run, or its result has another shape.
         """
         try:
-            given, named = list(arrays), {}
-            if self.system.TIME:
-                named = {"time": given.pop()[0]}
-            values = np.asarray(self.function(function)(*given, **named), dtype=np.float64)
+            values = np.asarray(self._with_arguments(function, call)(), dtype=np.float64)
         except OutputError:
             raise
         except Exception as error:
             problem = f"does not run: {function}: {type(error).__name__}: {error}"
             raise self.explain_broken(problem) from error
-        if values.shape != shape:
+        if values.shape != call.block.shape:
             raise self.explain_broken(f"does not run: {function} has the shape {values.shape}")
         return values
+
+    def _with_arguments(self, function: str, call: Call) -> Callable[..., Any]:
+        """A function of the file with all that it reads."""
+        given = call.given
+        named = {"time": given.pop("time")[0, ...]} if "time" in given else {}
+        return partial(self.function(function), *given.values(), **named)

@@ -14,24 +14,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.render.targets.modules import KernelModule
+from coadjoint.render.targets.protocol import Call, Generated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.arrays import Call
-    from coadjoint.solve.system import System
 
-
-def load(system: System, build: str, reference: Callable[[], Any]) -> PythonKernel:
+def load(system: Generated, build: str, reference: Callable[[], Any]) -> PythonKernel:
     """The plain Python kernel of a System."""
-    return PythonKernel(system)
+    return PythonKernel(system, "kernel_python.py")
 
 
 class PythonKernel(KernelModule):
     """The plain Python kernel of a System."""
-
-    def __init__(self, system: System) -> None:
-        super().__init__(system, "kernel_python.py")
 
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """One call for all members."""
@@ -40,14 +35,12 @@ class PythonKernel(KernelModule):
 
 def _evaluate(function: Callable[..., Any], call: Call) -> None:
     """Evaluate all members, one after the other."""
-    driving = {name: _by_member(array, call.members) for name, array in call.driving.items()}
-    times = driving.pop("time", None)
-    given = [_by_member(array, call.members) for array in (call.state, call.parameters)]
-    given += driving.values()
+    given = {name: _by_member(array, call.members) for name, array in call.given.items()}
+    times = given.pop("time", None)
     for member in range(call.members):
         named = {} if times is None else {"time": next(times)[0]}
         try:
-            values = function(*map(next, given), **named)
+            values = function(*map(next, given.values()), **named)
         except (ArithmeticError, ValueError):
             values = np.nan
         call.block[..., member] = values

@@ -1,0 +1,191 @@
+r"""Symmetries of constrained motions: what they keep, and how their momenta change.
+
+The flow of a field X on the state is a symmetry of a constrained motion :math:`\dot x = \Gamma(x)`
+if it keeps the constraints and takes motions to motions, that is
+:math:`[\Gamma, X] + \partial_t X = 0` where the constraints hold. Of positions q alone X is the
+lift of a field :math:`\Sigma(q)`: velocities change by :math:`[\xi, \Sigma] + \partial_t \Sigma`.
+With :math:`p = \partial l/\partial\xi` its momentum is :math:`J = \langle p, \Sigma \rangle`. It
+need not be conserved, since reactions work along Sigma unless the constraints allow it (Bloch,
+Krishnaprasad, Marsden and Murray 1996; Holm 2011, section 12.3.2):
+
+.. math::
+    \dot J = \Sigma\, l + \langle p, [\xi, \Sigma] + \partial_t \Sigma \rangle
+        + \langle f, \Sigma \rangle + \langle \lambda, A \Sigma \rangle.
+
+Of a field on the whole state the momentum is a declared function, which is conserved or not.
+Comes in: a constrained motion with declared symmetries. Goes out: claims for the certificate.
+Read next: `coadjoint.prove.momenta`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, partial
+
+from coadjoint.derive.mechanics.distribution import Row
+from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.symmetries import Moves, momentum_maps, moves_of
+from coadjoint.exact import Element, element_text
+from coadjoint.groups.vector_fields import VectorField, lie_derivative
+from coadjoint.poisson.momentum_maps import action_defects
+from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.driven import while_constant
+from coadjoint.prove.findings import SHOWN, finding
+from coadjoint.prove.momenta import law_along
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
+from coadjoint.spec.model import Symmetry
+
+
+class ConstrainedAction:
+    """An action of a Lie algebra on the state of a constrained motion.
+
+    Args:
+        motion: The motion.
+        symmetry: What is declared.
+    """
+
+    def __init__(self, motion: ConstrainedRates, symmetry: Symmetry) -> None:
+        self.motion, self.symmetry = motion, symmetry
+        self.field, self.frame = motion.field, motion.distribution.frame
+        self.moves = moves_of(motion.setting, symmetry)
+
+    @cached_property
+    def sections(self) -> list[Row]:
+        """The field of the frame of each basis vector; empty where not positions alone move."""
+        setting, known = self.motion.setting, {*self.motion.setting.positions}
+        known |= {*setting.parameters, *setting.time}
+        moved = {name for each in self.moves for name in each}
+        reached = {
+            x for each in self.moves for value in each.values() for x in self.field.reach(value)
+        }
+        if not moved <= {*setting.positions} or not reached <= known:
+            return []
+        own = len(self.frame.velocities) - len(setting.positions)
+        zero = self.field.zero
+        return [
+            (*(zero,) * own, *(each.get(name, zero) for name in setting.positions))
+            for each in self.moves
+        ]
+
+    def lift(self, section: Row) -> dict[str, Element]:
+        """How positions and all velocities change along a field of the frame."""
+        setting, frame = self.motion.setting, self.frame
+        turned = frame.bracket(setting.elements(frame.velocities), section)
+        parts = zip(frame.velocities, turned, section, strict=True)
+        return frame.rates(section) | {name: x + explicit(setting, own) for name, x, own in parts}
+
+    @cached_property
+    def generators(self) -> list[VectorField]:
+        """The field on the state of each basis vector, written in the state."""
+        moves: Sequence[Moves] = [*map(self.lift, self.sections)] or self.moves
+        return [
+            VectorField(
+                self.field,
+                self.motion.setting.state,
+                tuple(
+                    self.motion.close(each.get(x, self.field.zero))
+                    for x in self.motion.setting.state
+                ),
+            )
+            for each in moves
+        ]
+
+    def action_defects(self) -> list[Element]:
+        """What must vanish for the generators to be those of an action."""
+        algebra = self.symmetry.algebra.over(self.motion.setting.take_constant)
+        return action_defects(algebra, self.generators, 1 if self.symmetry.side == "left" else -1)
+
+    def constraint_defects(self) -> list[Element]:
+        """How the residuals of the constraints change.
+
+        Of a field on the whole state those that are kept: the others give velocities.
+        """
+        if not self.sections:
+            return [X.derivative(f) for X in self.generators for _, f in self.motion.kept]
+        found = []
+        for changes in map(self.lift, self.sections):
+            names = tuple(changes)
+            X = VectorField(self.field, names, tuple(changes.values()))
+            found += [X.derivative(each.residual) for each in self.motion.distribution.equations]
+        return list(map(self.motion.close, found))
+
+    def motion_defects(self) -> list[Element]:
+        """``[Gamma, X] + dX/dt``."""
+        setting, rates = self.motion.setting, tuple(self.motion.written_rates.values())
+        whole = VectorField(self.field, setting.state, rates)
+        return [
+            part + explicit(setting, own)
+            for X in self.generators
+            for part, own in zip(lie_derivative(whole, X).components, X.components, strict=True)
+        ]
+
+
+def about_constrained_symmetries(motion: ConstrainedRates) -> Iterator[Examined]:
+    """Claims about the declared symmetries, and the laws of their momenta."""
+    energy = motion.equations.exact.energy
+    values = momentum_maps(motion.setting, energy)
+    for symmetry in motion.spec.symmetries:
+        action = ConstrainedAction(motion, symmetry)
+        examined = [*_about_action(motion, action), *_about_momenta(motion, action, values)]
+        yield from mark_accepted(motion.spec, ("symmetries", symmetry.name), examined, motion.field)
+
+
+def _about_action(motion: ConstrainedRates, action: ConstrainedAction) -> Iterator[Examined]:
+    """That it is an action, and what it keeps."""
+    symmetry = action.symmetry
+    name, side = symmetry.name, symmetry.side
+    moved = f"the flow of {name}"
+    claims = {
+        f"the generators of {name} act as {symmetry.algebra.name} from the {side}": (
+            action.action_defects
+        ),
+        f"{moved} keeps the constraints": action.constraint_defects,
+        f"{moved} takes motions to motions{motion.at_all_times}": action.motion_defects,
+    }
+    if not (action.sections or motion.kept):  # whatever the state is, these hold
+        del claims[f"{moved} keeps the constraints"]
+    for statement, defects in claims.items():
+        yield statement, "symmetry", partial(_decide, motion, defects)
+
+
+def _decide(motion: ConstrainedRates, defects: Callable[[], Sequence[Element]]) -> Decision:
+    """Whether defects vanish where the constraints hold."""
+    return decide_zero(defects(), motion.field, motion.where)
+
+
+def _about_momenta(
+    motion: ConstrainedRates, action: ConstrainedAction, values: dict[str, tuple[Element, ...]]
+) -> Iterator[Examined]:
+    """The momentum equation of each component, or whether a declared function is conserved."""
+    symmetry = action.symmetry
+    parts = zip(symmetry.components, values[symmetry.name], strict=True)
+    for n, (name, value) in enumerate(parts):
+        held = while_constant(motion.equations, [value])
+        if action.sections:
+            law = law_along(motion.equations, action.sections[n])
+            text = f"{_write_law(motion, name, law)}{held}"
+            yield text, "momentum", partial(_changes, motion, value, law)
+            continue
+        yield finding(
+            "momentum",
+            decide_zero([motion.rate(value)], motion.field, motion.where),
+            f"{name} is conserved{held}",
+            f"{name} is not conserved",
+        )
+
+
+def _write_law(motion: ConstrainedRates, name: str, law: Element) -> str:
+    """The momentum equation, its right side written out where that is short."""
+    if motion.where.contains(motion.in_state(law)):
+        return f"{name} is conserved, by its momentum equation"
+    text = element_text(motion.field, motion.field.normal(motion.equations.close(law)).combine())
+    if len(text) > SHOWN:
+        text = "Sigma l + <dl/dxi, [xi, Sigma]> + <lambda, A Sigma>"
+        text += " + <f, Sigma>" * motion.spec.is_forced
+    return f"d{name}/dt = {text}"
+
+
+def _changes(motion: ConstrainedRates, value: Element, law: Element) -> Decision:
+    """The rate of a momentum minus its law."""
+    rest = motion.rate(value) - motion.in_state(law)
+    return decide_zero([rest], motion.field, motion.where)
