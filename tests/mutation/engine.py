@@ -224,7 +224,7 @@ MUTANTS = (
     ),
     *of(
         "casimirs",
-        "independent: rewrite independent_rows(_1, slopes) -> range(len(slopes))",
+        "select_independent: rewrite independent_rows(_1, slopes) -> range(len(slopes))",
         "search_summands: rewrite len(given) >= expected -> given",
     ),
     *of("summands", "summands: leave reached", "restrict_algebra: then a"),
