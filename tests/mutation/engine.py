@@ -152,7 +152,7 @@ MUTANTS = (
     ),
     *of(
         "dense",
-        "determinant: omit 1 j",
+        "_expand: omit 1 j",
         "inverse: omit 1 i j",
         "subtract: use add for sub",
         "hat: flip a3",
@@ -391,6 +391,12 @@ MUTANTS = (
         "_section_defects: flip name",
         "on_section: let return = restriction.setting.field.zero",
     ),
+    *of(
+        "packed",
+        "_add: rewrite (prime - entry) * other -> entry * other",
+        "nullspace: rewrite prime - share -> share",
+    ),
+    *of("rationals", "_replace_in: rewrite values[n] ** e -> values[n]"),
     *of("linear", "nullspace_modulo: use equations[1:] for equations in SpanModulo"),
     *of("ansatz", "solve_with_right_side: deny last"),
     *of(

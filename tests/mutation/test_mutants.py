@@ -49,6 +49,7 @@ JUDGES = {
     "src/coadjoint/exact/ranks": ("tests/exact/test_ranks.py",),
     "src/coadjoint/exact/dense": ("tests/exact/test_dense.py",),
     "src/coadjoint/exact/linear": ("tests/exact/test_linear.py",),
+    "src/coadjoint/exact/packed": ("tests/exact/test_packed.py",),
     "src/coadjoint/exact/ansatz": ("tests/exact/test_ansatz.py",),
     "src/coadjoint/poisson/casimirs": (
         "tests/poisson/test_casimirs.py",

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property, wraps
 from random import Random
 from types import MappingProxyType
-from typing import TypeVar, cast
+from typing import Any, Protocol, TypeVar, cast
 
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
@@ -52,7 +52,7 @@ class Setting:
     spec: Spec
     field: Field
     values: Mapping[str, Value]
-    built: dict[Callable[[Setting], object], object] = attribute(
+    built: dict[Any, object] = attribute(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
@@ -267,8 +267,21 @@ def list_components(quantities: Iterable[Declared]) -> tuple[str, ...]:
     return tuple(name for each in quantities for name in each.components)
 
 
-def once(build: Callable[[Setting], Built]) -> Callable[[Setting], Built]:
+class Owner(Protocol):
+    """What remembers values that functions have built of it."""
+
+    @property
+    def built(self) -> dict[Any, object]:
+        """The values, by the functions."""
+
+
+Shared = TypeVar("Shared", bound=Owner)
+
+
+def once(build: Callable[[Shared], Built]) -> Callable[[Shared], Built]:
     """Let a function of a Setting alone build its value once; all routes of the Setting share it.
+
+    So it is with a function of anything else that remembers what was built, as a motion does.
 
     >>> from coadjoint.spec import read_spec
     >>> from coadjoint.resources import derivations_folder
@@ -279,10 +292,10 @@ def once(build: Callable[[Setting], Built]) -> Callable[[Setting], Built]:
     """
 
     @wraps(build)
-    def look_up(setting: Setting) -> Built:
-        if build not in setting.built:
-            setting.built[build] = build(setting)
-        return cast(Built, setting.built[build])
+    def look_up(owner: Shared) -> Built:
+        if build not in owner.built:
+            owner.built[build] = build(owner)
+        return cast(Built, owner.built[build])
 
     return look_up
 

@@ -21,7 +21,6 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import islice
 
 import mpmath
@@ -29,7 +28,6 @@ import mpmath
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.linear import SpanModulo, primes, rank_modulo
-from coadjoint.exact.residues import Residue, residue
 from coadjoint.exact.witness import TRIES as REAL_POINTS
 from coadjoint.exact.witness import (
     UNDEFINED,
@@ -152,12 +150,19 @@ def _sample(
     """
     source = random.Random(1)  # noqa: S311 (not for secrets)
     for prime in islice(primes(), TRIES):
-        point = {name: Residue(source.randrange(1, prime), prime) for name in field.names}
-        value = partial(
-            field.evaluate, values=point, number=partial(residue, prime=prime), factors={}
-        )
+        point = {name: source.randrange(1, prime) for name in field.names}
         with suppress(ZeroDivisionError):
-            yield prime, [{j: value(e).value for j, e in row.items()} for row in rows]
+            yield prime, _take_modulo(field, rows, point, prime)
+
+
+def _take_modulo(
+    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, int], prime: int
+) -> list[dict[int, int]]:
+    """The matrix at a point."""
+    known = dict[int, int]()
+    return [
+        {j: field.evaluate_modulo(e, point, prime, known) for j, e in row.items()} for row in rows
+    ]
 
 
 # -- at real points -------------------------------------------------------------------------------

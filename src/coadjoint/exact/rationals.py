@@ -23,6 +23,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, Factors, Quotient
 from coadjoint.exact.factors import to_fraction
+from coadjoint.exact.residues import residue
 
 Value = TypeVar("Value")
 
@@ -73,6 +74,8 @@ class Rationals:
         self.zero = self.from_polynomial(self._ring.zero)
         self.one = self.from_polynomial(self._ring.one)
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
+        self._occurring: dict[PolyElement, frozenset[str]] = {}
+        self._residues: dict[int, dict[PolyElement, list[tuple[int, list[str]]]]] = {}
 
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]
@@ -140,13 +143,19 @@ class Rationals:
 
     def names_in(self, element: Element) -> frozenset[str]:
         """Names of the generators that occur in an element."""
-        return frozenset(
-            name
-            for quotient in element.parts
-            for part in (quotient.numer, *map(self._factors.known.__getitem__, quotient.powers))
-            for monomial in self._written(part)
-            for name, _ in monomial.powers
-        )
+        found = frozenset[str]()
+        for quotient in element.parts:
+            found |= self._names_of(quotient.numer)
+            for factor in quotient.powers:
+                found |= self._names_of(self._factors.known[factor])
+        return found
+
+    def _names_of(self, p: PolyElement) -> frozenset[str]:
+        """The same of a polynomial, remembered."""
+        if p not in self._occurring:
+            pairs = zip(self.generators, p.degrees(), strict=True)
+            self._occurring[p] = frozenset(name for name, degree in pairs if degree > 0)
+        return self._occurring[p]
 
     def _quotient(
         self,
@@ -189,6 +198,85 @@ class Rationals:
                 for exponents, coefficient in p.terms()
             )
         return self._remembered[p]
+
+    def _replace(self, element: Element, values: Mapping[str, Element]) -> Element:
+        """An element with generators replaced; the others stay together, as they are."""
+        places = {self._position[name]: value for name, value in values.items()}
+        factors = dict[int, Element]()
+        parts = list[Element]()
+        for quotient in element.parts:
+            top = self._replace_in(quotient.numer, places)
+            for n in quotient.powers:
+                if n not in factors:
+                    factors[n] = self._replace_in(self._factors.known[n], places)
+            below = [factors[n] for n, e in quotient.powers.items() for _ in range(e)]
+            parts.append(top / reduce(mul, below) if below else top)
+        return self.sum(parts)
+
+    def _replace_in(self, p: PolyElement, values: Mapping[int, Element]) -> Element:
+        """A polynomial with generators replaced, by their places."""
+        self._factors.spend(len(p))
+        groups: dict[tuple[tuple[int, int], ...], dict[tuple[int, ...], Any]] = {}
+        for exponents, number in p.terms():
+            moved = tuple((n, exponents[n]) for n in values if exponents[n])
+            rest = list(exponents)
+            for n, _ in moved:
+                rest[n] = 0
+            groups.setdefault(moved, {})[tuple(rest)] = number
+        return self.sum(
+            reduce(
+                mul,
+                (values[n] ** e for n, e in moved),
+                self.from_polynomial(self._ring.from_dict(g)),
+            )
+            for moved, g in groups.items()
+        )
+
+    # -- values modulo a prime ----------------------------------------------------------
+
+    def evaluate_modulo(
+        self, element: Element, values: Mapping[str, int], prime: int, inverses: dict[int, int]
+    ) -> int:
+        """The value of an element modulo a prime, where each generator has a value given.
+
+        Args:
+            element: What to evaluate.
+            values: Residues of the generators that occur.
+            prime: The prime.
+            inverses: Remembers what stands below a bar, for many elements at the same values.
+
+        Raises:
+            ZeroDivisionError: What stands below a bar is zero there.
+        """
+        result = 0
+        for quotient in element.parts:
+            top = self._modulo(quotient.numer, values, prime)
+            for factor, exponent in quotient.powers.items():
+                if factor not in inverses:
+                    below = self._modulo(self._factors.known[factor], values, prime)
+                    if not below:
+                        raise ZeroDivisionError(f"division by zero modulo {prime}")
+                    inverses[factor] = pow(below, -1, prime)
+                for _ in range(exponent):
+                    top = top * inverses[factor] % prime
+            result += top
+        return result % prime
+
+    def _modulo(self, p: PolyElement, values: Mapping[str, int], prime: int) -> int:
+        """The value of a polynomial; its terms modulo the prime are remembered."""
+        self._factors.spend(len(p))
+        known = self._residues.setdefault(prime, {})
+        if p not in known:
+            known[p] = [
+                (residue(each.number, prime).value, [x for x, e in each.powers for _ in range(e)])
+                for each in self._written(p)
+            ]
+        result = 0
+        for value, factors in known[p]:
+            for name in factors:
+                value = value * values[name] % prime
+            result += value
+        return result % prime
 
     # -- parts, for signs and relations -------------------------------------------------
 

@@ -74,7 +74,7 @@ def about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 
 def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
-    """That a motion in variables of its own is the same motion, and where."""
+    """That a motion in other variables is the same motion, and where."""
     assert other.chart is not None
     chart_map = ChartMap(first, other)
     relations = ", ".join(relation.text for relation in other.chart.relations)
