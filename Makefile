@@ -33,10 +33,10 @@ check: setup  ## lint, types, specs, and generated files against a fresh run
 	$(BIN)/python -P -m pytest -q $(DRIFT)
 
 test: setup  ## run the tests, long campaigns left out
-	$(BIN)/python -P -m pytest -q -n $(JOBS) -m "not campaign" $(ONCE)
+	$(BIN)/python -P -m pytest -q -n $(JOBS) --dist worksteal -m "not campaign" $(ONCE)
 
 test-all: setup  ## run all tests
-	$(BIN)/python -P -m pytest -q -n $(JOBS) $(ONCE)
+	$(BIN)/python -P -m pytest -q -n $(JOBS) --dist worksteal $(ONCE)
 
 bench: setup  ## measure every figure; a peer that is not installed is a line that says so
 	$(BIN)/python benchmarks/run.py

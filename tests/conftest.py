@@ -11,9 +11,11 @@ from pathlib import Path
 import pytest
 
 from coadjoint.resources import derivations_folder
+from tests import specs
 
 # A run in the background ignores Ctrl-C, and its children would, too: tests send it to them.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 SYSTEMS = tuple(sorted(path.stem for path in Path(derivations_folder()).glob("*.toml")))
 
@@ -39,6 +41,16 @@ def rational_points(names, count, seed=0):
 #: Seconds of processor time that one test may take in its own process. Children have limits of
 #: their own; time by the clock decides nothing, since the machine may be busy with other work.
 PROCESSOR_SECONDS = 300
+
+
+def pytest_configure(config):
+    """Where campaigns are run, proofs of claims are whole certificates."""
+    specs.SEARCH_EVERYWHERE = "not campaign" not in config.option.markexpr
+
+
+def pytest_collection_modifyitems(items):
+    """The longest test comes first: it works in processes of its own, and fills a cache."""
+    items.sort(key=lambda item: item.name != "test_the_checked_in_tree_is_current")
 
 
 @pytest.hookimpl(wrapper=True)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from coadjoint import pipeline
 from coadjoint.pipeline import Rendered
 from coadjoint.solve.system import System, load_folder
-from tests.specs import spec
+from tests.specs import render_claims, spec
 
 #: A pendulum whose pivot moves up and down by a cos(w t), driven by a torque u.
 PENDULUM = """
@@ -149,7 +148,7 @@ x = { mass = "m", force = "f + k[1]*v*k[2]" }
 
 def rendered(text: str, *changes: tuple[str, str], name: str = "sample") -> Rendered:
     """A driven system as text, proved."""
-    return pipeline.render(spec(text, *changes, name=name))
+    return render_claims(spec(text, *changes, name=name))
 
 
 def build(texts: Mapping[str, str], folder: Path) -> System:

@@ -1,11 +1,28 @@
-"""Small specs for tests, as text, and the shipped ones by name."""
+"""Small specs for tests, as text, and the shipped ones by name, with what follows from them.
+
+What follows from a shipped spec is made once in a process, for all tests that ask for it. A test
+that changes the engine derives for itself.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.derive import Equations, Setting, derive, make_setting
+from coadjoint.lower.lowering import lower
+from coadjoint.lower.program import Program
+from coadjoint.prove import Certificate, claims, prove
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import Spec, read_spec, read_spec_text
+
+#: Whether `prove_claims` searches all the same: in campaigns, as `tests.conftest` sets it.
+SEARCH_EVERYWHERE = False
 
 RIGID_BODY = """
 title = "Free rigid body"
@@ -29,9 +46,62 @@ casimirs = ["dot(Pi, Pi)"]
 """
 
 
+@cache
 def shipped(name: str) -> Spec:
     """A spec of the shipped folder."""
     return read_spec(Path(derivations_folder()) / f"{name}.toml")
+
+
+@cache
+def _setting(name: str) -> Setting:
+    return make_setting(shipped(name))
+
+
+@cache
+def _equations(name: str, route: str) -> Equations:
+    return derive(shipped(name), route, setting=_setting(name))
+
+
+def emitted(name: str, route: str = "") -> Equations:
+    """The equations of a shipped system by a route, the first unless one is named."""
+    return _equations(name, route or shipped(name).routes[0])
+
+
+def derived(name: str) -> dict[str, Equations]:
+    """The equations of a shipped system by every route, the emitted one first, in one field."""
+    return {route: emitted(name, route) for route in shipped(name).routes}
+
+
+@cache
+def lowered(name: str) -> dict[str, Program]:
+    """The programs of a shipped system."""
+    return lower(emitted(name))
+
+
+@contextmanager
+def without_searches() -> Iterator[None]:
+    """Within it proofs look for no integrals and measures, which takes longer than all else.
+
+    These searches have tests of their own, and `make test-all` searches everywhere.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        if not SEARCH_EVERYWHERE:
+            parts = claims.EXAMINATIONS
+            kept = tuple(part for part in parts if part.kind not in ("integrals", "measure"))
+            patch.setattr(claims, "EXAMINATIONS", kept)
+        yield
+
+
+def prove_claims(declared: Spec, routes: Sequence[Equations] = ()) -> Certificate:
+    """The certificate of a spec, for tests that ask neither for integrals nor for measures."""
+    with without_searches():
+        return prove(declared, routes)
+
+
+def render_claims(declared: Spec) -> pipeline.Rendered:
+    """The files of a spec, for tests that ask for its kernels."""
+    with without_searches():
+        return pipeline.render(declared)
 
 
 def spec(text: str = RIGID_BODY, *changes: tuple[str, str], name: str = "sample") -> Spec:

@@ -150,6 +150,15 @@ def test_the_claim_that_is_said_to_fail_fails(folder):
     assert "L*Pi[1] is a Casimir" in result.stderr
 
 
+def test_the_bracket_that_is_said_to_be_refused_is_refused(folder):
+    """`[e1, e2] = e3 + e1` violates the Jacobi identity, and the message names the generators."""
+    assert '`"[e1, e2]" = "e3 + e1"`' in PAGES["tutorial"]
+    spec = folder / "gyrostat.toml"
+    spec.write_text(spec.read_text().replace('"[e1, e2]" = "e3"', '"[e1, e2]" = "e3 + e1"'))
+    with pytest.raises(coadjoint.CoadjointError, match=r"Jacobi identity: \[e1, \[e2, e3\]\]"):
+        coadjoint.read_spec(spec)
+
+
 def test_the_message_that_is_shown_is_the_one_that_comes(folder):
     """The mistake on the page of commands gives its message."""
     (message,) = blocks("text", PAGES["commands"])

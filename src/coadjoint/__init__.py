@@ -8,7 +8,7 @@
 
 Importing this package, or a generated system, loads neither SymPy nor NumPy; each public name below
 loads what it needs on first use. `load` and the names that end in ``_bounded`` limit the time and
-memory that a spec may take, for specs of strangers; `read_spec`, `derive` and `prove` do not. To
+memory that a spec may take, for untrusted specs; `read_spec`, `derive` and `prove` do not. To
 read the engine, begin with `coadjoint.pipeline`.
 """
 

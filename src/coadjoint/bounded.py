@@ -1,4 +1,4 @@
-"""Bounded forms: read, derive and prove a stranger's spec without trust in what it costs.
+"""Bounded forms: read, derive and prove an untrusted spec within limits of time and memory.
 
 Comes in: the path of a spec. Goes out: plain JSON values, from a child process whose processor time
 and memory are limited; `coadjoint.read_spec`, `coadjoint.derive` and `coadjoint.prove` do the same
@@ -114,7 +114,7 @@ def read_all_bounded(
 ) -> list[dict[str, Any] | CoadjointError]:
     """What each of many specs declares, or the error of reading it, in the order of the paths.
 
-    One child reads them all. Where it is lost, the spec that it was reading is to blame; those
+    One child reads them all. Where it is lost, the spec that it was reading is the cause; those
     before are read again, and another child goes on behind it, so that one hostile spec keeps
     nobody from the others.
 

@@ -141,7 +141,7 @@ def _rows(line: str) -> list[str]:
     return [line[n : n + _COLUMNS] for n in range(0, max(1, len(line) - 1), _COLUMNS)]
 
 
-#: What the operating system refuses for reasons that are no fault of ours, and what helps.
+#: What the operating system refuses for reasons outside coadjoint, and what helps.
 _REFUSALS: Final = {
     errno.ENOSPC: "Free some space.",
     errno.EDQUOT: "Free some space of your quota.",

@@ -24,7 +24,7 @@ def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
     """The bytes of a regular file; links are not followed, and nothing is waited for.
 
     Raises:
-        OSError: It cannot be read, is no regular file, or has more than ``most`` bytes.
+        OSError: It cannot be read, is not a regular file, or has more than ``most`` bytes.
     """
     handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(handle, "rb") as file:
@@ -57,7 +57,7 @@ def read_present(path: Path) -> bytes:
 
 
 def read_object(path: Path) -> dict[str, Any]:
-    """The JSON object in a file; an empty one if there is none that can be read."""
+    """The JSON object in a file; an empty one if none can be read."""
     with suppress(OSError):
         return parse_object(read_regular(path))
     return {}

@@ -87,8 +87,8 @@ C_STATEMENTS = 1000
 
 #: Seconds of processor time that the derivation of one system may take, unless more are asked for.
 WORKER_SECONDS = 60
-#: Times as long that it may take by the clock: a machine that is busy with twenty tasks is no fault
-#: of a spec, and what waits for ever is ended.
+#: Times as long that it may take by the clock: a machine that is busy with twenty tasks does not
+#: count against a spec, and a program that hangs is ended.
 WALL_FACTOR = 20
 #: Bytes of memory that the derivation of one system may take.
 WORKER_BYTES = 2 * 1024**3

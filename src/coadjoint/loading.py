@@ -1,4 +1,4 @@
-"""Load: a spec of one's own becomes a System, derived, proved, compiled and kept in the cache.
+"""Load: a user's spec becomes a System, derived, proved, compiled and kept in the cache.
 
 Comes in: the path of a spec. Goes out: the same kind of object as a shipped system. The work is
 that of `coadjoint regenerate`, into a private folder of the cache; an unchanged spec loads at once

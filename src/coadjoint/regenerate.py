@@ -26,7 +26,7 @@ from coadjoint.errors import CoadjointError, DriftError, OutputError, SpecError
 from coadjoint.files import read_object, read_regular
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
-from coadjoint.render.ownership import PACKAGE, leftovers, make_plan, read_manifest
+from coadjoint.render.ownership import PACKAGE, list_leftovers, make_plan, read_manifest
 from coadjoint.render.write import (
     SYSTEM_FILES,
     GeneratedSystem,
@@ -76,7 +76,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one run.
+    """The result of one run.
 
     Attributes:
         rows: Systems that passed, in the order of the specs.
@@ -265,11 +265,11 @@ def _refuse_early(output: Path, pending: Sequence[_Source], keep: set[str] | Non
 
 
 def _is_current(output: Path, names: set[str] | None) -> bool:
-    """Whether the manifest speaks of these systems and of the templates as they are."""
+    """Whether the manifest lists these systems and the present templates."""
     manifest = read_manifest(output)
     if any(not _has_text(output / file, text) for file, text in PACKAGE.items()):
         return False
-    if any(leftovers(output)):
+    if any(list_leftovers(output)):
         return False
     same = names is None or manifest["systems"].keys() == names
     return bool(same and manifest["templates"] == template_hashes())
@@ -291,7 +291,7 @@ def _unchanged_row(source: _Source, output: Path) -> Row | None:
     entry = read_manifest(output)["systems"].get(source.name)
     row: Any = kept.get("row")
     if not _is_row(row) or entry is None or kept.get("entry") != entry:
-        return None  # a damaged stamp is no stamp
+        return None  # nor does a damaged stamp count
     if not is_intact(output, source.name):
         return None
     return _row({**row, "seconds": 0.0, "fresh": False})

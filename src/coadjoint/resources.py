@@ -68,7 +68,7 @@ def systems_folder() -> Path:
 
 
 def _folder(installed: str, checkout: str) -> Path:
-    """The folder inside the installed package, or else beside ``src`` in a checkout."""
+    """The folder inside the installed package, or else next to ``src`` in a checkout."""
     package = Path(__file__).resolve().parent
     inside = package / installed
     return inside if inside.is_dir() else package.parents[1] / checkout

@@ -2,7 +2,7 @@
 
 Comes in: the name of a function and a JSON value. Goes out: its JSON result, or the error that it
 raised, as in this process. Processor time and memory are limited, since no static limit on a spec
-keeps every computation short; time by the clock only so far that nothing waits for ever. A child
+keeps every computation short; time by the clock only so that nothing waits without end. A child
 dies with its parent, and with a child dies what it started.
 """
 
@@ -176,7 +176,7 @@ def _start() -> tuple[IO[bytes], subprocess.Popen[str]]:
 
 
 def _bytecode() -> list[str]:
-    """Options of Python: under a limit of file sizes it would leave its bytecode torn for ever."""
+    """Options of Python: under a limit of file sizes it would leave torn bytecode."""
     return [] if resource.getrlimit(resource.RLIMIT_FSIZE)[0] == resource.RLIM_INFINITY else ["-B"]
 
 
@@ -281,13 +281,9 @@ class _Task:
             message, limit = self._out_of_patience(), self.wall
         else:
             message, limit = self._explain_end(status, errors), self.memory
+        message = f"{self.subject}: {message}"
         return ResourceError(
-            f"{self.subject}: {message}",
-            limit=limit,
-            task=self.subject,
-            stage=self.stage,
-            used=self.used,
-            status=status,
+            message, limit=limit, task=self.subject, stage=self.stage, used=self.used, status=status
         )
 
     @property
@@ -313,7 +309,7 @@ class _Task:
         )
 
     def _explain_end(self, status: int, errors: bytes) -> str:
-        """A signal or an exit that nobody here has asked for."""
+        """A signal or an exit that was not requested here."""
         end = signal.Signals(-status).name if status < 0 else f"exit status {status}"
         tail = errors.decode(errors="replace").strip()[-400:]
         return (
@@ -352,7 +348,7 @@ def child() -> None:
 
 
 def _describe(error: Exception, request: dict[str, Any]) -> CoadjointError:
-    """An exception that is none of ours, as one; called where it is handled."""
+    """An exception of another library as one of this package; called where it is handled."""
     if _is_want_of_memory(error):
         memory: int = request["memory"]
         message = f"more than {memory // 2**20} MiB of memory were needed. Simplify the spec."

@@ -5,6 +5,8 @@ from fractions import Fraction
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
+from coadjoint.exact import Field
+from coadjoint.poisson import lie_poisson
 
 
 def vector(n, seed):
@@ -17,6 +19,14 @@ def vector(n, seed):
 def pairing(mu, xi):
     """``<mu, xi>`` in dual bases."""
     return sum(m * x for m, x in zip(mu, xi, strict=True))
+
+
+def lie_poisson_tensor(algebra, mu, sign=-1, number=Fraction):
+    """The entries of the Lie-Poisson tensor at a point."""
+    field = Field(algebra.basis)
+    values = dict(zip(algebra.basis, mu, strict=True))
+    tensor = lie_poisson(algebra, field, algebra.basis, sign).tensor
+    return [[field.evaluate(entry, values, number) for entry in row] for row in tensor]
 
 
 def every_constant(algebra):

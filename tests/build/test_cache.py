@@ -87,7 +87,7 @@ def test_what_no_run_made_is_never_removed(folder, name, is_link):
     with pytest.raises(OutputError, match=f"no run of coadjoint made '{name}', which stands in it"):
         check_private(folder)
     if name in ("kernels", "work"):
-        cache._usable.cache_clear()
+        cache._make_usable.cache_clear()
         with pytest.raises(OSError, match=name):
             cache.replace_file(folder / "kernels" / "key", b"content")
     place = folder / name
@@ -213,13 +213,13 @@ def test_without_a_home_the_cache_is_temporary(monkeypatch, tmp_path):
     for name in ("COADJOINT_CACHE", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(Path, "home", unknown)
-    cache._usable.cache_clear()
+    cache._make_usable.cache_clear()
     with pytest.warns(
         CacheWarning, match="no home folder is set, so there is no place for the cache. Set HOME"
     ):
         found = cache_folder()
     shutil.rmtree(found)
-    cache._usable.cache_clear()
+    cache._make_usable.cache_clear()
 
 
 NOWHERE = """

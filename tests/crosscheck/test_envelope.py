@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.crosscheck.ladder import crosscheck
 from coadjoint.crosscheck.oracle import error_in_envelopes, oracle
 from coadjoint.crosscheck.subject import depth
 from coadjoint.derive.reference import Reference
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import read_spec
+from tests.specs import render_claims
 
 SPEC = """
 title   = "Two vortices"
@@ -46,7 +46,7 @@ def rendered(folder, energy):
     """A system of the family, not compiled."""
     path = folder / "vortices.toml"
     path.write_text(SPEC.format(energy=energy))
-    return pipeline.render(read_spec(path))
+    return render_claims(read_spec(path))
 
 
 def loaded(folder, found):

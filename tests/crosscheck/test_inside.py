@@ -50,7 +50,7 @@ def test_points_inside_have_values():
     assert found.shape[1] > 0
     assert ((found[0] > 777) & (found[0] < 778)).all()
     assert np.isnan(found[1:]).all()
-    batch = Points(3, (), 5).around(found, 1, 1001)
+    batch = Points(3, (), 5).draw_around(found, 1, 1001)
     assert np.isfinite(batch.state).all()
     share = ((batch.state[0] > 777) & (batch.state[0] < 778)).mean()
     assert 0.2 < share < 1  # from a millionth of 777 on, and beyond the window

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coadjoint.crosscheck import bits, compare, ladder
-from coadjoint.crosscheck.bits import differing, equal_bits
+from coadjoint.crosscheck.bits import equal_bits, find_differing_bits
 from coadjoint.crosscheck.compare import ExactPoints, against_oracle, exact_points
 from coadjoint.crosscheck.ladder import crosscheck
 from coadjoint.crosscheck.subject import Subject
@@ -249,7 +249,7 @@ def test_python_is_nan_exactly_where_it_has_no_value(value, expected, tmp_path):
     each = program("rhs", "q p", "k", "", value, (1,))
     context = replace(PENDULUM, programs=(each,))
     good = subject(tmp_path, context, reference=ProgramReference([each]))
-    batch = good.points.special(1, 400)
+    batch = good.points.draw_special(1, 400)
     goes_on = bits._has_numbers(good, "rhs", batch)
     found = good.evaluate("rhs", batch, "python")
     assert np.isnan(found[:, ~goes_on]).all()
@@ -372,7 +372,7 @@ def test_nan_and_signed_zero_are_compared_correctly():
     """NaN equals NaN whatever its sign, 0 is not -0, and nothing else is forgiven."""
     one = np.array([np.nan, 0.0, 1.0, np.inf, 1.0])
     other = np.array([-np.nan, -0.0, 1.0, np.inf, np.nextafter(1.0, 2.0)])
-    assert differing(one, other).tolist() == [False, True, False, False, True]
+    assert find_differing_bits(one, other).tolist() == [False, True, False, False, True]
 
 
 def test_a_system_without_values_is_an_error(tmp_path):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coadjoint.crosscheck.points import ODD_SIZES, Points, cancelling, safe_exponent
+from coadjoint.crosscheck.points import ODD_SIZES, Points, move_to_cancellation, safe_exponent
 from tests.programs import HEAVY_TOP, PENDULUM, program
 
 POINTS = Points(states=6, positive=(True,) * 4 + (False,) * 4, exponent=225)
@@ -21,7 +21,7 @@ def test_points_are_the_same_in_every_run():
 
 
 @pytest.mark.parametrize(
-    "batch", [*FAMILIES.values(), POINTS.special(0, 2000)], ids=[*FAMILIES, "special"]
+    "batch", [*FAMILIES.values(), POINTS.draw_special(0, 2000)], ids=[*FAMILIES, "special"]
 )
 def test_positive_parameters_are_positive(batch):
     """What a spec declares positive is positive in every family, NaN included; the rest is not."""
@@ -48,7 +48,7 @@ def test_point_families_match_their_names():
 
 def test_special_points_contain_every_special_value():
     """Infinities, NaN, subnormals and both zeros occur."""
-    values = POINTS.special(0, 2000).state
+    values = POINTS.draw_special(0, 2000).state
     assert np.isnan(values).any()
     assert np.isposinf(values).any()
     assert np.isneginf(values).any()
@@ -69,7 +69,7 @@ def test_cancelling_moves_outputs_near_zero():
         state = batch.state
         return np.stack([state[0] * state[1] - state[2] * state[3] + state[4] - state[5]])
 
-    moved = cancelling(cross, start, seed=4)
+    moved = move_to_cancellation(cross, start, seed=4)
     terms = np.abs(moved.state).max(axis=0) ** 2 + np.abs(moved.state).max(axis=0)
     small = np.abs(cross(moved)[0]) / terms
     assert np.median(small) < 1e-10
@@ -91,6 +91,6 @@ def test_magnitudes_keep_products_in_range():
 
 def test_shared_parameters_are_those_of_the_first_member():
     """A shared batch has one set of parameters, contiguous."""
-    shared = FAMILIES["random"].with_shared_parameters()
+    shared = FAMILIES["random"].share("parameters")
     assert shared.parameters.shape == (8,)
     assert shared.parameters.tolist() == FAMILIES["random"].parameters[:, 0].tolist()

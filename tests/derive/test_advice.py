@@ -261,7 +261,6 @@ ELSEWHERE = {
     "Write it in simpler functions": "where no normal form decides whether something is zero",
     "Write the kinetic energy in simpler functions": "the same",
     "Add it to routes to have it proved too.": "above",
-    "Declare a Hamiltonian, or remove the chart.": "test_declared_charts.py",
     "Write constraints as Y == ..., which gives velocities.": "test_nonholonomic.py",
     "Write what presses as a scalar constraint of its own": "test_friction.py",
     "Remove ": "above, and test_friction.py",

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from coadjoint.derive.mechanics.constrained import ConstrainedMotion
+from coadjoint.derive.mechanics.constrained import start_motion
 from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.derive.mechanics.solver import Solve, solution_defects, solve_in_kernel, solver_names
 from coadjoint.exact import Field
@@ -82,7 +82,7 @@ def test_kept_constraints_are_differentiated():
     """X u + y v = 0 gives x du/dt + y dv/dt = -(u^2 + v^2), beside M, in a symmetric matrix."""
     equations = derived(PENDULUM)["nonholonomic"]
     f = equations.setting.field
-    motion = ConstrainedMotion(equations.distribution)
+    motion = start_motion(equations.setting)
     assert motion.of_kept() == (((f["x"], f["y"]),), (-(f["u"] ** 2) - f["v"] ** 2,))
     (solve,) = equations.exact.solves
     assert solve.matrix == (

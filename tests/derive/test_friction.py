@@ -10,11 +10,11 @@ from coadjoint.derive.mechanics.parts import part_names
 from coadjoint.errors import DerivationError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.energy import Balance
 from tests.constrained import BALL, PENDULUM, ROD, derived
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 #: A point of the rod where the roots are rational: cos = 4/5, sin = 3/5, slip 3, eps 4.
 AT = {
@@ -77,7 +77,7 @@ def test_where_the_floor_jams_the_rod_its_pivot_is_not_positive():
 
 def test_all_of_the_rod_is_proved():
     """Both routes agree, energy changes by the power of friction, and no claim is numerical."""
-    certificate = prove(spec(ROD))
+    certificate = prove_claims(spec(ROD))
     texts = {claim.statement: claim for claim in certificate.claims}
     assert all(claim.verdict is Verdict.PROVED for claim in certificate.claims)
     assert "nonholonomic and hamel give the same motion" in texts

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from coadjoint.derive import derive
+from coadjoint.derive.mechanics.constrained import start_motion
 from coadjoint.exact.roots import simplify_roots
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Call, Symbol, walk
@@ -104,3 +106,17 @@ def test_the_document_ends_with_brackets_and_what_is_reconstructed():
     }
     assert list(followed) == ["dtheta/dt", "dx/dt", "dy/dt"]
     assert followed["dtheta/dt"] == omega
+
+
+def test_routes_share_the_kinematics_and_not_what_each_adds():
+    """Kinematics is built once in a Setting, and a route gives after others what it gives alone."""
+    together = derived(BALL)
+    setting = together["hamel"].setting
+    first, second = start_motion(setting), start_motion(setting)
+    assert first.kinematics is second.kinematics
+    first.decided.define("_k1", setting.field.one)
+    assert second.decided.value(setting.field["_k1"]) == setting.field["_k1"]
+    for route in reversed(together):
+        alone = derive(together[route].spec, route)
+        assert alone.latex() == together[route].latex()
+        assert alone.steps != ()

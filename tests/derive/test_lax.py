@@ -9,10 +9,10 @@ from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.errors import DerivationError
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove import lax as examined
 from coadjoint.prove.zero import Discovery
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
 
 def text_of(name):
@@ -68,9 +68,9 @@ def test_manakov_refuses_what_is_no_such_body(changes, said):
 def test_manakov_takes_a_hamiltonian_and_the_right_invariant_motion():
     """The pair is found from ``h`` too, and turns the other way for a right-invariant motion."""
     text = text_of("so5_body").replace('"lie-poisson"', '"lie-poisson", "manakov"')
-    assert not prove(spec(text)).refuted
+    assert not prove_claims(spec(text)).refuted
     right = spec(text, ('invariance = "left"', 'invariance = "right"'))
-    assert not prove(right).refuted
+    assert not prove_claims(right).refuted
     assert find_pair(make_setting(right)).texts[1].startswith("-(Omega + lambda*diag(")
 
 
@@ -138,7 +138,7 @@ def test_matrices_move_advected_quantities_as_representations_do(representation,
         (KINETIC, f"{KINETIC} - ({potential})"),
         ('casimirs = ["dot(Pi, Pi)"]', ""),
     )
-    certificate = prove(declared)
+    certificate = prove_claims(declared)
     assert not certificate.refuted
     assert any(
         "matrix-euler-poincare give the same motion" in c.statement for c in certificate.claims
@@ -149,10 +149,10 @@ def test_long_integrals_are_conserved_by_the_trace_identity(monkeypatch):
     """The Lax equation is asked for then: a spoiled pair gives nothing."""
     monkeypatch.setattr(examined, "LONGEST", 5)
     declared = shipped("manakov_so4")
-    (claim,) = [c for c in prove(declared).claims if c.statement.startswith("integral1")]
+    (claim,) = [c for c in prove_claims(declared).claims if c.statement.startswith("integral1")]
     assert (claim.verdict, claim.method) == (Verdict.PROVED, examined.TRACE_IDENTITY)
     spoiled = spec(text_of("manakov_so4"), ('"Omega + lambda*diag(a)"', '"Omega - lambda*diag(a)"'))
-    (claim,) = [c for c in prove(spoiled).claims if c.statement.startswith("integral1")]
+    (claim,) = [c for c in prove_claims(spoiled).claims if c.statement.startswith("integral1")]
     assert claim.verdict is Verdict.REFUTED
 
 

@@ -7,9 +7,9 @@ import sympy
 from coadjoint import pipeline
 from coadjoint.derive import derive, integrals, pairs
 from coadjoint.errors import ClaimError, DerivationError, SpecError
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from tests.driven_specs import build
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 #: In Flaschka's variables, with ``dL/dt = [B, L]``, so that M = -B.
 TODA = """
@@ -89,7 +89,7 @@ def test_a_pair_alone_gives_the_motion_and_its_integrals(text, typed, count):
     for found, expected in zip(equations.rates, known, strict=True):
         assert sympy.simplify(found - expected) == 0
     assert list(equations.observables) == [f"integral{n + 1}" for n in range(count)]
-    certificate = prove(declared)
+    certificate = prove_claims(declared)
     assert certificate.holds
     assert {claim.verdict for claim in certificate.claims} == {Verdict.PROVED}
     assert sum(claim.statement.endswith("is conserved") for claim in certificate.claims) == count
@@ -120,7 +120,7 @@ def test_two_particles_move_as_a_hyperbolic_secant(tmp_path):
 
 def test_a_bracket_without_an_energy_proves_involution():
     """Its Casimir is claimed and no integral; the others commute."""
-    found = {c.statement: c.verdict for c in prove(spec(TODA, WITH_BRACKET)).claims}
+    found = {c.statement: c.verdict for c in prove_claims(spec(TODA, WITH_BRACKET)).claims}
     assert set(found.values()) == {Verdict.PROVED}
     assert "b1 + b2 + b3 is a Casimir" in found
     assert "integral1, integral2 are in involution" in found
@@ -130,7 +130,7 @@ def test_a_bracket_without_an_energy_proves_involution():
 def test_a_wrong_matrix_is_refuted_in_its_entry():
     """One sign of M: the equations contradict each other, and the entry is named."""
     wrong = ("vector(a1, 0, -a2)", "vector(a1, 0, a2)")
-    certificate = prove(spec(TODA, wrong))
+    certificate = prove_claims(spec(TODA, wrong))
     claim = certificate.claims[0]
     assert claim.verdict is Verdict.REFUTED
     assert "in the entry (1, 3) at lambda^0 of dL/dt - [L, M]" in claim.method
@@ -147,7 +147,7 @@ def test_spoiled_integrals_are_caught(monkeypatch):
         return [first, *(x + L[0][0] for x in others)]
 
     monkeypatch.setattr(integrals, "traces", spoiled)
-    found = prove(spec(TODA)).claims
+    found = prove_claims(spec(TODA)).claims
     refuted = {claim.statement for claim in found if claim.verdict is Verdict.REFUTED}
     assert any(statement.startswith("integral2") for statement in refuted)
 
@@ -160,7 +160,7 @@ def test_spoiled_rates_are_caught(monkeypatch):
         lambda *given: (-rates_of(*given)[0], *rates_of(*given)[1:]),
     )
     with pytest.raises(ClaimError, match=r"refuted: dL/dt = \[L, M\]"):
-        prove(spec(TODA)).require()
+        prove_claims(spec(TODA)).require()
 
 
 @pytest.mark.parametrize(
@@ -214,6 +214,6 @@ def test_the_advice_about_brackets_works():
         spec(OSCILLATOR)
     declared = '[poisson]\ncanonical = [["q", "p"]]\n[hamiltonian]'
     paired = (PAIRED, 'p = { role = "coordinate" }')
-    certificate = prove(spec(OSCILLATOR, paired, ("[hamiltonian]", declared)))
+    certificate = prove_claims(spec(OSCILLATOR, paired, ("[hamiltonian]", declared)))
     assert certificate.holds
     assert any(c.statement.startswith("canonical and lax") for c in certificate.claims)

@@ -8,8 +8,7 @@ from sympy.combinatorics import Permutation
 
 from coadjoint.derive import derive
 from coadjoint.derive.routes import nambu
-from coadjoint.prove import prove
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 FOUR = """
 title = "four coordinates"
@@ -96,7 +95,7 @@ def test_more_coordinates_have_a_determinant(route, changes):
 @pytest.mark.parametrize("changes", [(), FIVE], ids=["R^4", "R^5"])
 def test_routes_agree_beyond_three_coordinates(changes):
     """The motion and all n - 2 Casimirs are proved."""
-    certificate = prove(spec(FOUR, *changes))
+    certificate = prove_claims(spec(FOUR, *changes))
     assert certificate.holds, str(certificate)
     statements = [claim.statement for claim in certificate.claims]
     assert "nambu and poisson give the same motion" in statements
@@ -111,7 +110,7 @@ def test_a_reversed_cross_product_is_refuted(name, monkeypatch):
     monkeypatch.setattr(
         nambu, "generalised_cross_product", lambda rows: [-rate for rate in right(rows)]
     )
-    refuted = {claim.statement for claim in prove(shipped(name)).refuted}
+    refuted = {claim.statement for claim in prove_claims(shipped(name)).refuted}
     assert refuted == {
         "nambu and poisson give the same motion",
         "the motion by nambu is {x, h}",
@@ -122,7 +121,7 @@ def test_a_function_of_the_wrong_sign_runs_backwards():
     """With -c every law still holds, by both routes; only the rates tell."""
     text = shipped("nambu_body").path.read_text()
     wrong = spec(text, ('nambu = ["dot(x, x)/2"]', 'nambu = ["-dot(x, x)/2"]'))
-    assert prove(wrong).holds
+    assert prove_claims(wrong).holds
     for route in ("nambu", "poisson"):
         right = derive(shipped("nambu_body"), route).rates
         assert same(derive(wrong, route).rates, [-rate for rate in right])
@@ -133,8 +132,8 @@ def test_a_cylinder_of_the_wrong_sign_is_refuted():
     """1 + I3/I1 in the place of 1 - I3/I1: the rigid body's sphere is no longer conserved."""
     text = shipped("nambu_pendulum").path.read_text()
     claimed = text[: text.index("[claims]")] + '[claims]\nconserved = ["dot(x, x)"]\n'
-    assert prove(spec(claimed)).holds
-    refuted = prove(spec(claimed, ("(1 - I3/I1)*x1^2/2", "(1 + I3/I1)*x1^2/2"))).refuted
+    assert prove_claims(spec(claimed)).holds
+    refuted = prove_claims(spec(claimed, ("(1 - I3/I1)*x1^2/2", "(1 + I3/I1)*x1^2/2"))).refuted
     assert refuted[0].statement == "dot(x, x) is conserved"
 
 
@@ -148,5 +147,5 @@ def test_a_table_gives_the_same_body():
 @pytest.mark.parametrize("place", ['"{x1, x2}" = "-', '"{x2, x3}" = "-', '"{x3, x1}" = "-'])
 def test_one_wrong_sign_in_a_table_is_refuted(place):
     """Two minus signs and a plus are so(2,1): Jacobi holds, the sphere is no Casimir."""
-    (refuted,) = prove(spec(BODY, (place, place[:-1]))).refuted
+    (refuted,) = prove_claims(spec(BODY, (place, place[:-1]))).refuted
     assert refuted.statement == "dot(x, x) is a Casimir"

@@ -4,8 +4,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.prove import prove
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 PENDULUM = """
 title = "plane pendulum"
@@ -51,7 +50,7 @@ def test_the_pendulum_is_canonical():
     """dq/dt = p, dp/dt = -g sin q."""
     q, p, g = sympy.symbols("q p g")
     assert by_name(derive(spec(PENDULUM))) == {"q": p, "p": -g * sympy.sin(q)}
-    assert prove(spec(PENDULUM)).holds
+    assert prove_claims(spec(PENDULUM)).holds
 
 
 def test_exchanged_roles_are_exchanged_signs():
@@ -81,11 +80,11 @@ def test_a_pair_in_the_other_order_is_the_opposite_field():
 
 def test_the_bracket_is_proved_and_nothing_commutes_with_all():
     """A canonical bracket has no Casimirs, with or without a field; a false one is refuted."""
-    certificate = prove(spec(PAIRS))
+    certificate = prove_claims(spec(PAIRS))
     assert certificate.holds, str(certificate)
     statements = {claim.statement for claim in certificate.claims}
     assert any(text.startswith("there are no Casimirs but constants") for text in statements)
-    (refuted,) = prove(spec(PAIRS + '[claims]\ncasimirs = ["k + x"]\n')).refuted
+    (refuted,) = prove_claims(spec(PAIRS + '[claims]\ncasimirs = ["k + x"]\n')).refuted
     assert refuted.statement == "k + x is a Casimir"
     assert refuted.counterexample == {}
 
@@ -95,4 +94,4 @@ def test_the_shifted_momentum_is_conserved(charge, holds):
     """In a constant field v + B x is conserved (k = 0); v - B x is not."""
     changes = [("B*(1 + x^2)", "B"), ("+ k*x^2*y", "+ k*x^2")]
     claim = f'[claims]\nconserved = ["v + {charge}*B*x"]\n'
-    assert prove(spec(PAIRS + claim, *changes)).holds is holds
+    assert prove_claims(spec(PAIRS + claim, *changes)).holds is holds

@@ -5,8 +5,7 @@ import sympy
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.exact import Element
-from coadjoint.prove import prove
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
 #: [e1, e2] = k e3, [e2, e3] = c1 e1, [e3, e1] = c2 e2, an algebra for all k and c.
 SCALED = """
@@ -82,9 +81,9 @@ def test_parameters_in_brackets_reach_the_equations(route):
 
 def test_equations_with_parameters_in_brackets_are_proved():
     """The weights of the Casimir are those of the brackets; with one exchanged it is refuted."""
-    certificate = prove(spec(SCALED))
+    certificate = prove_claims(spec(SCALED))
     assert certificate.holds, str(certificate)
-    (refuted,) = prove(spec(SCALED, ("c2*Pi2^2", "c1*Pi2^2"))).refuted
+    (refuted,) = prove_claims(spec(SCALED, ("c2*Pi2^2", "c1*Pi2^2"))).refuted
     assert refuted.kind == "casimir"
     assert set(refuted.counterexample) >= {"c1", "c2"}
 
@@ -104,11 +103,11 @@ def test_parameters_in_an_action_reach_the_equations(route, side):
 
 def test_equations_with_parameters_in_an_action_are_proved():
     """A turning keeps a.a, which has Casimirs only where s = 0: the claim is refuted with s."""
-    assert prove(spec(SPINNING)).holds
+    assert prove_claims(spec(SPINNING)).holds
     claim = '\n[claims]\ncasimirs = ["dot(a, a)"]\n'
-    assert not prove(spec(SPINNING + claim)).holds
+    assert not prove_claims(spec(SPINNING + claim)).holds
     still = spec(SPINNING + claim, ('[["s", "-w"], ["w", "s"]]', '[[0, "-w"], ["w", 0]]'))
-    assert prove(still).holds
+    assert prove_claims(still).holds
 
 
 def test_velocities_and_momenta_stand_along_the_basis():

@@ -14,9 +14,8 @@ from coadjoint.exact import Field
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Multiply, Number
-from coadjoint.prove import prove
 from coadjoint.prove.certificate import Verdict
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 BLOCK = (0, 1, 2, 3)
 NAMES = ("x1", "x2", "x3", "x4")
@@ -137,14 +136,14 @@ def test_only_coupled_velocities_are_solved_for():
 def test_everything_is_proved_and_lowered_without_closed_forms():
     """Claims in velocities; Programs modulo a prime; parameter levels apart."""
     declared = spec(BODY)
-    certificate = prove(declared)
+    certificate = prove_claims(declared)
     assert all(claim.verdict is Verdict.PROVED for claim in certificate.claims)
     assert any("L D L^T" in claim.statement for claim in certificate.claims)
     equations = derive(declared)
     programs = lower(equations)
     for program in programs.values():
         check_inverse(equations, program)
-    fixed = {s.name for s in programs["rhs"].at_level("parameters")}
+    fixed = {s.name for s in programs["rhs"].statements_at("parameters")}
     assert {"_d1", "_d4", "_l2_1"} <= fixed
     assert not fixed & {"_y1", "W12"}
 
@@ -168,7 +167,7 @@ def test_a_spoiled_definition_is_refuted():
     equations = derive(shipped("coupled_bodies"))
     wrong = tuple((n, -v if n == "_d4" else v) for n, v in equations.exact.definitions)
     exact = dataclasses.replace(equations.exact, definitions=wrong)
-    certificate = prove(equations.spec, [dataclasses.replace(equations, exact=exact)])
+    certificate = prove_claims(equations.spec, [dataclasses.replace(equations, exact=exact)])
     refuted = [c.statement for c in certificate.claims if c.verdict is Verdict.REFUTED]
     assert any("L D L^T" in statement for statement in refuted)
 
@@ -207,4 +206,4 @@ def test_an_integral_that_names_a_solved_velocity_is_refused():
     """Only momenta have rates that proofs know."""
     text = BODY.replace('conserved = ["energy"]', 'conserved = ["W12^2"]')
     with pytest.raises(Exception, match="W12"):
-        prove(spec(text))
+        prove_claims(spec(text))

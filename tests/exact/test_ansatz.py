@@ -32,14 +32,14 @@ def test_a_wrong_sign_leaves_no_invariant_form():
 def test_values_at_points_bound_the_solutions_from_above():
     """Each condition more leaves at most as many solutions, never fewer than there are."""
     points = [(2, 3), (1, 5), (7, 1)]
-    rows = [{0: -2 * x * y, 1: x**2 - y**2, 2: 2 * x * y} for x, y in points]
+    rows = [[-2 * x * y % PRIME, (x**2 - y**2) % PRIME, 2 * x * y] for x, y in points]
     counts = [len(solve(range(3), rows[:k], PRIME)) for k in range(4)]
     assert counts == [3, 2, 1, 1]
 
 
 def test_solutions_are_lifted_to_the_numbers_they_are_images_of():
     """5/7 and -3 come back from their residues; a residue of no small fraction does not."""
-    row = {0: 7, 1: -5, 2: 0}
+    row = [7, PRIME - 5, 0]
     (first, second) = solve("abc", [row], PRIME)
     assert first.lift() == {"a": 1, "b": Fraction(7, 5)}
     assert second.lift() == {"c": 1}

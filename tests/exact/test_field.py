@@ -184,3 +184,28 @@ def test_text_shows_signs_numbers_and_functions():
     assert element_text(field, field.call("exp", x - y) / (x * y**2)) == "exp(x - y)/(x*y^2)"
     assert element_text(field, field.zero) == "0"
     assert element_text(field, field.one / (1 - x)) in ("-1/(x - 1)", "1/(1 - x)")
+
+
+def test_a_substitution_replaces_symbols_in_numerators_denominators_and_functions():
+    """At x = y + 1: (a x^2 + a)/(x - b) + sin(x)^2 has the value of the formula written anew."""
+    field = Field(["x", "y", "a", "b"], slots=4)
+    x, y, a, b = (field[name] for name in field.names)
+    sine, other = field.call("sin", x), field.call("sin", y + 1)
+    moved = field.substitute((a * x**2 + a) / (x - b) + sine**2 + b, {"x": y + 1})
+    assert moved == (a * (y + 1) ** 2 + a) / (y + 1 - b) + other**2 + b
+    assert moved != (a * (y + 1) + a) / (y + 1 - b) + other**2 + b
+    assert field.substitute(a / b, {"x": y}) == a / b
+    with pytest.raises(ZeroDivisionError):
+        field.substitute(1 / (x - b), {"x": b})
+
+
+def test_values_modulo_a_prime_are_residues_of_rational_values():
+    """(x^2/3 + y)/(x - y)^2 at (5, 2) is 31/27; at a pole there is no value."""
+    field, prime = Field(["x", "y"]), 8191
+    x, y = field["x"], field["y"]
+    element = (x**2 / 3 + y) / (x - y) ** 2
+    value = field.evaluate_modulo(element, {"x": 5, "y": 2}, prime, {})
+    assert value == 31 * pow(27, -1, prime) % prime
+    assert field.evaluate_modulo(element, {"x": 5, "y": 3}, prime, {}) != value
+    with pytest.raises(ZeroDivisionError, match="8191"):
+        field.evaluate_modulo(element, {"x": 5, "y": 5 + prime}, prime, {})

@@ -16,19 +16,17 @@ def drawn(source):
     ]
 
 
-def test_coordinates_give_the_vectors_back():
-    """Each vector is the combination of basis vectors that its coordinates say."""
+def test_coordinates_are_whole_and_give_the_vectors_back():
+    """Each vector is a combination of basis vectors with integers."""
     source = random.Random(0)
     for _ in range(100):
         vectors = drawn(source)
         basis = lattice_basis(vectors)
         for vector in vectors:
-            whole = coordinates(vector, basis)
-            sums = (
-                sum(k * row[n] for k, row in zip(whole, basis, strict=True))
-                for n in range(len(vector))
-            )
+            (whole,) = coordinates([vector], basis)
+            sums = (sum(k * basis[n][m] for n, k in whole.items()) for m in range(len(vector)))
             assert tuple(sums) == vector
+            assert all(type(count) is int for count in whole.values())
 
 
 def test_the_basis_belongs_to_the_lattice():

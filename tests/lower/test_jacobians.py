@@ -6,7 +6,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.derive import derive
 from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.lower.check import check_inverse
@@ -14,7 +13,7 @@ from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Negate, Number, Output
 from coadjoint.render.targets import BUILDS
 from tests.driven_specs import PENDULUM, SUSLOV, build, rendered
-from tests.specs import shipped, spec
+from tests.specs import render_claims, shipped, spec
 
 TARGETS = tuple(BUILDS)
 
@@ -27,7 +26,7 @@ def built(tmp_path_factory):
     def make(which):
         if which not in known:
             name = f"built{len(known)}"
-            shippeds = None if "\n" in which else pipeline.render(shipped(which))
+            shippeds = None if "\n" in which else render_claims(shipped(which))
             texts = (shippeds or rendered(which, name=name)).texts
             known[which] = build(texts, tmp_path_factory.mktemp("jacobians") / which.split()[0][:9])
         return known[which]

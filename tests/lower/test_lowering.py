@@ -29,7 +29,7 @@ from tests.conftest import rational_points
 from tests.prove.rolling import motion
 from tests.sources import textbook
 from tests.sources.points import to_digits
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, emitted, lowered, spec
 
 
 def exactly(function, argument):
@@ -49,8 +49,7 @@ def total(counts):
 
 def test_lowering_is_undone_exactly(system):
     """Every Program run on the symbols gives the equations back."""
-    equations = derive(shipped(system))
-    programs = lower(equations)
+    equations, programs = emitted(system), lowered(system)
     without = {
         "input_jacobian": not equations.spec.inputs,
         "parameter_jacobian": not equations.spec.parameters,
@@ -80,8 +79,7 @@ def test_lowering_is_undone_exactly(system):
 @pytest.mark.parametrize("function", ["rhs", "jacobian", "energy", "observables"])
 def test_the_inverse_check_sees_one_changed_node(function, place):
     """Negate one output, or one statement, and the check names it."""
-    equations = derive(shipped("heavy_top"))
-    program = lower(equations)[function]
+    equations, program = emitted("heavy_top"), lowered("heavy_top")[function]
     moving = [n for n, o in enumerate(program.outputs) if o.value != Number(Fraction(0))]
     outputs, place = list(program.outputs), moving[place]
     outputs[place] = Output(outputs[place].label, Negate(outputs[place].value))
@@ -198,7 +196,7 @@ BY_HAND = {
 
 def test_operations_do_not_exceed_a_careful_hand_derivation(system):
     """The rates take no more operations than written out by hand."""
-    rhs = lower(derive(shipped(system)))["rhs"]
+    rhs = lowered(system)["rhs"]
     assert 0 < total(rhs.operation_counts()) <= BY_HAND[system]
 
 
@@ -215,7 +213,7 @@ def test_programs_that_compilers_choke_on_are_refused(limit, monkeypatch):
 
 def test_statements_are_assigned_once_and_used(system):
     """Single assignment, no dead code, definitions before use."""
-    for program in lower(derive(shipped(system))).values():
+    for program in lowered(system).values():
         known = {*program.state, *program.parameters, *program.inputs, *program.time}
         for statement in program.statements:
             reads = {n.name for n in walk(statement.value) if isinstance(n, Symbol)}
@@ -227,16 +225,16 @@ def test_statements_are_assigned_once_and_used(system):
 
 def test_parameter_statements_read_parameters_alone(system):
     """What is hoisted out of the loop over members does not depend on the member."""
-    for program in lower(derive(shipped(system))).values():
+    for program in lowered(system).values():
         fixed = set(program.parameters)
-        for statement in program.at_level("parameters"):
+        for statement in program.statements_at("parameters"):
             assert {n.name for n in walk(statement.value) if isinstance(n, Symbol)} <= fixed
             fixed.add(statement.name)
 
 
 def test_jacobian_equals_divided_differences_exactly(system):
     """For rates quadratic in each component, central differences are exact: another road."""
-    programs = lower(derive(shipped(system)))
+    programs = lowered(system)
     rhs, jacobian = programs["rhs"], programs["jacobian"]
     (point,) = rational_points((*rhs.state, *textbook.GIVEN[system]), 1, seed=5)
     point = textbook.rational(system, point)
@@ -254,7 +252,7 @@ def test_jacobian_equals_divided_differences_exactly(system):
 
 def test_derivatives_by_parameters_are_divided_differences(system):
     """Central differences with a step of 1e-20, whose error is of the order of its square."""
-    programs = lower(derive(shipped(system)))
+    programs = lowered(system)
     rhs, by_parameters = programs["rhs"], programs.get("parameter_jacobian")
     if by_parameters is None:
         assert not rhs.parameters
@@ -273,7 +271,7 @@ def test_derivatives_by_parameters_are_divided_differences(system):
 
 def test_programs_give_the_book_formulas(system):
     """The Program of rhs, run on fractions, equals the textbook's rates."""
-    rhs = lower(derive(shipped(system)))["rhs"]
+    rhs = lowered(system)["rhs"]
     for free in rational_points((*rhs.state, *textbook.GIVEN[system]), 3, seed=6):
         point = textbook.rational(system, free)
         x, p = [point[n] for n in rhs.state], [point[n] for n in textbook.GIVEN[system]]

@@ -132,7 +132,7 @@ DISTRIBUTED = (
         (),
         "reactions: flip forces",
         "reactions: flip others",
-        "reactions: drop self",
+        "reactions: drop known",
         tests=REACTIONS,
     ),
 )

@@ -21,6 +21,13 @@ from tests.mutation.mutant import ROOT
 
 SOURCES = "tests/sources/"
 EQUATIONS = SOURCES + "test_equations.py"
+#: The book's rates and brackets of a few small systems: for what is tried in every run.
+BOOK = (
+    EQUATIONS,
+    "-k",
+    "(rates_are_those or poisson_tensor_is)"
+    " and (rigid_body- or heavy_top- or galilei- or se2_pendulum- or sl2_r2-)",
+)
 #: Kernels of systems with parameters and zero rows; the others are built the same way.
 KERNELS = (SOURCES + "test_kernels.py", "-k", "heavy_top or bargmann")
 GROUP_ROWS = tuple(
@@ -42,6 +49,7 @@ JUDGES = {
     "src/coadjoint/exact/ranks": ("tests/exact/test_ranks.py",),
     "src/coadjoint/exact/dense": ("tests/exact/test_dense.py",),
     "src/coadjoint/exact/linear": ("tests/exact/test_linear.py",),
+    "src/coadjoint/exact/packed": ("tests/exact/test_packed.py",),
     "src/coadjoint/exact/ansatz": ("tests/exact/test_ansatz.py",),
     "src/coadjoint/poisson/casimirs": (
         "tests/poisson/test_casimirs.py",
@@ -115,7 +123,7 @@ def judges_of(mutant):
     if mutant.tests:
         return shlex.split(" ".join(mutant.tests))
     if mutant.always:
-        return (EQUATIONS,)
+        return BOOK
     return next(tests for start, tests in JUDGES.items() if mutant.file.startswith(start))
 
 
@@ -154,7 +162,7 @@ def unchanged():
     campaign = [
         pytest.param(JUDGES[start], marks=pytest.mark.campaign, id=start) for start in JUDGES
     ]
-    return [pytest.param((EQUATIONS,), id="book"), *campaign]
+    return [pytest.param(BOOK, id="book"), *campaign]
 
 
 @pytest.mark.parametrize("tests", unchanged())

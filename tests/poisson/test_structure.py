@@ -113,7 +113,7 @@ def test_constants_with_parameters_are_read_off():
     structure = declare_bracket(
         field, ("x", "y", "z"), {(0, 1): a * z, (1, 2): b * x, (2, 0): y / a}
     )
-    assert structure.lie_algebra().dimension == 3
+    assert structure.lie_algebra.dimension == 3
     assert structure.generic_rank() == 2
     assert structure.is_casimir(b * x**2 + y**2 / a + a * z**2)
     assert not structure.is_casimir(b * x**2 + y**2 / a - a * z**2)
@@ -123,7 +123,7 @@ def test_constant_terms_stand_with_a_central_generator():
     """The affine bracket {q, p} = 1 + q is read as an algebra with one more generator."""
     field = Field(["q", "p"])
     structure = declare_bracket(field, field.names, {(0, 1): 1 + field["q"]})
-    assert structure.lie_algebra().basis == ("q", "p", "1")
+    assert structure.lie_algebra.basis == ("q", "p", "1")
 
 
 def test_a_tensor_that_is_not_antisymmetric_is_refused():

@@ -8,7 +8,8 @@ from operator import mul
 
 import pytest
 
-from coadjoint.prove import Verdict
+from coadjoint.errors import DerivationError
+from coadjoint.prove import Verdict, prove
 from coadjoint.prove.almost_poisson import (
     ReducedBracket,
     _inverse_of_numbers,
@@ -18,6 +19,7 @@ from coadjoint.prove.almost_poisson import (
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Decision, decide_zero
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
+from tests.specs import spec
 
 
 def examined(rates):
@@ -192,3 +194,15 @@ def test_matrices_of_numbers_are_inverted_by_elimination():
     assert product == [[int(i == j) for j in range(3)] for i in range(3)]
     with pytest.raises(ZeroDivisionError):
         _inverse_of_numbers([[Fraction(1), Fraction(2)], [Fraction(2), Fraction(4)]])
+
+
+def test_affine_constraints_have_no_bracket_with_the_energy():
+    """The surface moves; what the message says to claim in its place is proved."""
+    rise = ('"w == y*u"', '"w == y*u + k"')
+    asked = ('conserved = ["energy"]', 'casimirs = ["k"]')
+    with pytest.raises(DerivationError, match=r"affine term.*Name what is conserved in claims"):
+        prove(spec(PARTICLE, rise, asked))
+    named = ('conserved = ["energy"]', 'conserved = ["v"]')
+    found = {claim.statement: claim.verdict for claim in prove(spec(PARTICLE, rise, named)).claims}
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "v is conserved" in found

@@ -186,6 +186,14 @@ def test_constraints_may_move():
     }
 
 
+def test_a_symmetry_may_depend_on_time():
+    """To a moving observer x has another speed, which the constraint w = y v does not name."""
+    changes = (('"w == y*u"', '"w == y*v"'), ('x = "a[1]"', 'x = "a[1]*t"'))
+    found = examined(PARTICLE + '[time]\nname = "t"\n' + MOVED, *changes)
+    assert refuted(found) == set()
+    assert "dJ1/dt = u*m" in found
+
+
 def test_a_body_of_revolution_turns_about_its_axis():
     """Its spin is not conserved where it rolls; other moments of inertia break the symmetry."""
     found = examined(BALL + SPIN, *AXIAL)

@@ -9,11 +9,11 @@ import pytest
 from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.exact.linear import nullspace
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.certificate import failure_text
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 PROVED, REFUTED = Verdict.PROVED, Verdict.REFUTED
 
@@ -79,7 +79,7 @@ def claimed(text, integral, *where):
     """The claim that something is conserved where relations hold."""
     listed = ", ".join(f'"{each}"' for each in where)
     declared = spec(text.replace("INTEGRAL", integral).replace("WHERE", listed))
-    return last_claim(prove(declared))
+    return last_claim(prove_claims(declared))
 
 
 def last_claim(certificate):
@@ -89,7 +89,7 @@ def last_claim(certificate):
 
 def last_conserved(text, *changes):
     """The same of a changed text."""
-    return last_claim(prove(spec(text, *changes)))
+    return last_claim(prove_claims(spec(text, *changes)))
 
 
 #: (p1^2 - p2 - 1)^2 + p2^2 + 1 is positive, and no rule of signs sees it.
@@ -146,7 +146,7 @@ def test_names_and_their_order_decide_nothing(names):
             "WHERE", ", ".join(f'"{each}"' for each in where[:: 1 if names[0] < "q" else -1])
         )
         renamed = "".join(new.get(part, part) for part in _words(text))
-        assert last_claim(prove(spec(renamed))).verdict is verdict, (integral, where)
+        assert last_claim(prove_claims(spec(renamed))).verdict is verdict, (integral, where)
 
 
 def _words(text):
@@ -190,7 +190,7 @@ def test_parameters_are_not_solved_for(belt, integral, verdict, excluded):
         text = BELT.replace("BELT", belt).replace("INTEGRAL", integral)
         for old, new in changes:
             text = text.replace(old, new).replace("t1", "t3")
-        certificate = prove(spec(text))
+        certificate = prove_claims(spec(text))
         energy, own = (c for c in certificate.claims if c.kind == "conserved")
         assert own.verdict is verdict
         assert energy.verdict is PROVED
@@ -286,7 +286,7 @@ def test_an_empty_domain_proves_nothing(domain):
     text = FREE.replace("[claims]", f"[domain]\n{lines}\n[claims]")
     text = text.replace('{ claim = "INTEGRAL", where = [WHERE] }', '"p1"')
     with pytest.raises(UndecidedError, match=r"no point is found in \[domain\]"):
-        prove(spec(text))
+        prove_claims(spec(text))
 
 
 def test_an_energy_without_values_proves_nothing():
@@ -294,7 +294,7 @@ def test_an_energy_without_values_proves_nothing():
     text = FREE.replace("p1^2/2 + p2^2/2", "p1^2/2 + sqrt(-1 - q1^2)")
     text = text.replace('{ claim = "INTEGRAL", where = [WHERE] }', '"p2"')
     with pytest.raises(UndecidedError, match="at which the motion has a value"):
-        prove(spec(text))
+        prove_claims(spec(text))
 
 
 @pytest.mark.parametrize(
@@ -332,8 +332,8 @@ def test_branches_outside_the_domain_do_not_count(where, domain, verdict):
 )
 def test_what_a_reduction_keeps_is_kept_on_each_branch(h, where, section, verdicts):
     """The functions of [reduction] where vanish for ever, on whichever branch they begin."""
-    found = [c.verdict for c in prove(spec(reduced(h, where, section))).claims]
-    kinds = [c.kind for c in prove(spec(reduced(h, where, section))).claims]
+    found = [c.verdict for c in prove_claims(spec(reduced(h, where, section))).claims]
+    kinds = [c.kind for c in prove_claims(spec(reduced(h, where, section))).claims]
     assert (
         tuple(v for v, kind in zip(found, kinds, strict=True) if kind == "reduction")[:2]
         == verdicts
@@ -343,7 +343,7 @@ def test_what_a_reduction_keeps_is_kept_on_each_branch(h, where, section, verdic
 def test_a_section_on_a_pole_is_refused():
     """The Hamiltonian y^2/(2 z) has no value where z = 0."""
     with pytest.raises(DerivationError, match="the energy has a pole everywhere on the section"):
-        prove(spec(reduced("x^2/2 + y^2/(2*z)", "z", "0")))
+        prove_claims(spec(reduced("x^2/2 + y^2/(2*z)", "z", "0")))
 
 
 def reduced(h, where, section):
@@ -542,7 +542,7 @@ conserved = ["w", "u"]
 
 def test_nothing_is_excluded_that_never_vanishes():
     """The squares of a sine and a cosine add up to 1; where both are 0 there is no point at all."""
-    claims = prove(spec(KNIFE)).claims
+    claims = prove_claims(spec(KNIFE)).claims
     excluded = {claim.method.partition("edge = 0")[2] for claim in claims}
     assert excluded == {"", ", wherever sin(z) is not 0"}  # by which the edge is solved
     (refuted,) = [claim for claim in claims if claim.verdict is REFUTED]
@@ -554,7 +554,9 @@ def test_a_power_of_what_is_excluded_is_not_named_again():
     """Two constraints that agree where y (z - 1) = 0: y not 0 and z - 1 not 0 say it all."""
     edges = 'first = "w == y*u"\nsecond = "z*w == y*u"'
     text = KNIFE.replace('edge = "u*sin(z) == v*cos(z)"', edges)
-    (energy,) = [c for c in prove(spec(text)).claims if c.statement == "the energy is conserved"]
+    (energy,) = [
+        c for c in prove_claims(spec(text)).claims if c.statement == "the energy is conserved"
+    ]
     assert energy.method.endswith("of second = 0, y not 0, z - 1 not 0")
 
 

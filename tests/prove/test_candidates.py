@@ -43,7 +43,7 @@ def about(name, *changes):
 
 def dimension(name, *changes):
     """How many independent integrals, constants included, have the degrees (2, 2) at the most."""
-    return len(CandidateSearch(motion(name, *changes)).found((2, 2)))
+    return len(CandidateSearch(motion(name, *changes)).find((2, 2)))
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_jellett_and_routh_are_found():
     along = motion("routh_sphere", SILENT["routh_sphere"])
     values = default_numbers(along.equations.spec)
     search = CandidateSearch(along, only_energy(along), values)
-    found = list(search.new((2, 2)))
+    found = list(search.find_new((2, 2)))
     assert len(found) == 2
     ring, (i1, i3, length) = along.field, (Fraction(2, 5), Fraction(1, 2), Fraction(-3, 10))
     o, g = ([ring[f"{name}{n}"] for n in (1, 2, 3)] for name in ("Omega", "Gamma"))
@@ -140,30 +140,30 @@ def test_the_count_does_not_depend_on_how_a_constant_is_written(radius):
     claims = SILENT["rolling_disk_vertical"]
     search = CandidateSearch(motion("rolling_disk_vertical", *changes, claims, SLOPE))
     assert search.samples.obstacle == ""
-    assert len(search.found((2, 2))) == 17
-    assert search.bounded((2, 2))
+    assert len(search.find((2, 2))) == 17
+    assert search.is_bounded((2, 2))
 
 
 def test_constraints_with_a_common_factor_bound_too():
     """The snakeboard's constraints say that 2 cos(phi) v2 = 0, so that v2 = 0 is a relation."""
     search = CandidateSearch(motion("snakeboard"))
-    assert search.bounded((1, 1))
+    assert search.is_bounded((1, 1))
     zero = search.field["v2"]
     search._relations = [each for each in search._relations if each != search._terms(zero)]
-    assert not search.bounded((1, 1))
+    assert not search.is_bounded((1, 1))
 
 
 def test_a_bound_needs_every_relation():
     """Without dot(Gamma, Gamma) = 1 among the relations the monomials might be independent."""
     search = CandidateSearch(motion("chaplygin_ball"))
-    assert search.bounded((2, 2))
+    assert search.is_bounded((2, 2))
     search._relations = []
-    assert not search.bounded((2, 2))
+    assert not search.is_bounded((2, 2))
 
 
 def test_nothing_is_proved_without_a_bound_from_above(monkeypatch):
     """Both integrals of the sleigh are certain; that there are no others is not, if b is not."""
-    monkeypatch.setattr(CandidateSearch, "bounded", lambda *_: False)
+    monkeypatch.setattr(CandidateSearch, "is_bounded", lambda *_: False)
     ((statement, found),) = about("chaplygin_sleigh")
     assert isinstance(found, Discovery)
     assert "a space of dimension 2 with constants, 2 of it polynomials in energy" in statement
@@ -200,7 +200,7 @@ def test_friction_leaves_constants_alone():
     search = CandidateSearch(along)
     assert not search.reversible
     assert len(search.sectors((2, 2))) == 1
-    assert len(search.found((2, 2))) == 1
+    assert len(search.find((2, 2))) == 1
     assert [each.text for each in known_integrals(along)] == ["dot(Gamma, Gamma)"]
 
 
@@ -210,7 +210,7 @@ def test_multiples_of_angles_are_searched():
     along = motion("rolling_disk_vertical", change)
     known = known_integrals(along)
     assert [each.text for each in known] == ["energy", "vphi"]
-    assert len(CandidateSearch(along, known).found((1, 1))) == 2
+    assert len(CandidateSearch(along, known).find((1, 1))) == 2
 
 
 def test_functions_that_may_be_related_are_not_searched():

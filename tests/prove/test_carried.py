@@ -4,13 +4,13 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.almost_poisson import ReducedBracket
 from coadjoint.prove.carried import carry_over
 from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.integrals import is_conserved
 from tests.constrained import PARTICLE
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 #: Lagrange's top in velocities; its brackets are those of Pi = I Omega, divided by I.
 TOP = """
@@ -50,7 +50,7 @@ DRAG = ("[claims]", '[forces]\nOmega = "vector(-Omega1, -Omega2, 0)"\n[claims]')
 
 def verdicts(text, *changes):
     """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
 
 
 def test_a_top_in_velocities_has_what_it_has_in_momenta():

@@ -7,9 +7,9 @@ import pytest
 from coadjoint.derive import Chart, Equations, Exact, Relation, derive
 from coadjoint.derive import setting as settings
 from coadjoint.exact.ranks import CHANCE
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.charts import ChartMap, reach
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 OWN = ("Q1", "Q2", "Q3", "P1", "P2", "P3")
 
@@ -155,7 +155,7 @@ def test_relation_that_the_motion_leaves_is_refuted():
 def test_certificate_lists_the_chart():
     """The claims about a chart stand in the certificate, with their words."""
     declared = spec()
-    certificate = prove(declared, pair(declared, lambda P, Q: cross(P, Q)))
+    certificate = prove_claims(declared, pair(declared, lambda P, Q: cross(P, Q)))
     statements = [claim.statement for claim in certificate.claims if claim.kind == "equivalence"]
     assert "euler-poincare and by hand give the same motion, through Pi = P x Q" in statements
     assert "the route by hand reaches an open set of states" in statements
@@ -168,7 +168,9 @@ def test_relations_are_independent_where_they_hold():
     Its gradient vanishes there, so it must not stand among the four relations that are counted.
     """
     declared = dataclasses.replace(shipped("underwater_vehicle"), clebsch=None)
-    claims = [claim for claim in prove(declared).claims if "clebsch reaches" in claim.statement]
+    claims = [
+        claim for claim in prove_claims(declared).claims if "clebsch reaches" in claim.statement
+    ]
     (claim,) = claims
     assert claim.verdict is Verdict.PROVED
     assert "dot(P, P) = 0" not in claim.statement

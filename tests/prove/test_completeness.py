@@ -4,11 +4,10 @@ import pytest
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.poisson.casimirs import select_independent
-from coadjoint.prove import prove
 from coadjoint.prove.completeness import ALMOST, IN_PART, bracket_of, completeness, describe
 from coadjoint.prove.zero import Decision, Discovery
 from tests.derive.test_nambu import FOUR
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
 CLAIM = 'casimirs  = ["dot(Gamma, Gamma)", "dot(Pi, Gamma)"]'
 #: [e1, e2] = e2, [e1, e3] = a e3 has the Casimir e3/e2^a, which is rational for no general a.
@@ -47,7 +46,7 @@ def spiral(weight):
 
 def test_all_claimed_casimirs_are_counted():
     """As many as dimension minus rank: nothing is searched."""
-    assert about_casimirs(prove(shipped("heavy_top"))) == [
+    assert about_casimirs(prove_claims(shipped("heavy_top"))) == [
         "dot(Gamma, Gamma) is a Casimir",
         "dot(Pi, Gamma) is a Casimir",
         f"every Casimir is a function of the 2 known, {ALMOST}",
@@ -63,7 +62,7 @@ def test_all_claimed_casimirs_are_counted():
 )
 def test_a_casimir_left_out_is_found_and_proved(claimed, missing):
     """Under the names of the state, beside the one that is claimed."""
-    certificate = prove(heavy_top(f'casimirs = ["{claimed}"]'))
+    certificate = prove_claims(heavy_top(f'casimirs = ["{claimed}"]'))
     assert certificate.holds
     assert about_casimirs(certificate) == [
         f"{claimed} is a Casimir",
@@ -81,7 +80,7 @@ def test_without_claims_all_are_found():
 def test_functions_of_one_casimir_count_once():
     """(Gamma.Gamma)^2 beside Gamma.Gamma is no second one."""
     claim = 'casimirs = ["dot(Gamma, Gamma)", "dot(Gamma, Gamma)^2 + 1"]'
-    certificate = prove(heavy_top(claim))
+    certificate = prove_claims(heavy_top(claim))
     assert certificate.holds
     statements = about_casimirs(certificate)
     assert statements[2:] == [
@@ -93,7 +92,7 @@ def test_functions_of_one_casimir_count_once():
 @pytest.mark.parametrize("wrong", ["dot(Pi, Pi)", "dot(Pi, Gamma) + Pi1", "g"])
 def test_a_wrong_claim_counts_for_nothing(wrong):
     """A function that does not commute is refuted, a constant does: the second one is found."""
-    certificate = prove(heavy_top(f'casimirs = ["dot(Gamma, Gamma)", "{wrong}"]'))
+    certificate = prove_claims(heavy_top(f'casimirs = ["dot(Gamma, Gamma)", "{wrong}"]'))
     refuted = [claim.statement for claim in certificate.refuted]
     assert refuted == ([] if wrong == "g" else [f"{wrong} is a Casimir"])
     assert about_casimirs(certificate)[2:] == [
@@ -104,7 +103,7 @@ def test_a_wrong_claim_counts_for_nothing(wrong):
 
 def test_two_wrong_claims_complete_nothing():
     """On se(3)* two claims of which none holds leave two Casimirs to be found."""
-    certificate = prove(heavy_top('casimirs = ["dot(Pi, Pi)", "Gamma1"]'))
+    certificate = prove_claims(heavy_top('casimirs = ["dot(Pi, Pi)", "Gamma1"]'))
     assert len(certificate.refuted) == 2
     found = completeness(derive(heavy_top('casimirs = ["dot(Pi, Pi)", "Gamma1"]')), degree=1)
     assert (found.known, found.expected, found.found) == (0, 2, ())
@@ -112,14 +111,14 @@ def test_two_wrong_claims_complete_nothing():
 
 def test_a_bracket_without_casimirs_says_so():
     """aff(1) has rank 2."""
-    assert about_casimirs(prove(shipped("affine_line"))) == [
+    assert about_casimirs(prove_claims(shipped("affine_line"))) == [
         f"there are no Casimirs but constants, {ALMOST}"
     ]
 
 
 def test_one_casimir_is_told_in_the_singular():
     """The rigid body's sphere, found."""
-    certificate = prove(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', "")))
+    certificate = prove_claims(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', "")))
     assert about_casimirs(certificate) == [
         "Pi1^2 + Pi2^2 + Pi3^2 is a Casimir",
         f"every Casimir is a function of the one known, {ALMOST}",
@@ -128,7 +127,7 @@ def test_one_casimir_is_told_in_the_singular():
 
 def test_the_functions_of_a_nambu_bracket_need_no_search():
     """They are Casimirs even where parameters forbid a search."""
-    assert about_casimirs(prove(spec(FOUR, ("x1^2/2", "k*x1^2/2")))) == [
+    assert about_casimirs(prove_claims(spec(FOUR, ("x1^2/2", "k*x1^2/2")))) == [
         "1/2*x1^2*k + x2*x4 is a Casimir",
         "1/2*x1^2 + 1/2*x2^2 + 1/2*x3^2 + 1/2*x4^2 is a Casimir",
         f"every Casimir is a function of the 2 known, {ALMOST}, for almost all parameters",
@@ -140,7 +139,7 @@ def test_the_functions_of_a_nambu_bracket_need_no_search():
 
 def test_a_rational_casimir_is_found_for_a_weight_that_is_a_number():
     """mu3/mu2^3 of weights 1 and 3: a quotient of semi-invariants."""
-    certificate = prove(spiral("3"))
+    certificate = prove_claims(spiral("3"))
     assert certificate.holds
     assert (
         about_casimirs(certificate)[-1] == f"every Casimir is a function of the one known, {ALMOST}"
@@ -150,7 +149,7 @@ def test_a_rational_casimir_is_found_for_a_weight_that_is_a_number():
 
 def test_a_casimir_that_a_parameter_hides_is_missing_and_told():
     """With a weight that is a parameter there is no search; the certificate names the bracket."""
-    certificate = prove(spiral("a"))
+    certificate = prove_claims(spiral("a"))
     assert certificate.holds
     (statement,) = about_casimirs(certificate)
     assert statement.startswith(
@@ -178,14 +177,14 @@ k = { default = 1 }
 [hamiltonian]
 h = "x1^2"
 """
-    (statement,) = about_casimirs(prove(spec(text)))
+    (statement,) = about_casimirs(prove_claims(spec(text)))
     assert statement.startswith("0 of 1 independent Casimirs are known: 1 not looked for")
     assert "'k' is no coordinate" in statement
     claimed = text + '[claims]\ncasimirs = ["x1^2 + x2^2 + k*x3^2"]\n'
-    assert about_casimirs(prove(spec(claimed)))[1:] == [
+    assert about_casimirs(prove_claims(spec(claimed)))[1:] == [
         f"every Casimir is a function of the one known, {ALMOST}, for almost all parameters"
     ]
-    assert prove(spec(claimed, ("x2^2 + k", "x2^2 - k"))).refuted
+    assert prove_claims(spec(claimed, ("x2^2 + k", "x2^2 - k"))).refuted
 
 
 def test_a_casimir_of_a_higher_degree_is_missing_and_told():
@@ -218,7 +217,7 @@ mu = {{ role = "momentum" }}
 [hamiltonian]
 h = "mu1^2"
 """
-    *proved, counted = about_casimirs(prove(spec(text)))
+    *proved, counted = about_casimirs(prove_claims(spec(text)))
     assert len(proved) == 21  # the products of two vectors
     assert counted == f"every Casimir is a function of the 21 known, {ALMOST}"
     found = completeness(derive(spec(text)), degree=1)
@@ -245,7 +244,7 @@ def spins(*summands):
 def test_each_of_twenty_spins_has_its_own_casimir():
     """The squares of the spins, and nothing else: no power sums of them."""
     squares = (" + ".join(f"mu{3 * n + i}^2" for i in (1, 2, 3)) for n in range(20))
-    assert about_casimirs(prove(spins(*["so(3)"] * 20))) == [
+    assert about_casimirs(prove_claims(spins(*["so(3)"] * 20))) == [
         *(f"{square} is a Casimir" for square in squares),
         f"every Casimir is a function of the 20 known, {ALMOST}",
     ]
@@ -325,7 +324,7 @@ v = {{ role = "velocity", of = "x" }}
 [lagrangian]
 l = "{function}*v^2/2"
 """
-    claims = {claim.statement: claim for claim in prove(spec(text)).claims}
+    claims = {claim.statement: claim for claim in prove_claims(spec(text)).claims}
     none = claims[f"there are no Casimirs but constants, {where}"]
     assert none.verdict.value == "proved"
 
@@ -346,7 +345,7 @@ beyond = "x > 3"
 [hamiltonian]
 h = "x + y"
 """
-    certificate = prove(spec(text))
+    certificate = prove_claims(spec(text))
     start = "there are no Casimirs but constants"
     (none,) = (claim for claim in certificate.claims if claim.statement.startswith(start))
     assert none.verdict.value == "proved"

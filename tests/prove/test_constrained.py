@@ -9,7 +9,7 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.derive.mechanics.solver import Solve, solution_defects, solver_names
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero
 from coadjoint.resources import derivations_folder
@@ -26,7 +26,7 @@ from tests.constrained import (
     derived,
     motion,
 )
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
 JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
@@ -166,16 +166,16 @@ def test_a_reaction_is_an_integral_only_where_it_is_constant():
         '[observables]\npush = "blade_reaction"\n[claims]\nconserved = ["push", ',
     )
     flat = ("w == y*u", "w == k*u")
-    verdict = {c.statement: c.verdict for c in prove(spec(PARTICLE, claimed)).claims}
+    verdict = {c.statement: c.verdict for c in prove_claims(spec(PARTICLE, claimed)).claims}
     assert verdict["push is conserved"] is Verdict.REFUTED
-    verdict = {c.statement: c.verdict for c in prove(spec(PARTICLE, claimed, flat)).claims}
+    verdict = {c.statement: c.verdict for c in prove_claims(spec(PARTICLE, claimed, flat)).claims}
     assert verdict["push is conserved"] is Verdict.PROVED
 
 
 def test_the_energy_is_said_to_be_conserved_once():
     """A spec that claims it adds nothing; one whose forces change it is refuted."""
     for changes, texts in (((), ["the energy is conserved"]), ((DRIVEN,), ["energy is conserved"])):
-        claims = prove(spec(PARTICLE, *changes)).claims
+        claims = prove_claims(spec(PARTICLE, *changes)).claims
         found = [c for c in claims if c.statement.endswith("energy is conserved")]
         assert [c.statement for c in found] == texts
         assert found[0].verdict is (Verdict.REFUTED if changes else Verdict.PROVED)
@@ -300,7 +300,7 @@ def test_motions_without_acceleration_are_proved(text):
     assert set(verdicts([first, second]).values()) == {Verdict.PROVED}
     wrong = spoiled(first, "_u1", lambda value: value + 1)
     assert verdicts([wrong, second])[SOLVED] is Verdict.REFUTED
-    assert prove(spec(text)).holds
+    assert prove_claims(spec(text)).holds
 
 
 @pytest.mark.parametrize("name", ["chaplygin_ball_centred", "snakeboard"])

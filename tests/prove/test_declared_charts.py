@@ -6,10 +6,15 @@ section 14); the canonical pair of a rigid body is Holm's (2011, section 2.5.5).
 
 import pytest
 
-from coadjoint.derive import derive
-from coadjoint.errors import DerivationError
-from coadjoint.prove import prove
-from tests.specs import RIGID_BODY, spec
+from coadjoint.derive import derive, make_setting
+from coadjoint.prove import Verdict
+from coadjoint.prove.agreement import about_equality
+from coadjoint.prove.zero import Decision, Discovery, decide_zero
+from tests.constrained import PARTICLE
+from tests.derive.test_advice import SHIFTED
+from tests.derive.test_configuration import FREE
+from tests.prove.test_reductions import IN_STEP
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 PLANE = """
 title = "A particle in the plane on a spring"
@@ -104,7 +109,7 @@ rates = { y = "w", w = "0" }
 
 def about(declared, name):
     """Statement and verdict of every claim about a chart."""
-    claims = prove(declared).claims
+    claims = prove_claims(declared).claims
     found = {c.statement: c.verdict.value for c in claims if f"the chart {name}" in c.statement}
     assert found
     return found
@@ -175,17 +180,77 @@ def test_a_map_may_move():
     assert "refuted" in about(spec(MOVING, ("m*(w + c)", "m*w")), "train").values()
 
 
-def test_a_chart_of_what_the_kernel_solves_for_is_refused():
-    """Six coupled velocities have no rates to compare with; the message names the way out."""
-    from tests.derive.test_routes import COUPLED
-
-    chart = """
-[charts.same]
-variables = { A = [3], B = [3] }
-map = { Pi = "A", P = "B" }
-rates = { A = "A", B = "B" }
+#: The particle w = y u: its speed along (1, 0, y) is constant, as its energy and v are.
+ALONG = """
+[charts.along]
+variables = { X = [], Y = [], Z = [], S = [], V = [] }
+map = { x = "X", y = "Y", z = "Z", u = "S/sqrt(1 + Y^2)", v = "V" }
+[charts.along.rates]
+X = "S/sqrt(1 + Y^2)"
+Y = "V"
+Z = "Y*S/sqrt(1 + Y^2)"
+S = "0"
+V = "0"
 """
-    declared = spec(COUPLED + chart)
-    assert derive(declared).kept
-    with pytest.raises(DerivationError, match=r"solved for in the kernel.*or remove the chart"):
-        prove(declared)
+KEPT = (
+    ('"w == y*u"', '"w - y*u == 0"'),
+    ('v = "V" }', 'v = "V", w = "Y*S/sqrt(1 + Y^2)" }'),
+)
+#: Two oscillators in step, in a position and a sum of position and momentum.
+MIXED = """
+[charts.mixed]
+variables = { A = [], B = [] }
+map = { q1 = "A", p1 = "B - A" }
+rates = { A = "B - A", B = "B - 2*A - c*(B - A) + u*sin(t)" }
+"""
+#: Four coupled points: d2l/dv2 = 1 + J with ones in J, so that its inverse is 1 - J/5.
+COUPLED = """
+[charts.moving]
+variables = { Q = [4], W = [4] }
+map = { q = "Q", p = "W + (W1 + W2 + W3 + W4)*vector(1, 1, 1, 1)" }
+rates = { Q = "W", W = "(Q1 + Q2 + Q3 + Q4)/5*vector(1, 1, 1, 1) - Q" }
+"""
+SUM = ("dot(v, v)/2", "dot(v, v)/2 + (v1 + v2 + v3 + v4)^2/2")
+
+
+def verdicts(text, *changes):
+    """Verdict by statement, of what is said of the equality of routes and charts."""
+    declared = spec(text, *changes)
+    setting = make_setting(declared)
+    found = {}
+    for statement, _, examine in about_equality([derive(declared, setting=setting)]):
+        defects = examine()
+        if not isinstance(defects, Decision | Discovery):
+            defects = decide_zero(defects, setting.field)
+        if isinstance(defects, Decision):  # how far a chart reaches may be a finding
+            found[statement] = defects.verdict
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "wrong"),
+    [
+        (PARTICLE + ALONG, (), ('S = "0"', 'S = "S*V"')),
+        (PARTICLE + ALONG, KEPT, ('S = "0"', 'S = "S*V"')),
+        (IN_STEP + MIXED, (), ("- c*(B - A)", "+ c*(B - A)")),
+        (FREE + COUPLED, (SHIFTED, SUM), ("/5*vector", "/4*vector")),
+    ],
+    ids=["constraint", "kept", "reduction", "solved"],
+)
+def test_charts_of_every_motion(text, changes, wrong):
+    """Under constraints, on a section, and where velocities are solved for; spoiled, refuted."""
+    found = verdicts(text, *changes)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert any("the chart" in each and "same motion" in each for each in found)
+    spoiled = verdicts(text, *changes, wrong)
+    (false,) = {each for each, verdict in spoiled.items() if verdict is Verdict.REFUTED}
+    assert "the chart" in false
+    assert "same motion" in false
+
+
+def test_a_chart_lies_on_the_constraints_that_are_kept():
+    """Elsewhere the equations mean nothing."""
+    assert verdicts(PARTICLE + ALONG, *KEPT)["the chart along lies where blade = 0"]
+    wrong = ('w = "Y*S/sqrt(1 + Y^2)"', 'w = "2*Y*S/sqrt(1 + Y^2)"')
+    spoiled = verdicts(PARTICLE + ALONG, *KEPT, wrong)
+    assert spoiled["the chart along lies where blade = 0"] is Verdict.REFUTED

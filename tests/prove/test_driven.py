@@ -3,14 +3,14 @@
 import pytest
 
 from coadjoint.errors import ClaimError, DerivationError
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from tests.driven_specs import BELT, BOOST, PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 
 def claims(text, *changes):
     """Verdicts by statement."""
-    return {c.statement: c.verdict for c in prove(spec(text, *changes)).claims}
+    return {c.statement: c.verdict for c in prove_claims(spec(text, *changes)).claims}
 
 
 def conserved(text, *changes):
@@ -33,7 +33,7 @@ def test_the_boost_of_a_free_particle():
 def test_a_spoiled_boost_is_refuted(wrong):
     """With a point at which its rate is not zero."""
     with pytest.raises(ClaimError, match="K is conserved"):
-        prove(spec(BOOST, ("t*P - m*r", wrong))).require()
+        prove_claims(spec(BOOST, ("t*P - m*r", wrong))).require()
 
 
 BOOSTS = """
@@ -64,7 +64,7 @@ def test_galilean_boosts():
         ('exchanges = { K = "K" }', 'exchanges = { K = "-K" }'),
     ):
         with pytest.raises(ClaimError, match="boost takes"):
-            prove(spec(boosted.replace(*wrong))).require()
+            prove_claims(spec(boosted.replace(*wrong))).require()
 
 
 REVERSED = """
@@ -87,7 +87,7 @@ def test_motions_run_backwards_with_their_time():
     """cos(t) is even, sin(t) is not."""
     assert set(claims(REVERSED).values()) == {Verdict.PROVED}
     with pytest.raises(ClaimError, match="back takes the motion to its reverse"):
-        prove(spec(REVERSED, ("cos(t)", "sin(t)"))).require()
+        prove_claims(spec(REVERSED, ("cos(t)", "sin(t)"))).require()
 
 
 def test_where_inputs_have_to_be_constant():
@@ -109,7 +109,7 @@ def test_charts_that_keep_an_input():
     timed = ("[inputs]", '[time]\nname = "t"\n[inputs]')
     changes = (further, (" - dot(u, Gamma)", " - t*dot(u, Gamma)"), timed)
     with pytest.raises(DerivationError, match=r"dl/dGamma1 = -u1\*t depends on t"):
-        prove(spec(TOP, *changes))
+        prove_claims(spec(TOP, *changes))
 
 
 def test_an_input_that_cancels_needs_nothing():
@@ -135,7 +135,7 @@ def test_energy_changes_with_time():
 def test_claimed_energy_of_a_driven_motion_is_refuted():
     """Who claims it conserved all the same is shown a point."""
     with pytest.raises(ClaimError, match="energy is conserved"):
-        prove(spec(PENDULUM + '[claims]\nconserved = ["energy"]\n')).require()
+        prove_claims(spec(PENDULUM + '[claims]\nconserved = ["energy"]\n')).require()
 
 
 def test_forces_need_no_constant_inputs():
@@ -173,7 +173,7 @@ def test_reversed_rates():
     inputs = 'c = { rate = "b" }\nb = { }\na = { rate = "c" }'  # a -> c -> b
     assert set(claims(text % (inputs, "a + b + c^2 + t*c")).values()) == {Verdict.PROVED}
     with pytest.raises(ClaimError, match="back takes the motion to its reverse"):
-        prove(spec(text % (inputs, "a + b + c"))).require()
+        prove_claims(spec(text % (inputs, "a + b + c"))).require()
 
 
 @pytest.mark.parametrize("belt", ["vy == t^2*vx", "vy == (t + x)*vx"])

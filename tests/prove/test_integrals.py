@@ -5,8 +5,8 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.errors import ClaimError, SpecError
-from coadjoint.prove import Verdict, prove
-from tests.specs import RIGID_BODY, spec
+from coadjoint.prove import Verdict
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 #: I = (4k, 4k, k), weight along chi in the equatorial plane: Goryachev's and Chaplygin's top.
 CHAPLYGIN = """
@@ -31,7 +31,7 @@ conserved = [{ claim = "cubic", where = ["dot(Pi, Gamma)"] }]
 
 def verdicts(text, *changes):
     """The claims that something is conserved, but for the energy's."""
-    claims = prove(spec(text, *changes)).claims
+    claims = prove_claims(spec(text, *changes)).claims
     return [claim for claim in claims if claim.kind == "conserved"][1:]
 
 
@@ -55,12 +55,12 @@ def test_chaplygins_integral_is_proved_on_its_level_set():
 def test_a_spoiled_integral_is_refuted_at_a_point_of_the_level_set(change):
     """One sign or factor off, and the message shows a point with Pi.Gamma = 0 where it fails."""
     declared = spec(CHAPLYGIN, change)
-    (claim,) = prove(declared).refuted
+    (claim,) = prove_claims(declared).refuted
     point = {name: Fraction(value) for name, value in claim.counterexample.items()}
     assert sum(point[f"Pi{n}"] * point[f"Gamma{n}"] for n in (1, 2, 3)) == 0
     assert Fraction(claim.defect) != 0
     with pytest.raises(ClaimError, match="where dot") as caught:
-        prove(declared).require()
+        prove_claims(declared).require()
     assert caught.value.exit_status == 1
 
 
@@ -102,11 +102,11 @@ def test_a_level_set_that_is_linear_in_nothing_has_points_too():
     """Pi3 moves on the sphere Pi . Pi = 1, and the point that shows it lies there."""
     claim = 'conserved = [{ claim = "Pi3", where = ["dot(Pi, Pi) - 1"] }]'
     declared = spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
-    (found,) = prove(declared).refuted
+    (found,) = prove_claims(declared).refuted
     length = sum(float(found.counterexample[f"Pi{n}"]) ** 2 for n in (1, 2, 3))
     assert length == pytest.approx(1, abs=1e-13)
     with pytest.raises(ClaimError, match="where dot"):
-        prove(declared).require()
+        prove_claims(declared).require()
 
 
 def test_every_component_of_a_claim_is_proved():
@@ -122,11 +122,11 @@ def test_every_component_of_a_claim_is_proved():
 def test_a_vector_of_casimirs_is_one_claim_of_all():
     """Both components are Casimirs of so(3)*; with Omega among them they are not."""
     vector = 'casimirs = ["rows(Pi, 2*Pi)*Pi"]'
-    certificate = prove(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', vector)))
+    certificate = prove_claims(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', vector)))
     assert certificate.holds
     assert "every Casimir is a function of the one known" in str(certificate)
     vector = 'casimirs = ["rows(Pi, I)*Pi"]'
-    (refuted,) = prove(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', vector))).refuted
+    (refuted,) = prove_claims(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', vector))).refuted
     assert refuted.statement == "rows(Pi, I)*Pi is a Casimir"
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError
-from coadjoint.prove import Verdict, prove
-from tests.specs import spec
+from coadjoint.prove import Verdict
+from tests.specs import prove_claims, spec
 
 MOTION = """
 title = "Two coordinates"
@@ -33,7 +33,7 @@ EVERYWHERE = "in all of [domain], wherever the Lagrangian is defined and the dec
 
 def invertible(lagrangian, *changes):
     """The claim that the Legendre transform of a Lagrangian is invertible."""
-    certificate = prove(spec(MOTION, ("LAGRANGIAN", lagrangian), *changes))
+    certificate = prove_claims(spec(MOTION, ("LAGRANGIAN", lagrangian), *changes))
     (found,) = [c for c in certificate.claims if "Legendre transform is invertible" in c.statement]
     assert found.verdict == Verdict.PROVED
     return found
@@ -128,7 +128,7 @@ def test_even_potentials_have_a_mirror_symmetry(potential, verdict):
         + '[transformations.mirror]\nmap = { q = "-q", p = "-p" }\n'
         + '[claims]\nconserved = ["energy"]\n'
     )
-    (found,) = [c for c in prove(motion).claims if c.statement.startswith("mirror takes")]
+    (found,) = [c for c in prove_claims(motion).claims if c.statement.startswith("mirror takes")]
     assert found.verdict == verdict
 
 

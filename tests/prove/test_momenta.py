@@ -5,10 +5,10 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.errors import SpecError
-from coadjoint.prove import Verdict, momenta, prove
+from coadjoint.prove import Verdict, momenta
 from coadjoint.prove.momenta import _changes, about_momenta, momentum_law
 from tests.constrained import BALL, PARTICLE, SLEIGH, motion
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 JELLETT = '[momenta]\njellett = { section = { Omega = "s" } }\n'
 #: The ball with an axis of symmetry through its centre of mass: Routh's sphere.
@@ -110,7 +110,7 @@ turning = { section = { v = "vector(-q2, q1)" } }
 
 def statements(text, *changes):
     """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
 
 
 def test_momenta_of_free_motions():

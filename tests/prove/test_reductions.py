@@ -6,8 +6,8 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.derive.mechanics import external
 from coadjoint.errors import ClaimError, SpecError
-from coadjoint.prove import Verdict, prove
-from tests.specs import spec
+from coadjoint.prove import Verdict
+from tests.specs import prove_claims, spec
 
 #: Two oscillators with a spring of any kind between them, driven alike, which move as one.
 IN_STEP = """
@@ -64,7 +64,7 @@ LAW = "the energy changes by the power of the forces"
 
 def verdicts(text, *changes):
     """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
 
 
 @pytest.mark.parametrize("text", [IN_STEP, ABOUT_AN_AXIS])
@@ -91,7 +91,7 @@ def test_the_motion_on_the_section_is_typed_by_hand():
 @pytest.mark.parametrize(("text", "change"), [(IN_STEP, FRICTION), (ABOUT_AN_AXIS, TORQUE)])
 def test_a_force_that_leaves_the_section_is_refuted(text, change):
     """With a point; the same motion without that force keeps it."""
-    certificate = prove(spec(text, change))
+    certificate = prove_claims(spec(text, change))
     false = {each.statement for each in certificate.claims if each.verdict is Verdict.REFUTED}
     assert any(each.startswith("the whole motion keeps") for each in false)
     assert any(each.startswith("the motion keeps") for each in false)
@@ -150,7 +150,7 @@ LOST = f"{LAW} and -2 R"
 def test_rayleighs_function_acts_on_the_whole(more, law, friction):
     """By velocities that momenta give: ``q' = v, p' = -q - dR/dv + u sin t``, with v = p/m."""
     declared = spec(IN_STEP, *RAYLEIGH, *more)
-    found = {claim.statement: claim.verdict for claim in prove(declared).claims}
+    found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
     assert set(found.values()) == {Verdict.PROVED}
     assert law in found
     q, p, m, u, t = sympy.symbols("q1 p1 m u t")
@@ -167,7 +167,7 @@ def test_a_body_about_an_axis_with_friction_in_its_bearing():
     velocities += 'turn = { role = "velocity", block = ["J1", "J2"] }\n'
     bearing = ('[forces]\nalong = "-c*along"', '[dissipation]\nR = "c*w^2/2 + c*dot(turn, turn)"')
     declared = spec(ABOUT_AN_AXIS, ("[parameters]", f"{velocities}[parameters]"), bearing)
-    found = {claim.statement: claim.verdict for claim in prove(declared).claims}
+    found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
     assert set(found.values()) == {Verdict.PROVED}
     assert "the energy changes by -2 R" in found
     along, c, inertia = sympy.symbols("along c I3")
@@ -176,7 +176,7 @@ def test_a_body_about_an_axis_with_friction_in_its_bearing():
 
 def test_uneven_friction_leaves_the_section():
     """Friction of one oscillator alone parts them; the balance there fails with it."""
-    certificate = prove(spec(IN_STEP, *RAYLEIGH, UNEVEN))
+    certificate = prove_claims(spec(IN_STEP, *RAYLEIGH, UNEVEN))
     false = {each.statement for each in certificate.claims if each.verdict is Verdict.REFUTED}
     assert {"the motion keeps q2 = q1, p2 = p1", LOST} <= false
 

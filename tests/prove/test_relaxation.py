@@ -11,9 +11,9 @@ from coadjoint.derive import derive
 from coadjoint.derive.mechanics import external
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.exact import Condition, Field, Region
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.semidefinite import decide_semidefinite
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
 PARAMETER = ("[parameters]", "[parameters]\na = { positive = true, default = 1 }")
 #: Keeps the energy (Morrison 1986): G dh = G Omega = 0.
@@ -33,7 +33,9 @@ def metriplectic(G, S="dot(Pi, Pi)/2"):
 
 def verdicts(*changes):
     """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove(spec(RIGID_BODY, *changes)).claims}
+    return {
+        claim.statement: claim.verdict for claim in prove_claims(spec(RIGID_BODY, *changes)).claims
+    }
 
 
 def test_a_double_bracket_keeps_casimirs_and_loses_energy():
@@ -84,7 +86,7 @@ def test_a_metriplectic_bracket_keeps_energy_and_gains_entropy():
 def test_what_is_no_metric_is_refuted(G, statement):
     """With a point at which it is none."""
     changes = (("[claims]", f'[double_bracket]\nG = "{G}"\n[claims]'), PARAMETER)
-    certificate = prove(spec(RIGID_BODY, *changes))
+    certificate = prove_claims(spec(RIGID_BODY, *changes))
     (claim,) = [each for each in certificate.claims if each.statement == statement]
     assert claim.verdict is Verdict.REFUTED
     assert eval_fraction(claim.defect)
@@ -149,9 +151,9 @@ def test_support_may_be_accepted():
     """Only where the spec says so."""
     G = 'G = "exp(Pi1) - 1 - Pi1"'
     table = f"[double_bracket]\n{G}\n[claims]"
-    assert not prove(spec(RIGID_BODY, ("[claims]", table))).holds
+    assert not prove_claims(spec(RIGID_BODY, ("[claims]", table))).holds
     accepted = table.replace(G, f'{G}\naccept = "numerical"')
-    assert prove(spec(RIGID_BODY, ("[claims]", accepted))).holds
+    assert prove_claims(spec(RIGID_BODY, ("[claims]", accepted))).holds
 
 
 REFUSED = [
@@ -208,7 +210,7 @@ def test_a_body_falls_onto_its_largest_axis():
 
 def test_shipped_motions_name_what_they_lose():
     """The heads of generated files and the certificate agree."""
-    found = {c.statement for c in prove(shipped("landau_lifshitz_gilbert")).claims}
+    found = {c.statement for c in prove_claims(shipped("landau_lifshitz_gilbert")).claims}
     assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
 
 
@@ -265,7 +267,7 @@ def rates(text, *changes):
 
 def statements(text, *changes):
     """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove(spec(text, *changes)).claims}
+    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
 
 
 @pytest.mark.parametrize(

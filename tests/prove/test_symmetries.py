@@ -5,8 +5,7 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError
-from coadjoint.prove import prove
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 KEPLER = """
 title = "Kepler"
@@ -65,7 +64,7 @@ def statements(certificate):
 
 def test_the_eccentricity_vector_is_a_hidden_symmetry():
     """L comes from turning positions; the flow of A commutes with the motion, and moves q by p."""
-    found = statements(prove(spec(KEPLER)).require())
+    found = statements(prove_claims(spec(KEPLER)).require())
     assert "the flow of L takes motions to motions, a transformation of positions" in found
     hidden = "a hidden symmetry: its flow is no transformation of positions alone"
     assert f"the flow of A takes motions to motions, {hidden}" in found
@@ -83,13 +82,13 @@ def test_the_eccentricity_vector_is_a_hidden_symmetry():
 )
 def test_a_wrong_claim_is_refuted(change, culprit):
     """A sign of {A, A}, another force, and what reversal does to A are seen."""
-    refuted = [claim.statement for claim in prove(spec(KEPLER, change)).refuted]
+    refuted = [claim.statement for claim in prove_claims(spec(KEPLER, change)).refuted]
     assert any(culprit in statement for statement in refuted), refuted
 
 
 def test_the_monopole_has_a_declared_map():
     """L - lam r/|r| generates rotations of r and v in the magnetic bracket, and is conserved."""
-    found = statements(prove(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL)).require())
+    found = statements(prove_claims(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL)).require())
     assert "L is their momentum map: {x, L} = dx/ds" in found
     assert "L is conserved by Noether's theorem, since its flow keeps h" in found
 
@@ -97,7 +96,7 @@ def test_the_monopole_has_a_declared_map():
 def test_the_monopole_sees_a_wrong_sign_of_its_spin():
     """With + lam r/|r| the map does not generate the rotations of v."""
     change = ("cross(r, v) - lam*r/norm(r), xi", "cross(r, v) + lam*r/norm(r), xi")
-    wrong = prove(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, change))
+    wrong = prove_claims(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, change))
     assert "L is their momentum map: {x, L} = dx/ds" in statements_of_refuted(wrong)
 
 
@@ -110,7 +109,7 @@ def test_a_map_that_cannot_be_found_is_asked_for():
     """Rotations of r and v with the square root of a monopole need a declared map."""
     text = ('\nmap = "dot(cross(r, v) - lam*r/norm(r), xi)"', "")
     with pytest.raises(DerivationError, match=r"symmetries.L|generators.r") as caught:
-        prove(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, text))
+        prove_claims(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, text))
     assert "expected the momentum map beside it" in str(caught.value)
 
 
@@ -122,7 +121,7 @@ def test_a_generator_that_leaves_the_form_is_refused():
         '[symmetries.J]\nalgebra = "gl(2,R)"\nmatrix = "B"\ngenerators = { r = "B*r" }\n'
     )
     with pytest.raises(DerivationError, match=r"generators.r: the value is not symmetric"):
-        prove(spec(text))
+        prove_claims(spec(text))
 
 
 #: A charge in the field B w: its state is (q, v), or (q, p) with a momentum declared.
@@ -160,7 +159,7 @@ def test_noether_on_configuration_spaces(changes):
     turned = w.cross(q)
     expected = p.dot(turned) if changes else m * v.dot(turned) + B * turned.dot(turned) / 2
     assert sympy.expand(derive(declared).observables["J"] - expected) == 0
-    found = statements(prove(declared).require())
+    found = statements(prove_claims(declared).require())
     assert "J is their momentum map: {x, J} = dx/ds" in found
     assert "J is conserved by Noether's theorem, since its flow keeps h" in found
     assert "the flow of J takes motions to motions, a transformation of positions" in found
@@ -169,7 +168,7 @@ def test_noether_on_configuration_spaces(changes):
 @pytest.mark.parametrize("changes", [(), WITH_MOMENTUM], ids=["velocities", "momenta"])
 def test_noether_on_configuration_spaces_sees_a_potential(changes):
     """A potential that turns with nothing breaks the claim."""
-    wrong = prove(spec(CHARGE, *changes, ("dot(q, q)^2", "q1*q2")))
+    wrong = prove_claims(spec(CHARGE, *changes, ("dot(q, q)^2", "q1*q2")))
     assert "J is conserved" in statements_of_refuted(wrong)
     assert not any("Noether" in statement for statement in statements(wrong))
 
@@ -223,7 +222,7 @@ def test_noether_with_moving_time(state, changes):
     energy = momentum.dot(velocity) / 2 + potential
     expected = momentum.dot(moves) - c * energy
     assert sympy.simplify(derive(declared).observables["J"] - expected) == 0
-    certificate = prove(declared)
+    certificate = prove_claims(declared)
     assert certificate.holds
     assert {NOETHER, "J is their momentum map: {x, J} = dx/ds"} <= {*statements(certificate)}
 
@@ -232,7 +231,7 @@ def test_noether_with_moving_time(state, changes):
 @pytest.mark.parametrize("changes", [(TURN,), (ROUND,)], ids=["turn", "shift"])
 def test_moving_time_does_not_make_symmetries(state, changes):
     """Turned in a well along one axis, or shifted in a round one, J changes, and E does not."""
-    wrong = prove(spec(PLANE, *state, *changes))
+    wrong = prove_claims(spec(PLANE, *state, *changes))
     assert "J is conserved" in statements_of_refuted(wrong)
     assert not any("Noether" in statement for statement in statements(wrong))
 
@@ -242,8 +241,8 @@ def test_a_declared_map_is_that_without_time(state):
     """<dl/dv, xi_Q> declared is J, with the part of time; twice of it moves positions twice."""
     momentum = "p1" if state else "(m*(1 + q2^2)*v1 + m*v2/3)"
     right, wrong = (('"c*s"', f'"c*s"\nmap = "{factor}s*{momentum}"') for factor in ("", "2*"))
-    assert prove(spec(PLANE, *state, right)).holds
-    refuted = statements_of_refuted(prove(spec(PLANE, *state, wrong)))
+    assert prove_claims(spec(PLANE, *state, right)).holds
+    refuted = statements_of_refuted(prove_claims(spec(PLANE, *state, wrong)))
     assert "J is their momentum map: {x, J} = dx/ds" in refuted
 
 
@@ -251,7 +250,7 @@ def test_a_declared_map_is_that_without_time(state):
 def test_time_may_move_by_the_place(state):
     """With tau = q2 the lift to momenta has E dtau/dq; J = p1 - E q2 is conserved by nothing."""
     local = ('"c*s"', '"s*q2"'), ('["J"]', '["energy"]')
-    certificate = prove(spec(PLANE, *state, *local))
+    certificate = prove_claims(spec(PLANE, *state, *local))
     assert certificate.holds
     assert "J is their momentum map: {x, J} = dx/ds" in statements(certificate)
     assert NOETHER not in statements(certificate)
@@ -273,7 +272,7 @@ def boosts(state, *changes):
     text = PLANE[: PLANE.index("[symmetries.J]")] + GALILEI
     change = ('v = "s[2]*vector(1, 0)"', 'p = "m*s[2]*vector(1, 0)"')
     force = (ROUND[0], "m*dot(v, v)/2 - k*q2^2")
-    return prove(spec(text, *state, force, *([change] if state else []), *changes))
+    return prove_claims(spec(text, *state, force, *([change] if state else []), *changes))
 
 
 @STATES
@@ -314,9 +313,9 @@ generators = { x = "cross(xi, x)" }
 
 def test_claims_about_a_bracket_are_made_without_an_energy():
     """Forces with a bracket and no energy: maps and brackets are examined, nothing is conserved."""
-    claims = prove(spec(FORCED)).claims
+    claims = prove_claims(spec(FORCED)).claims
     assert {claim.kind for claim in claims} >= {"symmetry", "bracket"}
-    assert prove(spec(FORCED)).holds
+    assert prove_claims(spec(FORCED)).holds
     assert not any("Noether" in claim.statement for claim in claims)
-    (wrong,) = prove(spec(FORCED, ('"-hat(J)"', '"hat(J)"'))).refuted
+    (wrong,) = prove_claims(spec(FORCED, ('"-hat(J)"', '"hat(J)"'))).refuted
     assert wrong.statement == "{J, J} = hat(J)"

@@ -4,9 +4,9 @@ import pytest
 
 from coadjoint import pipeline
 from coadjoint.errors import ClaimError, SpecError
-from coadjoint.prove import Certificate, Claim, Finding, Verdict, prove
-from coadjoint.prove.zero import Decision, Discovery, claimed_by, make_entry
-from tests.specs import RIGID_BODY, spec
+from coadjoint.prove import Certificate, Claim, Finding, Verdict
+from coadjoint.prove.zero import Decision, Discovery, make_entry, mark_accepted
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 
 def nested(a, b):
@@ -80,7 +80,7 @@ def test_a_discovery_becomes_a_finding():
         "scope": "for almost all parameters",
         "error": "below 1e-17",
     }
-    ((*_, examine),) = claimed_by(
+    ((*_, examine),) = mark_accepted(
         spec(), ("claims", "casimirs", 0), [("", "", lambda: discovery)], None
     )
     assert examine() is discovery
@@ -89,7 +89,7 @@ def test_a_discovery_becomes_a_finding():
 def hidden(table):
     """The word of a spec on its claims that are true and not proved."""
     declared = spec(PLANE + table)
-    supported = [c for c in prove(declared).claims if c.verdict is Verdict.SUPPORTED]
+    supported = [c for c in prove_claims(declared).claims if c.verdict is Verdict.SUPPORTED]
     assert supported
     (word,) = {each.accepted for each in supported}
     return word
@@ -109,12 +109,12 @@ def test_a_spec_may_accept_support_of_its_claims(way):
     """Without the word the system is refused, with it the claim is counted as supported."""
     assert hidden(WAYS[way] % "") is False
     with pytest.raises(ClaimError, match="not proved: ") as caught:
-        prove(spec(PLANE + WAYS[way] % "")).require()
+        prove_claims(spec(PLANE + WAYS[way] % "")).require()
     assert "numerically supported" in str(caught.value)
     assert 'accept = "numerical"' in str(caught.value)  # the advice, which the next lines follow
     accepted = WAYS[way] % ', accept = "numerical"'
     assert hidden(accepted) is True
-    assert prove(spec(PLANE + accepted)).require().count(Verdict.SUPPORTED) >= 1
+    assert prove_claims(spec(PLANE + accepted)).require().count(Verdict.SUPPORTED) >= 1
 
 
 def test_a_map_and_a_symmetry_accept_support_in_their_tables():
@@ -125,11 +125,11 @@ def test_a_map_and_a_symmetry_accept_support_in_their_tables():
     line = PLANE.replace("shape = [2]", "shape = []").replace("dot(p, p)/2", "p").replace("p1", "p")
     moved = '[symmetries.J]\nalgebra = "R^1"\nvector = "s"\nmap = "s*p"\n'
     moved += f'generators = {{ q = "s + s*({nested("q", "q")})", p = "0*s*p" }}\n'
-    declared = prove(spec(line + moved))
+    declared = prove_claims(spec(line + moved))
     supported = [c for c in declared.claims if c.verdict is Verdict.SUPPORTED]
     assert {c.kind for c in supported} == {"symmetry"}
     assert not declared.holds
-    assert prove(spec(line + moved + 'accept = "numerical"\n')).holds
+    assert prove_claims(spec(line + moved + 'accept = "numerical"\n')).holds
 
 
 def test_the_engine_never_accepts_support_of_its_own_claims():
@@ -153,7 +153,7 @@ def test_another_word_is_refused(word):
 def test_acceptance_does_not_save_a_false_claim():
     """What is refuted is refuted."""
     wrong = '[claims]\nconserved = [{ claim = "q1", accept = "numerical" }]\n'
-    assert not prove(spec(PLANE + wrong)).holds
+    assert not prove_claims(spec(PLANE + wrong)).holds
 
 
 def test_the_former_name_of_a_claim_is_read():
@@ -181,7 +181,7 @@ def test_generated_heads_say_what_is_not_proved():
 def test_a_decision_without_a_spec_is_the_engines():
     """Only claims that a spec makes carry its word."""
     assert Decision(Verdict.PROVED, "").accepted is None
-    assert {c.accepted for c in prove(spec()).claims} == {None, False}
+    assert {c.accepted for c in prove_claims(spec()).claims} == {None, False}
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_a_decision_without_a_spec_is_the_engines():
 )
 def test_the_method_names_relations_of_functions_that_are_gone(integral, method):
     """What is zero shows no function, but -sin(q) = sin(-q) was needed to see that it is."""
-    found = prove(spec(PLANE + f'[claims]\nconserved = ["{integral}"]\n')).claims
+    found = prove_claims(spec(PLANE + f'[claims]\nconserved = ["{integral}"]\n')).claims
     (one,) = (each for each in found if each.statement == f"{integral} is conserved")
     assert one.verdict is Verdict.PROVED
     assert one.method.startswith(method)

@@ -8,14 +8,14 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.derive.mechanics.almost_poisson import reduced_momenta
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.zero import decide_zero
 from tests.constrained import BALL, motion
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 #: The centred ball with Y = Omega x r Gamma already in its Lagrangian.
 CONSTRAINED_TOO_SOON = """
@@ -65,7 +65,7 @@ def rates_of_both():
 
 def test_the_wrong_derivation_keeps_energy_and_vertical_momentum():
     """Energy and M . Gamma are kept by it, so that no integral of these tells the two apart."""
-    certificate = prove(spec(CONSTRAINED_TOO_SOON))
+    certificate = prove_claims(spec(CONSTRAINED_TOO_SOON))
     assert certificate.holds
     proved = {claim.statement for claim in certificate.claims if claim.verdict is Verdict.PROVED}
     assert {"the energy is conserved", "dot(Pi, Gamma) is a Casimir"} <= proved

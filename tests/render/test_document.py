@@ -14,12 +14,12 @@ from coadjoint.derive import derive
 from coadjoint.derive.document import ADDENDS, document, formula, formula_line
 from coadjoint.derive.records import symbol
 from coadjoint.exact import Field
-from coadjoint.render.document import FORMATS, WIDTH, latex_escaped, render_document
+from coadjoint.render.document import FORMATS, WIDTH, escape_latex, render_document
 from tests.constrained import PARTICLE
 from tests.prove.test_declared_charts import PLANE, RATES
 from tests.specs import RIGID_BODY, shipped, spec
 
-ESCAPED = {"text": str, "latex": latex_escaped, "html": escape}
+ESCAPED = {"text": str, "latex": escape_latex, "html": escape}
 HOSTILE = (
     "<script>alert(1)</script>",
     "</title><img src=x onerror=alert(1)>",

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from coadjoint.crosscheck.bits import differing
+from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.errors import SpecError
 from coadjoint.lower.program import Add, Divide, Multiply, Negate, Number, Symbol, evaluate
@@ -19,9 +19,9 @@ from coadjoint.render.printers import (
     number_text,
     python_call,
 )
-from coadjoint.render.targets.c.printer import c_assignment, c_text
+from coadjoint.render.targets.c.printer import C
 from coadjoint.render.targets.c.reader import read_expression as read_c_expression
-from coadjoint.render.targets.numpy.printer import numpy_assignment, numpy_text
+from coadjoint.render.targets.numpy.printer import NUMPY
 from coadjoint.render.targets.numpy.reader import read_expression as read_python_expression
 from tests.programs import node
 from tests.trees import NAMES, numbers, trees
@@ -54,7 +54,7 @@ a, b, c = map(Symbol, "abc")
 )
 def test_parentheses_are_those_that_the_order_needs(tree, text):
     """Both languages print the same text, and not one parenthesis more."""
-    assert numpy_text(tree) == c_text(tree) == text
+    assert NUMPY.text(tree) == C.text(tree) == text
 
 
 @given(numbers)
@@ -78,23 +78,23 @@ def test_a_number_without_a_double_is_refused(value):
 @given(trees())
 def test_python_text_reads_back_as_the_tree(tree):
     """Python's own parser finds the tree in what we print."""
-    assert read_python_expression(numpy_text(tree), "f") == as_printed(tree)
+    assert read_python_expression(NUMPY.text(tree), "f") == as_printed(tree)
 
 
 @settings(deadline=None)
 @given(trees())
 def test_c_text_reads_back_as_the_tree(tree):
     """A reader of C that shares no code with the printer finds the tree in what we print."""
-    assert read_c_expression(c_text(tree), "f") == as_printed(tree)
+    assert read_c_expression(C.text(tree), "f") == as_printed(tree)
 
 
 @settings(deadline=None)
 @given(trees())
 def test_broken_assignments_read_back_as_the_tree(tree):
     """Breaking a long line moves no operand."""
-    line = ast.parse(numpy_assignment(tree, to="x", column=0, comment="dPi1/dt")).body[0]
+    line = ast.parse(NUMPY.assignment(tree, to="x", column=0, comment="dPi1/dt")).body[0]
     assert read_python_expression(ast.unparse(line.value), "f") == as_printed(tree)
-    head, text = c_assignment(tree, to="x", column=8).split("=", 1)
+    head, text = C.assignment(tree, to="x", column=8).split("=", 1)
     assert (head, text[-1]) == ("x ", ";")
     assert read_c_expression(text[:-1], "f") == as_printed(tree)
 
@@ -106,10 +106,10 @@ def test_python_text_evaluates_to_the_same_bits(tree):
     values = {name: np.float64(1.25 + 0.37 * k) for k, name in enumerate(NAMES)}
     with np.errstate(all="ignore"):
         expected = evaluate(tree, values, np.float64, lambda function, x: np.sqrt(x))
-        text = numpy_text(tree).replace("np.sqrt", "sqrt")
+        text = NUMPY.text(tree).replace("np.sqrt", "sqrt")
         floats = ast.unparse(_DoubleConstants().visit(ast.parse(text, mode="eval")))
         found = eval(floats, {**values, "sqrt": np.sqrt, "double": np.float64})
-    assert not differing(np.float64(found), expected)
+    assert not find_differing_bits(np.float64(found), expected)
 
 
 class _DoubleConstants(ast.NodeTransformer):
@@ -123,7 +123,7 @@ class _DoubleConstants(ast.NodeTransformer):
 def test_lines_are_short_where_they_can_be():
     """A sum of forty products stands on lines of at most 100 columns."""
     long = node(" + ".join(f"Omega{i}*Gamma{i}" for i in range(40)))
-    for text in (numpy_assignment(long, to="out[0]"), c_assignment(long, to="out[0]", column=12)):
+    for text in (NUMPY.assignment(long, to="out[0]"), C.assignment(long, to="out[0]", column=12)):
         lines = text.splitlines()
         assert 40 <= len(lines) <= 43
         assert max(map(len, lines)) <= WIDTH
@@ -144,7 +144,7 @@ def test_our_formatter_leaves_assignments_as_they_are(tmp_path):
     lines = ["def f():"]
     for row in range(400):
         tree, note = long_tree(source, source.randrange(8)), source.choice(["", "dPi1/dt"])
-        lines.append("    " + numpy_assignment(tree, to=f"out[{row}]", comment=note))
+        lines.append("    " + NUMPY.assignment(tree, to=f"out[{row}]", comment=note))
     check_formatted("\n".join(lines) + "\n", tmp_path)
 
 

@@ -6,9 +6,8 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from coadjoint.pipeline import render
 from coadjoint.solve.system import System, load_folder
-from tests.specs import spec
+from tests.specs import render_claims, spec
 
 #: A stone above the ground, which it reaches from rest after sqrt(2 h/g).
 STONE = """
@@ -122,6 +121,6 @@ wheels = "dot(a, Omega) == 0"
 def built(text: str, *changes: tuple[str, str]) -> System:
     """The System of a spec, proved but not compiled: use the target ``numpy``."""
     folder = Path(tempfile.mkdtemp(prefix="coadjoint-domain-"))
-    for name, content in render(spec(text, *changes)).texts.items():
+    for name, content in render_claims(spec(text, *changes)).texts.items():
         (folder / name).write_text(content)
     return load_folder(folder)

@@ -42,7 +42,7 @@ def run(name, method="auto", **options):
 @pytest.fixture
 def unprojected(monkeypatch):
     """Runs as they are without the projection."""
-    monkeypatch.setattr(Constraints, "onto", lambda self, time, state: state.copy())
+    monkeypatch.setattr(Constraints, "project", lambda self, time, state: state.copy())
 
 
 @pytest.mark.parametrize("name", RUNS)

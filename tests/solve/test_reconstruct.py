@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from coadjoint.crosscheck.bits import differing
+from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.reconstruct import upright
+from coadjoint.solve.reconstruct import turn_upright
 from coadjoint.systems import rigid_body
 from tests.rolling import BALL, DISK, FOLLOWED_SLEIGH, built
 
@@ -187,11 +187,11 @@ def test_numpy_and_c_agree_in_every_bit():
     state, own = source.normal(size=(12, 37)), source.uniform(0.5, 2, (9, 37))
     one = system.reconstruction(state, own, target="numpy")
     assert one.shape == (6, 37)
-    assert not differing(one, system.reconstruction(state, own, target="c")).any()
+    assert not find_differing_bits(one, system.reconstruction(state, own, target="c")).any()
     assert np.abs(one).min() > 0
     named = {"Omega": state[:3], "Gamma": state[3:6], "q": state[6:10]}
     named |= {"x": state[10], "y": state[11]}
-    assert not differing(one, system.reconstruction(named, own)).any()
+    assert not find_differing_bits(one, system.reconstruction(named, own)).any()
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_numpy_and_c_agree_in_every_bit():
 def test_any_normal_is_turned_upright_the_shortest_way(vector):
     """O v = e_z with no turn about e_z, also close to and at the south pole."""
     v = np.array(vector, float) / np.linalg.norm(vector)
-    q = upright(v)
+    q = turn_upright(v)
     assert np.abs(turned(q, v) - [0, 0, 1]).max() < 1e-15
     assert abs(np.linalg.norm(q) - 1) < 1e-15
     assert q[3] == 0

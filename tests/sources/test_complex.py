@@ -7,9 +7,8 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.derive.routes import complexification
-from coadjoint.prove import prove
 from tests.sources.components import cross, dot, plus, times
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 X, Y, K = (sympy.symbols(f"{name}1:4") for name in "xyK")
 BOOK = dict(zip(K, (-1, 0, 1), strict=True))
@@ -54,20 +53,20 @@ def test_C_1_2_complex_velocities():
 
 def test_C_1_2_four_real_integrals():
     """Real and imaginary parts of L.L/2 and L.KL/2, all proved; x.y with another sign is not."""
-    certificate = prove(shipped("complex_rigid_body"))
+    certificate = prove_claims(shipped("complex_rigid_body"))
     assert certificate.holds
     proved = {c.statement for c in certificate.claims}
     assert {f"{name} is conserved" for name in ("ReC", "ImC", "ReH", "ImH")} <= proved
     spoiled = spec(
         WHOLE, ('ReC = { expression = "(dot(x, x) - ', 'ReC = { expression = "(dot(x, x) + ')
     )
-    assert [c.statement for c in prove(spoiled).refuted] == ["ReC is conserved"]
+    assert [c.statement for c in prove_claims(spoiled).refuted] == ["ReC is conserved"]
 
 
 def test_C_1_2_a_hamiltonian_that_is_no_real_part_is_refuted():
     """With + y . Ky both laws of motion exist, and they differ."""
     spoiled = spec(WHOLE, ('h = "(dot(x, diag(K)*x) - ', 'h = "(dot(x, diag(K)*x) + '))
-    statements = [c.statement for c in prove(spoiled).refuted]
+    statements = [c.statement for c in prove_claims(spoiled).refuted]
     assert "lie-poisson and complexification give the same motion" in statements
 
 
@@ -103,7 +102,7 @@ def test_C_1_2_y_is_along_the_motion_of_the_real_sphere():
 
 def test_C_1_2_the_submanifold_is_proved_invariant():
     """Its functions stay zero, vanish on the section, and the section moves along."""
-    certificate = prove(shipped("pt_rigid_body"))
+    certificate = prove_claims(shipped("pt_rigid_body"))
     assert certificate.holds
     kinds = [c.statement for c in certificate.claims if c.kind == "reduction"]
     assert len(kinds) == 3
@@ -122,14 +121,14 @@ def test_C_1_2_the_submanifold_is_proved_invariant():
 )
 def test_C_1_2_a_section_that_is_not_kept_is_refuted(old, new, refuted):
     """A relation that is no integral, another level, another length, another direction of y."""
-    statements = [c.statement for c in prove(spec(TEXT, (old, new))).refuted]
+    statements = [c.statement for c in prove_claims(spec(TEXT, (old, new))).refuted]
     assert any(statement.startswith(refuted) for statement in statements), statements
 
 
 def test_C_1_2_another_level_of_c_is_another_motion():
     """L . L = 2 throughout is kept as well; the motion is not that of the book."""
     other = spec(TEXT, ("dot(y, y) - 1", "dot(y, y) - 2"), ("dot(x, x) - 1)/", "dot(x, x) - 2)/"))
-    assert prove(other).holds
+    assert prove_claims(other).holds
     assert not same([rate.subs(BOOK) for rate in derive(other).rates], book_rates())
 
 
@@ -142,7 +141,7 @@ def test_C_1_2_right_invariance_runs_the_other_way(route, monkeypatch):
     moved = [sympy.expand(-z) for z in cross(L, by(K, L))]
     found = [a + sympy.I * b for a, b in zip(rates[:3], rates[3:], strict=True)]
     assert [sympy.expand(a - b) for a, b in zip(found, moved, strict=True)] == [0, 0, 0]
-    assert prove(right).holds
+    assert prove_claims(right).holds
     follow = complexification.derive
 
     def forgetful(setting):
@@ -151,4 +150,4 @@ def test_C_1_2_right_invariance_runs_the_other_way(route, monkeypatch):
         return replace(whole, exact=turned)
 
     monkeypatch.setattr(complexification, "derive", forgetful)
-    assert not prove(right).holds
+    assert not prove_claims(right).holds

@@ -13,9 +13,9 @@ from coadjoint.derive import derive
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.routes.euler_lagrange import christoffel, christoffel_first
 from coadjoint.derive.setting import make_setting
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 
 def text_of(name):
@@ -25,14 +25,14 @@ def text_of(name):
 
 def refuted(sample):
     """Statements of a certificate that are refuted, each at a point."""
-    claims = [c for c in prove(sample).claims if c.verdict is Verdict.REFUTED]
+    claims = [c for c in prove_claims(sample).claims if c.verdict is Verdict.REFUTED]
     assert all(c.counterexample for c in claims), claims
     return [c.statement for c in claims]
 
 
 def check_proved(sample, *statements):
     """Everything holds, and these statements are among what was proved."""
-    certificate = prove(sample)
+    certificate = prove_claims(sample)
     assert certificate.holds, str(certificate)
     proved = {c.statement for c in certificate.claims if c.verdict is Verdict.PROVED}
     assert set(statements) <= proved, sorted(proved)
@@ -92,7 +92,7 @@ def test_1_2_1_laws_that_name_a_place_a_motion_or_a_direction_are_refuted(force,
         ("[definitions]", "e = { shape = [3] }\n[definitions]"),
     ]
     text = text[: text.index("[lagrangian]")] + text[text.index("[claims]") :]
-    certificate = prove(spec(text, *changes))
+    certificate = prove_claims(spec(text, *changes))
     found = [c for c in certificate.claims if c.verdict is Verdict.REFUTED]
     assert {c.statement for c in found} == {law for law in LAWS if any(b in law for b in broken)}
     for claim in found:

@@ -10,9 +10,9 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from tests.sources.test_multipliers import written_out
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 TEXT = """
 title = "Contact oscillator"
@@ -61,9 +61,9 @@ def test_its_motion_is_that_of_a_multiplier_in_space():
 
 def test_the_driver_and_the_driven_keep_their_energies():
     """Energy, that of y, and what is left; with a force of x on y neither of the last two."""
-    assert all(claim.verdict is Verdict.PROVED for claim in prove(spec(TEXT)).claims)
+    assert all(claim.verdict is Verdict.PROVED for claim in prove_claims(spec(TEXT)).claims)
     coupled = spec(TEXT, ("eps*x^2*z^2)/2", "eps*x^2*y^2)/2"))
-    refuted = {claim.statement for claim in prove(coupled).refuted}
+    refuted = {claim.statement for claim in prove_claims(coupled).refuted}
     assert refuted == {
         "y^2 + vy^2 is conserved",
         "x^2 + (1 + eps*x^2)*z^2 + (1 + y^2)*vz^2 is conserved",

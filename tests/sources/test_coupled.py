@@ -7,12 +7,11 @@ import pytest
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.derive.reference import Reference
-from coadjoint.prove import prove
 from coadjoint.prove.certificate import Verdict
 from coadjoint.resources import derivations_folder
 from tests.conftest import rational_points
 from tests.sources import coupled, textbook
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 
 def rotation(a, b, c):
@@ -56,7 +55,7 @@ def test_C_5_the_printed_torque_is_for_rotations():
 
 def verdict(name, claims, statement):
     """The verdict on one statement about a shipped system with other claims."""
-    certificate = prove(claiming(name, claims))
+    certificate = prove_claims(claiming(name, claims))
     (claim,) = (c for c in certificate.claims if c.statement == statement)
     return claim.verdict
 

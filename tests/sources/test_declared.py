@@ -8,10 +8,10 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.errors import SpecError
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from tests.sources.components import antisymmetric, commutator, cross, dot, hat, plus, times
 from tests.sources.test_equations import values
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 # -- 2.5.6: a rigid body in a quadratic potential -------------------------------------------------
 
@@ -112,9 +112,9 @@ def test_2_5_6_body_of_four_dimensions_in_a_quadratic_potential():
 
 def test_2_5_6_is_proved():
     """Both routes agree, traces of powers of S are Casimirs; tr M^2 is none where S turns too."""
-    assert prove(spec(TOP)).holds
-    assert prove(spec(PACKED)).holds
-    (refuted,) = prove(spec(PACKED, ('"trace(S)"', '"trace(M*M)"'))).refuted
+    assert prove_claims(spec(TOP)).holds
+    assert prove_claims(spec(PACKED)).holds
+    (refuted,) = prove_claims(spec(PACKED, ('"trace(S)"', '"trace(M*M)"'))).refuted
     assert refuted.statement == "trace(M*M) is a Casimir"
 
 
@@ -150,7 +150,7 @@ def test_2_4_3_packed_matrices_go_along_planes():
     with pytest.raises(SpecError, match=r"J1, J2, J3.*hat\("):
         spec(THREE.replace("{algebra}", 'name = "so(3)"'))
     equations = derive(spec(THREE.replace("{algebra}", ROTATIONS)))
-    assert prove(equations.spec).holds
+    assert prove_claims(equations.spec).holds
     for x, a in points(3, 3):
         sums = [p + q for p, q in combinations(a, 2)]
         M, Omega = (
@@ -233,7 +233,7 @@ def test_3_1_5_monopole_equations(r):
 def test_3_1_5_monopole_integrals_are_proved():
     """P, A and E are conserved, exactly; nothing rests on numbers."""
     P, A = vector_claims("-")
-    certificate = prove(claiming(P + A))
+    certificate = prove_claims(claiming(P + A))
     assert certificate.holds, str(certificate)
     assert certificate.count(Verdict.PROVED) == len(certificate.claims)
     # each component of P and A, and the energy once
@@ -248,7 +248,7 @@ def test_3_1_5_monopole_integrals_of_the_wrong_sign_are_refuted():
     flips = [(f'= "k*r{n}/norm', f'= "-k*r{n}/norm') for n in (1, 2, 3)]
     assert refuted_integrals(claiming(right, *flips)) == 3
     L = ["r2*v3 - r3*v2", "dot(cross(r, v), cross(r, v))"]
-    refuted = prove(claiming(L)).refuted
+    refuted = prove_claims(claiming(L)).refuted
     assert [each.statement for each in refuted if each.kind == "conserved"] == [
         f"{L[0]} is conserved"
     ]
@@ -256,7 +256,7 @@ def test_3_1_5_monopole_integrals_of_the_wrong_sign_are_refuted():
 
 def refuted_integrals(declared):
     """How many integrals are refuted; the flow of each is then refuted as a symmetry, too."""
-    kinds = [claim.kind for claim in prove(declared).refuted]
+    kinds = [claim.kind for claim in prove_claims(declared).refuted]
     assert kinds.count("symmetry") == kinds.count("conserved") == len(kinds) / 2
     return kinds.count("conserved")
 
@@ -285,4 +285,4 @@ h = "x1"
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         assert sympy.expand(equations.poisson_tensor[i, j] + slopes[k]) == 0
         assert sympy.expand(equations.poisson_tensor[i, j] - slopes[k]) != 0
-    assert prove(spec(text)).holds
+    assert prove_claims(spec(text)).holds

@@ -1,35 +1,20 @@
 """Derived equations against the formulas of books, exactly, by every route."""
 
 from fractions import Fraction
-from functools import cache
 
 import pytest
 import sympy
 
-from coadjoint.derive import derive, make_setting
 from coadjoint.prove.ideals import Ideal
 from coadjoint.spec.routes import ROUTES
 from tests.conftest import SYSTEMS, rational_points
 from tests.sources import textbook
 from tests.sources.points import DIGITS
-from tests.specs import shipped
+from tests.specs import derived, emitted, shipped
 
 BY_ROUTE = [(name, route) for name in SYSTEMS for route in shipped(name).routes]
 #: A unit quaternion, for charts whose only relation is that.
 UNIT = {f"q{n}": Fraction(part, 5) for n, part in enumerate((1, 2, 2, 4))}
-
-
-@cache
-def derived(name):
-    """The equations of a shipped system by every route, the emitted one first, in one field."""
-    declared = shipped(name)
-    setting = make_setting(declared)
-    return {route: derive(declared, route, setting=setting) for route in declared.routes}
-
-
-def emitted(name):
-    """The equations by the first route."""
-    return next(iter(derived(name).values()))
 
 
 def values(expressions, point):

@@ -18,9 +18,9 @@ from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Field
 from coadjoint.exact.dense import combine, commutator, diagonal, product
 from coadjoint.exact.ranks import generic_rank
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.lax import lax_decision
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
 
 def text_of(name):
@@ -35,7 +35,7 @@ def changed(name, *changes):
 
 def refuted(declared):
     """What a certificate refutes, as (kind, statement, method)."""
-    return [(c.kind, c.statement, c.method) for c in prove(declared).refuted]
+    return [(c.kind, c.statement, c.method) for c in prove_claims(declared).refuted]
 
 
 def planes(size):
@@ -212,7 +212,7 @@ def test_2_4_5_manakov_integrals(size, count):
 
 def test_2_4_5_the_count_of_integrals_is_found_with_its_scope():
     """That coefficients depend on the emitted ones rests on ranks: no proof, an error in words."""
-    (finding,) = prove(shipped("manakov_so4")).findings
+    (finding,) = prove_claims(shipped("manakov_so4")).findings
     assert finding.statement.startswith("4 independent integrals: the coefficients of tr L^k")
     assert finding.scope == "near almost every point, for almost all parameters"
     assert "chance below" in finding.error

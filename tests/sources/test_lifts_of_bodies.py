@@ -3,8 +3,7 @@
 import pytest
 
 from coadjoint.derive import derive
-from coadjoint.prove import prove
-from tests.specs import RIGID_BODY, spec
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 #: T*SO(3) x R^3 inside pairs of matrices: Holm (2011), sections 8.3 and 8.3.1. The turning of the
 #: body, O -> O exp(xi), has the momentum map Pi, and the vertical z is seen from the body as Gamma.
@@ -38,7 +37,7 @@ Gamma = "transpose(O)*z"
 
 def brackets(*changes):
     """The verdicts on the claimed brackets."""
-    claims = prove(spec(ROTATIONS, *changes)).claims
+    claims = prove_claims(spec(ROTATIONS, *changes)).claims
     return {claim.statement: str(claim.verdict) for claim in claims if claim.kind == "bracket"}
 
 

@@ -10,8 +10,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.prove import prove
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 #: One particle with a momentum map and a potential to be filled in; dimensions of q and p by shape.
 PARTICLE = """
@@ -76,12 +75,12 @@ def canonical(f, g, q, p):
 
 def stated(declared):
     """The statements of a certificate that holds."""
-    return [claim.statement for claim in prove(declared).require().claims]
+    return [claim.statement for claim in prove_claims(declared).require().claims]
 
 
 def refuted(declared):
     """The statements that are refuted."""
-    return [claim.statement for claim in prove(declared).refuted]
+    return [claim.statement for claim in prove_claims(declared).refuted]
 
 
 def any_of(statements, piece):
@@ -137,7 +136,7 @@ def test_2_3_1_a_shift_that_h_feels_is_no_symmetry():
     found = refuted(felt)
     assert "F is conserved" in found
     assert "the generators of F act as R^2 from the left" in found
-    statements = [claim.statement for claim in prove(felt).claims]
+    statements = [claim.statement for claim in prove_claims(felt).claims]
     assert "F2 is conserved by Noether's theorem, since its flow keeps h" in statements
 
 
@@ -171,7 +170,7 @@ def test_11_1_and_11_2_spoiled(change, culprit):
     """The signs of bracket, generators and side, and the size of a declared map, are seen."""
     if culprit == "J":
         with pytest.raises(Exception, match="does not preserve the bracket"):
-            prove(spec(PARTICLE, change))
+            prove_claims(spec(PARTICLE, change))
         return
     assert any_of(refuted(spec(PARTICLE, change)), culprit)
 
@@ -242,7 +241,7 @@ def test_11_3_general_linear_maps():
     q, p = symbols("q"), symbols("p")
     declared = acting(LINEAR + 'generators = { q = "A*q" }\n')
     assert equal(emitted(declared, *map(str, square("J", 3))), p * q.T)
-    prove(declared).require()
+    prove_claims(declared).require()
     assert any_of(refuted(acting(LINEAR + 'generators = { q = "transpose(A)*q" }\n')), "act as")
 
 

@@ -15,10 +15,10 @@ from coadjoint.algebra import algebra_by_name
 from coadjoint.derive import derive, make_setting
 from coadjoint.derive.routes.nambu import distinguished_function
 from coadjoint.derive.structure import momentum_algebra, poisson_structure
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.charts import ChartMap
 from tests.sources.components import cross, dot, plus, times
-from tests.specs import shipped, spec
+from tests.specs import prove_claims, shipped, spec
 
 PI, GAMMA, OMEGA = (sympy.symbols(f"{name}1:4") for name in ("Pi", "Gamma", "Omega"))
 INERTIA, CHI, P, V, C = (sympy.symbols(f"{name}1:4") for name in ("I", "chi", "P", "v", "c"))
@@ -95,7 +95,7 @@ def test_2_1_2_newton_euler_about_a_body_fixed_origin():
     found = [rate.subs({}) for rate in in_velocities(equations)]
     assert same(found, newton_euler(1))
     assert not same(found, newton_euler(-1))
-    assert prove(spec(BODY)).holds
+    assert prove_claims(spec(BODY)).holds
 
 
 def test_2_1_2_a_free_body_decouples_about_its_centre_of_mass():
@@ -166,7 +166,7 @@ def on(name, more=""):
 def test_2_5_4_the_signature_of_c_names_the_algebra(name):
     """{x_i, x_j} = -epsilon_ijk C_kl x_l with C of the tabled signature, up to its sign."""
     declared = on(f'name = "{name}"')
-    assert prove(declared).holds
+    assert prove_claims(declared).holds
     setting = make_setting(declared)
     c = setting.field.to_sympy(distinguished_function(setting).function)
     x = [sympy.Symbol(n) for n in setting.state]
@@ -187,7 +187,7 @@ def test_2_5_4_unimodular_algebras_alone_have_c_without_a_multiplier():
     assert found["-1"].multiplier == 1
     assert found["2"].multiplier != 1
     for k in found:
-        assert prove(on(basis % k, " + x2^3")).holds
+        assert prove_claims(on(basis % k, " + x2^3")).holds
 
 
 def test_2_5_4_c_and_h_may_be_mixed():
@@ -223,16 +223,18 @@ def test_7_1_euler_poincare_on_se3():
 
 def test_7_1_1_legendre_transform_on_se3():
     """With h = <mu, xi> + <beta, alpha> - l, velocities are dh/dmu, dh/dbeta; half of it fails."""
-    statements = [c.statement for c in prove(shipped("kirchhoff")).claims if c.kind == "legendre"]
+    statements = [
+        c.statement for c in prove_claims(shipped("kirchhoff")).claims if c.kind == "legendre"
+    ]
     assert "dh/dmu = xi on the route lie-poisson" in statements
     half = changed("kirchhoff", ("(diag(M)*Pi - diag(D)*P))/2", "(diag(M)*Pi - diag(D)*P))/4"))
-    assert "dh/dmu = xi on the route lie-poisson" in refuted(prove(half))
+    assert "dh/dmu = xi on the route lie-poisson" in refuted(prove_claims(half))
 
 
 def test_7_2_clebsch_case_of_kirchhoff():
     """``I1 (1/M2 - 1/M3) + ... = 0`` holds for the declared masses, and F is conserved."""
     declared = shipped("kirchhoff_clebsch")
-    assert prove(declared).holds
+    assert prove_claims(declared).holds
     field = make_setting(declared).field
     mass = [
         sympy.diff(field.to_sympy(derive(declared).setting.formula(declared.lagrangian)), v, 2)
@@ -252,7 +254,7 @@ def test_7_2_clebsch_case_of_kirchhoff():
 )
 def test_7_2_clebsch_integral_needs_its_condition_and_sign(old, new):
     """Another mass along the third axis, or the other sign of theta, and F is not conserved."""
-    assert "F is conserved" in refuted(prove(changed("kirchhoff_clebsch", (old, new))))
+    assert "F is conserved" in refuted(prove_claims(changed("kirchhoff_clebsch", (old, new))))
 
 
 def test_7_2_1_kirchhoff_and_heavy_top_share_their_bracket():
@@ -335,7 +337,7 @@ def test_8_5_the_level_set_matters(sign):
 def test_8_special_tops_have_their_integral(name):
     """The extra integral is proved, and independent of energy and Casimirs at a random point."""
     declared = shipped(name)
-    assert prove(declared).holds
+    assert prove_claims(declared).holds
     found = derive(declared).observables
     state = [sympy.Symbol(n) for n in derive(declared).setting.state]
     kept = [found[n] for n in ("energy", "casimir1", "casimir2", TOPS[name])]
@@ -366,6 +368,6 @@ SPOILED = {
 def test_8_special_tops_are_refuted_otherwise(case):
     """A violated ratio, sign or level set: the integral is refuted with a point."""
     name, change = SPOILED[case]
-    claims = [c for c in prove(changed(name, change)).refuted if c.kind == "conserved"]
+    claims = [c for c in prove_claims(changed(name, change)).refuted if c.kind == "conserved"]
     assert any(c.statement.startswith(f"{TOPS[name]} is conserved") for c in claims)
     assert all(c.counterexample for c in claims)

@@ -63,7 +63,11 @@ def test_misfit_is_refused_at_its_place(change, key, found, said):
     ("change", "text", "said"),
     [
         (('"e3" }', '"e3", "[e2, e1]" = "e3" }'), BY_BRACKETS, "declared twice"),
-        (('"[e1, e2]" = "e3"', '"[e1, e1]" = "e3"'), BY_BRACKETS, "[e1, e1] is declared"),
+        (
+            ('"[e1, e2]" = "e3"', '"[e1, e1]" = "e3"'),
+            BY_BRACKETS,
+            "'[e1, e1]' is 0 and needs no declaration",
+        ),
         (('"e3" }', '"e3", "[e1, e3]" = "e1" }'), BY_BRACKETS, "Jacobi"),
         (("J3 = [[0, -1", "J3 = [[0, -2"), BY_MATRICES, "not in the span"),
         (
@@ -299,7 +303,7 @@ def test_cocycles_and_matrices_may_hold_parameters():
             'extension = { algebra = "h(1)", cocycle = { "[A1, D]" = 1 } }',
             "algebra.extension.cocycle.[A1, D]",
             "D",
-            "not a bracket of the basis",
+            "not a bracket of these names",
         ),
         (
             'extension = { algebra = "h(1)", cocycle = { "[A1, C]" = "m" } }',

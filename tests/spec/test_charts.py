@@ -63,12 +63,12 @@ def test_a_fault_of_a_chart_is_shown_at_its_place(change, key, said):
     assert said in str(caught.value)
 
 
-def test_a_chart_does_not_go_with_constraints():
-    """Their accelerations are solved for; the advice leads to a spec that is read."""
-    chart = '[charts.c]\nvariables = { A = [] }\nmap = { turn = "A" }\nrates = { A = "A" }\n'
-    with pytest.raises(SpecError, match=r"Remove \[charts\], or \[constraints\]"):
-        spec(SUSLOV + chart)
-    assert spec(SUSLOV).constraints
+def test_a_chart_gives_what_constraints_leave():
+    """The velocity that the wheel keeps at 0 is no part of the state."""
+    chart = '[charts.c]\nvariables = { A = [2] }\nmap = { turn = "A" }\nrates = { A = "A" }\n'
+    assert [*spec(SUSLOV + chart).records["charts"][0].map] == ["turn"]
+    with pytest.raises(SpecError, match="there is no variable 'spin'"):
+        spec(SUSLOV + chart.replace('turn = "A"', 'turn = "A", spin = "0"'))
 
 
 def test_names_of_a_chart_are_its_own():

@@ -26,7 +26,7 @@ def source(text):
 def scalars():
     """A scalar, a vector and a matrix of parameters."""
     shapes = {"a": (), "I": (3,), "A": (2, 2), "w1": (2,)}
-    plain = [Parameter(name, shape, name == "I") for name, shape in shapes.items()]
+    plain = [Parameter(name, shape, positive=name == "I") for name, shape in shapes.items()]
     forms = {"N": "antisymmetric", "S": "symmetric"}
     return Scalars([*plain, *(Parameter(name, (3,), form=form) for name, form in forms.items())])
 

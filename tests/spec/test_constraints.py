@@ -206,11 +206,11 @@ KEPT = ('"w == y*u"', '"2*w == y*u"')
     ],
 )
 def test_what_rests_on_a_bracket_is_refused(text, changes, table, found):
-    """Casimirs and brackets where constraints give no velocity; [momenta] is named."""
+    """Casimirs and brackets where constraints give no velocity; what would do is named."""
     with pytest.raises(SpecError, match="with \\[constraints\\]") as caught:
         spec(text + table, *changes)
     assert f"there are {found} with [constraints]" in str(caught.value)
-    assert "Declare momenta along the constraints in [momenta]" in str(caught.value)
+    assert "Solve the constraints for velocities" in str(caught.value)
 
 
 @pytest.mark.parametrize("table", ["[claims]\ngalilean = true", '[lax]\nL = "v"\nM = "v"'])

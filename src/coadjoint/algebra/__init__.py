@@ -23,7 +23,7 @@ from coadjoint.algebra.lie_algebra import (
 )
 from coadjoint.algebra.products import direct_sum, semidirect_product, semidirect_sum
 from coadjoint.algebra.representation import Representation
-from coadjoint.exact.linear import Span, nullspace, rank
+from coadjoint.exact.linear import Span, nullspace
 
 __all__ = [
     "CATALOGUE",
@@ -39,7 +39,6 @@ __all__ = [
     "from_matrices",
     "leibniz_extension",
     "nullspace",
-    "rank",
     "representation_by_name",
     "same_constants",
     "semidirect_product",

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from coadjoint.algebra.families import quaternion_unit
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
-from coadjoint.algebra.matrices import size
+from coadjoint.algebra.matrices import combination, size
 from coadjoint.algebra.representation import Representation, defining, two_sided
 from coadjoint.errors import AlgebraError
 
@@ -90,11 +91,8 @@ def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:
             "reaches. Take the representation 'attitude'.",
             found=algebra.name,
         )
-    half = Fraction(1, 2) if invariance == "right" else Fraction(-1, 2)
     side = 1 if invariance == "right" else -1
     acting: list[SparseMatrix] = [{} for _ in algebra.basis]
-    for axis, place in enumerate(places):  # times i, j or k from one side, in the basis 1, i, j, k
-        j, k = 1 + (axis + 1) % 3, 1 + (axis + 2) % 3
-        unit = {(1 + axis, 0): 1, (0, 1 + axis): -1, (k, j): side, (j, k): -side}
-        acting[place] = {entry: half * x for entry, x in unit.items()}
+    for axis, place in enumerate(places):
+        acting[place] = combination([(Fraction(side, 2), quaternion_unit(axis, side))])
     return Representation(algebra, "quaternion", 4, tuple(acting))

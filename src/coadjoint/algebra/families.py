@@ -189,14 +189,14 @@ def su(n: int) -> LieAlgebra:
 
 def quaternions(_: int = 0) -> LieAlgebra:
     """Imaginary quaternions by left multiplication of (1, i, j, k): ``[i, j] = 2 k``, cyclic."""
+    units = ((letter, quaternion_unit(axis)) for axis, letter in enumerate("ijk"))
+    return _algebra("quaternions", units)
 
-    def generators() -> Generators:
-        for axis, letter in enumerate("ijk"):
-            j, k = 1 + (axis + 1) % 3, 1 + (axis + 2) % 3
-            turn: Matrix = {(1 + axis, 0): 1, (0, 1 + axis): -1, (k, j): 1, (j, k): -1}
-            yield letter, turn
 
-    return _algebra("quaternions", generators())
+def quaternion_unit(axis: int, side: int = 1) -> Matrix:
+    """The product with i, j or k in the basis 1, i, j, k: from the left, or from the right (-1)."""
+    j, k = 1 + (axis + 1) % 3, 1 + (axis + 2) % 3
+    return {(1 + axis, 0): 1, (0, 1 + axis): -1, (k, j): side, (j, k): -side}
 
 
 def coquaternions(_: int = 0) -> LieAlgebra:

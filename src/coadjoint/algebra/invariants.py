@@ -103,7 +103,8 @@ class Invariants:
                 kept.append(i)
             else:
                 kernel.add({i: 1} | {kept[n]: -value for n, value in known.items()})
-        return tuple(self._dense(row) for row in kernel.rows)
+        places = range(self.dimension)
+        return tuple(tuple(row.get(i, 0) for i in places) for row in kernel.rows)
 
     def derived_series(self) -> tuple[int, ...]:
         """Dimensions of g, [g, g], [[g, g], [g, g]], ... until they repeat or vanish.
@@ -155,9 +156,6 @@ class Invariants:
                 for k, c in self.constants.get(pair, {}).items():
                     result[k] = result.get(k, 0) + sign * a * b * c
         return {k: value for k, value in result.items() if value != 0}
-
-    def _dense(self, vector: Mapping[int, Any]) -> tuple[Any, ...]:
-        return tuple(vector.get(i, 0) for i in range(self.dimension))
 
     # -- kinds ----------------------------------------------------------------------------
 

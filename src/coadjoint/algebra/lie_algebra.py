@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from itertools import combinations, combinations_with_replacement
 from types import MappingProxyType
 from typing import Any
 
 from coadjoint.algebra.invariants import Invariants
 from coadjoint.algebra.matrices import (
+    Matrix,
     SparseMatrix,
     combination,
     commutator,
@@ -36,6 +37,7 @@ __all__ = [
     "from_matrices",
     "multiply_constant",
     "same_constants",
+    "wrong_commutators",
 ]
 
 #: [e_i, e_j] = sum of value * e_k over the items k: value; pairs with i < j only, zeros left out.
@@ -126,16 +128,6 @@ class LieAlgebra(Invariants):
             result[j] = result[j] + multiply_constant(xi[i] * mu[k], c)
         return tuple(result)
 
-    def lie_poisson_tensor(self, mu: Sequence[Any], sign: int = -1) -> tuple[tuple[Any, ...], ...]:
-        """Lie-Poisson tensor ``{mu_i, mu_j} = -+ c_ij^k mu_k``.
-
-        The sign is minus for left-invariant systems, plus for right-invariant ones.
-        """
-        matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
-        for i, j, k, c in self.structure():
-            matrix[i][j] = matrix[i][j] + multiply_constant(mu[k], sign * c)
-        return tuple(map(tuple, matrix))
-
     # -- checks ---------------------------------------------------------------------------
 
     def jacobi_violation(self) -> tuple[tuple[int, int, int], dict[int, Any]] | None:
@@ -201,19 +193,26 @@ class LieAlgebra(Invariants):
                 found=len(self.matrices),
             )
         _independent(self.name, self.basis, self.matrices)
-        for i, a in enumerate(self.matrices):
-            for j in range(i + 1, self.dimension):
-                row = self.constants.get((i, j), {})
-                expected = combination((c, self.matrices[k]) for k, c in row.items())
-                result = commutator(a, self.matrices[j])
-                if result != expected:
-                    pair = [self.basis[i], self.basis[j]]
-                    raise AlgebraError(
-                        f"{self.name}: the matrices of {pair[0]} and {pair[1]} have a commutator "
-                        f"with the entries {entries_text(result)}; expected "
-                        f"{entries_text(expected)}. Check [{pair[0]}, {pair[1]}].",
-                        pair=pair,
-                    )
+        for i, j, result, expected in wrong_commutators(self, self.matrices):
+            pair = [self.basis[i], self.basis[j]]
+            raise AlgebraError(
+                f"{self.name}: the matrices of {pair[0]} and {pair[1]} have a commutator with the "
+                f"entries {entries_text(result)}; expected {entries_text(expected)}. "
+                f"Check [{pair[0]}, {pair[1]}].",
+                pair=pair,
+            )
+
+
+def wrong_commutators(
+    algebra: LieAlgebra, matrices: Sequence[SparseMatrix]
+) -> Iterator[tuple[int, int, Matrix, Matrix]]:
+    """Pairs of matrices that do not commute like the basis, their commutator, and the right one."""
+    for i, j in combinations(range(algebra.dimension), 2):
+        row = algebra.constants.get((i, j), {})
+        expected = combination((c, matrices[k]) for k, c in row.items())
+        result = commutator(matrices[i], matrices[j])
+        if result != expected:
+            yield i, j, result, expected
 
 
 def check_size(name: str, generators: int, most: int = GENERATORS) -> None:
@@ -290,7 +289,7 @@ def from_matrices(
     """
     span = _independent(name, basis, matrices)
     brackets = {}
-    for i, j in _overlapping(matrices):
+    for i, j in combinations(range(len(basis)), 2):
         product = commutator(matrices[i], matrices[j])
         brackets[i, j] = _coordinates(name, span, (basis[i], basis[j]), product)
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
@@ -360,17 +359,3 @@ def _coordinates(
             pair=list(pair),
         )
     return coordinates
-
-
-def _overlapping(matrices: Sequence[SparseMatrix]) -> Iterator[tuple[int, int]]:
-    """Pairs i < j whose products are not zero by their places alone, sorted."""
-    with_row: dict[int, set[int]] = {}
-    with_column: dict[int, set[int]] = {}
-    for i, matrix in enumerate(matrices):
-        for row, column in matrix:
-            with_row.setdefault(row, set()).add(i)
-            with_column.setdefault(column, set()).add(i)
-    for i, matrix in enumerate(matrices):
-        partners = {j for _, column in matrix for j in with_row.get(column, ())}
-        partners |= {j for row, _ in matrix for j in with_column.get(row, ())}
-        yield from ((i, j) for j in sorted(partners) if j > i)

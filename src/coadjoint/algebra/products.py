@@ -59,7 +59,7 @@ def semidirect_product(
         name: Name of the product; by default ``g (s) R^n``.
 
     The matrices are affine, ``[[rho(xi), u], [0, 0]]``, with those of g as a further block
-    if rho alone does not tell all of g apart.
+    if rho alone is not faithful.
 
     Raises:
         AlgebraError: A representation is one of another algebra.

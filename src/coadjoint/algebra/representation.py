@@ -8,15 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import combinations, combinations_with_replacement
+from itertools import combinations_with_replacement
 from typing import Any
 
-from coadjoint.algebra.lie_algebra import LieAlgebra, multiply_constant
+from coadjoint.algebra.lie_algebra import LieAlgebra, multiply_constant, wrong_commutators
 from coadjoint.algebra.matrices import (
     Matrix,
     SparseMatrix,
-    combination,
-    commutator,
     convert_entries,
     entries_text,
     kronecker,
@@ -45,21 +43,17 @@ class Representation:
     matrices: tuple[SparseMatrix, ...]
 
     def __post_init__(self) -> None:
-        for i, j in combinations(range(self.algebra.dimension), 2):
-            row = self.algebra.constants.get((i, j), {})
-            expected = combination((c, self.matrices[k]) for k, c in row.items())
-            result = commutator(self.matrices[i], self.matrices[j])
-            if result != expected:
-                a, b = self.algebra.basis[i], self.algebra.basis[j]
-                raise AlgebraError(
-                    f"representation {self.name!r} of {self.algebra.name}: the matrices of {a} and "
-                    f"{b} do not commute like [{a}, {b}]: rho({a}) rho({b}) - rho({b}) rho({a}) "
-                    f"has the entries {entries_text(result) or 'none'}; expected "
-                    f"{entries_text(expected) or 'none'}. Check the matrices of {a} and {b}.",
-                    pair=[a, b],
-                    found=entries_text(result),
-                    expected=entries_text(expected),
-                )
+        for i, j, result, expected in wrong_commutators(self.algebra, self.matrices):
+            a, b = self.algebra.basis[i], self.algebra.basis[j]
+            raise AlgebraError(
+                f"representation {self.name!r} of {self.algebra.name}: the matrices of {a} and "
+                f"{b} do not commute like [{a}, {b}]: rho({a}) rho({b}) - rho({b}) rho({a}) "
+                f"has the entries {entries_text(result) or 'none'}; expected "
+                f"{entries_text(expected) or 'none'}. Check the matrices of {a} and {b}.",
+                pair=[a, b],
+                found=entries_text(result),
+                expected=entries_text(expected),
+            )
 
     def act(self, xi: Sequence[Any], a: Sequence[Any]) -> tuple[Any, ...]:
         """``rho(xi) a``; for the vector representation of so(3) it is ``xi x a``."""

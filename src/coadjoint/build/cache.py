@@ -40,7 +40,7 @@ def cache_folder() -> Path:
     Raises:
         OutputError: No temporary folder can be made either.
     """
-    return _usable(chosen_folder())
+    return _make_usable(chosen_folder())
 
 
 def chosen_folder() -> Path | None:
@@ -55,7 +55,7 @@ def chosen_folder() -> Path | None:
 
 
 @cache
-def _usable(folder: Path | None) -> Path:
+def _make_usable(folder: Path | None) -> Path:
     """The folder, or a temporary one in its stead."""
     try:
         if folder is None:
@@ -65,7 +65,7 @@ def _usable(folder: Path | None) -> Path:
             )
         check_private(folder)
     except OutputError as error:
-        temporary = _temporary(error)
+        temporary = _make_temporary(error)
         warnings.warn(
             f"{error} Kernels are compiled again in this process.", CacheWarning, stacklevel=3
         )
@@ -74,7 +74,7 @@ def _usable(folder: Path | None) -> Path:
     return folder
 
 
-def _temporary(reason: OutputError) -> Path:
+def _make_temporary(reason: OutputError) -> Path:
     """A cache for this process alone.
 
     Raises:
@@ -153,13 +153,13 @@ def _refusal(folder: Path) -> str:
     Raises:
         OSError: It cannot be looked at.
     """
-    found = folder.lstat()
-    if not stat.S_ISDIR(found.st_mode):
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode):
         return "it is not a real folder"
-    if found.st_uid != os.getuid():
-        return f"it belongs to user {found.st_uid}"
-    if found.st_mode & 0o022:
-        mode = f"{stat.S_IMODE(found.st_mode):o}"
+    if status.st_uid != os.getuid():
+        return f"it belongs to user {status.st_uid}"
+    if status.st_mode & 0o022:
+        mode = f"{stat.S_IMODE(status.st_mode):o}"
         return f"other users may write to it (mode {mode}), run `chmod 700 {folder}`"
     for name in FOLDERS:
         if os.path.lexists(folder / name) and not stat.S_ISDIR((folder / name).lstat().st_mode):
@@ -231,8 +231,8 @@ def _read(path: Path) -> bytes:
     """The bytes of a regular file of this user; links are not followed."""
     handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(handle, "rb") as file:
-        found = os.fstat(handle)
-        if not stat.S_ISREG(found.st_mode) or found.st_uid != os.getuid():
+        status = os.fstat(handle)
+        if not stat.S_ISREG(status.st_mode) or status.st_uid != os.getuid():
             raise OSError(f"{path} is not a regular file of this user")
         return file.read()
 

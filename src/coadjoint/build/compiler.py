@@ -136,10 +136,10 @@ def find_compiler() -> Compiler:
     Raises:
         CompilerError: ``CC`` is no plain program name or is not there, or no compiler is found.
     """
-    found = _find(os.environ.get("CC", ""), os.environ.get("PATH", ""))
-    if isinstance(found, CompilerError):
-        raise CompilerError(str(found), **found.parts)
-    return found
+    compiler = _find(os.environ.get("CC", ""), os.environ.get("PATH", ""))
+    if isinstance(compiler, CompilerError):
+        raise CompilerError(str(compiler), **compiler.parts)
+    return compiler
 
 
 def compiler_version() -> str:

@@ -51,6 +51,7 @@ class Library:
 
     def __init__(self, path: Path, name: str, identity: str, build: str, source: str = "") -> None:
         self.name, self.source = name, source
+        self._places: dict[str, int] = {}
         try:
             # CDLL, not PyDLL: calls release the interpreter lock.
             self._handle = ctypes.CDLL(str(path))
@@ -101,18 +102,20 @@ class Library:
         arrays, rest = divmod(len(arguments), 2)
         assert rest == 1, len(arguments)
         assert 3 <= arrays <= 5, len(arguments)
-        place = ctypes.cast(self.symbol(function), _ADDRESS).value or 0
-        words = (place, arrays, *arguments)
+        words = (self._find(function), arrays, *arguments)
         return ctypes.byref((_SIZE * len(words))(*words))
 
-    def symbol(self, function: str) -> Any:
-        """A function of the object by its bare name, as ctypes has it.
+    def _find(self, function: str) -> int:
+        """Where a function of the object is, by its bare name.
 
         Raises:
             CompilerError: The object has none.
         """
         try:
-            return self._handle[f"{self.name}_{function}"]
+            if function not in self._places:
+                symbol = self._handle[f"{self.name}_{function}"]
+                self._places[function] = ctypes.cast(symbol, _ADDRESS).value or 0
+            return self._places[function]
         except AttributeError as error:
             raise CompilerError(
                 f"the compiled kernel of {self.name} has no function {function}. "

@@ -17,7 +17,7 @@ from pathlib import Path
 from coadjoint.build.workplace import list_abandoned, remove
 from coadjoint.limits import CACHE_BYTES
 
-#: Folders of the cache: objects by key, what was verified, systems of one's own, work in progress.
+#: Folders of the cache: objects by key, what was verified, systems of users, work in progress.
 FOLDERS = KERNELS, VERIFIED, SYSTEMS, WORK = "kernels", "verified", "systems", "work"
 #: Names of what runs keep in each; anything else is somebody's, and is never removed.
 _OURS = {
@@ -25,7 +25,7 @@ _OURS = {
     VERIFIED: re.compile(r"[0-9a-f]{64}\.json"),
     SYSTEMS: re.compile(r"[0-9a-f]{16}"),
 }
-#: Seconds for which a system of one's own stays, whatever the bound: a program may be reading it.
+#: Seconds for which a system of a user stays, whatever the bound: a program may be reading it.
 IN_USE = 24 * 3600
 #: What a file takes on a disk, at the least.
 PAGE = 4096
@@ -83,11 +83,11 @@ def list_kept(folder: Path) -> list[Path]:
 
 def _entry(path: Path) -> _Entry:
     """A file, or a folder with all that is in it."""
-    found = [path.lstat()]
+    parts = [path.lstat()]
     if path.is_dir() and not path.is_symlink():
-        found += [inner.lstat() for inner in path.rglob("*")]
-    size = sum(-(-each.st_size // PAGE) * PAGE for each in found)
-    return _Entry(path, size, max(each.st_mtime for each in found))
+        parts += [inner.lstat() for inner in path.rglob("*")]
+    size = sum(-(-each.st_size // PAGE) * PAGE for each in parts)
+    return _Entry(path, size, max(each.st_mtime for each in parts))
 
 
 def find_problems(folder: Path) -> list[str]:

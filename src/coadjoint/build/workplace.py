@@ -88,14 +88,14 @@ def remove(path: Path) -> None:
 
 def _candidates(base: Path) -> list[Path]:
     """Files and folders of this user that were made here."""
-    found = []
+    paths = []
     with suppress(OSError), os.scandir(base) as entries:
         for entry in entries:
             if entry.name.startswith(PREFIX) and not entry.is_symlink():
                 with suppress(OSError):
                     if entry.stat(follow_symlinks=False).st_uid == os.getuid():
-                        found.append(Path(entry.path))
-    return found
+                        paths.append(Path(entry.path))
+    return paths
 
 
 def _is_free(path: Path) -> bool:

@@ -17,8 +17,15 @@ import click
 
 from coadjoint import limits
 from coadjoint.budget import allowed_seconds
-from coadjoint.cli.arguments import is_path, seconds_option, shipped_names, spec_path
-from coadjoint.cli.output import plural, say, write_text
+from coadjoint.cli.arguments import (
+    format_option,
+    is_path,
+    output_option,
+    seconds_option,
+    shipped_names,
+    spec_path,
+)
+from coadjoint.cli.output import plural, show_text
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra
@@ -45,14 +52,7 @@ Keys of --format json:
 
 @click.command("algebra", epilog=KEYS)
 @click.argument("algebra", metavar="NAME|SPEC")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", "latex", "html", "json"]),
-    default="text",
-    show_default=True,
-    help="latex is a complete file, html one self-contained page.",
-)
+@format_option("text", "latex", "html", "json")
 @click.option(
     "--degree",
     type=click.IntRange(1, 12),
@@ -67,9 +67,7 @@ Keys of --format json:
     show_default=True,
     help="Largest number of generators to accept.",
 )
-@click.option(
-    "--output", type=click.Path(path_type=Path), help="File to write, in place of the terminal."
-)
+@output_option
 @seconds_option
 def command(
     algebra: str, form: str, degree: int, generators: int, output: Path | None, seconds: int | None
@@ -97,11 +95,7 @@ def command(
             f"{error} Or use fewer generators, or a lower --degree.",
             **{"found": algebra, **error.parts},
         ) from error
-    text = _render(record, form)
-    if output is None:
-        say(text, end="")
-    else:
-        write_text(output, text)
+    show_text(_render(record, form), output)
 
 
 def _render(record: Mapping[str, Any], form: str) -> str:

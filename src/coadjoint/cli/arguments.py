@@ -8,9 +8,10 @@ in the working folder, so that a command does not run code that lies there by ch
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -100,6 +101,21 @@ def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: 
 
 #: The argument ``SYSTEM|SPEC`` of a command.
 system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete=_complete)
+
+#: The option ``--output`` of commands that show a document.
+output_option = click.option(
+    "--output", type=click.Path(path_type=Path), help="File to write, in place of the terminal."
+)
+
+
+def format_option(*formats: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """The option ``--format`` of commands that show a document; the first format is the default."""
+    about = "latex is a complete file, html one self-contained page."
+    kind = click.Choice(formats)
+    return click.option(
+        "--format", "form", type=kind, default=formats[0], show_default=True, help=about
+    )
+
 
 #: The option ``--seconds`` of every command that derives.
 seconds_option = click.option(

@@ -91,19 +91,18 @@ def _text(path: Path) -> str:
 
 def _print(report: Mapping[str, Any]) -> None:
     """The figures as a table, and the rungs below it."""
-    rows = []
-    for function, targets in report["figures"].items():
-        for target, figures in targets.items():
-            rows.append(
-                (
-                    function,
-                    target,
-                    f"{figures['k']:.2f}",
-                    f"{figures['ulp']:.3g}",
-                    str(figures["points"]),
-                    _compare_with_numpy(report, function, target),
-                )
-            )
+    rows = [
+        (
+            function,
+            target,
+            f"{figures['k']:.2f}",
+            f"{figures['ulp']:.3g}",
+            str(figures["points"]),
+            _compare_with_numpy(report, function, target),
+        )
+        for function, targets in report["figures"].items()
+        for target, figures in targets.items()
+    ]
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
     for rung, status in report["rungs"].items():

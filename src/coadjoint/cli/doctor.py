@@ -220,7 +220,7 @@ def _cache() -> str:
 
 
 def _cache_state() -> Iterator[Finding]:
-    """What is damaged or left over in the cache, and in the systems of one's own there."""
+    """What is damaged or left over in the cache, and in the user's own systems there."""
     from coadjoint.build.cache import cache_problems, chosen_folder
     from coadjoint.build.upkeep import SYSTEMS, list_kept
 

@@ -1,6 +1,6 @@
 """Command ``list``: the systems, and what is known of each.
 
-Comes in: a folder of specs and the generated folder beside it. Goes out: a table. Nothing is
+Comes in: a folder of specs and the generated folder next to it. Goes out: a table. Nothing is
 derived and nothing generated is run: what was proved is read from the certificates, and the specs
 are read in a bounded child.
 """

@@ -67,11 +67,8 @@ def command(name: str) -> None:
         with path.open("x", encoding="utf-8") as file:
             file.write(STARTER.format(name=name))
     except FileExistsError:
-        raise SpecError(
-            f"{path}: the file already exists and was not changed. Choose another name.",
-            path=str(path),
-            found=name,
-        ) from None
+        message = f"{path}: the file already exists and was not changed. Choose another name."
+        raise SpecError(message, path=str(path), found=name) from None
     except OSError as error:
         raise OutputError(
             f"{path}: cannot be written: {error.strerror}. "

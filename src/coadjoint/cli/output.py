@@ -1,4 +1,4 @@
-"""Commands: how they speak. Tables and JSON to standard output, progress to standard error.
+"""Commands: their output. Tables and JSON to standard output, progress to standard error.
 
 Comes in: rows and records. Goes out: text, without anything that a terminal would obey; a place
 that takes no text is an error that says so. rich is imported on first use, since it costs as much
@@ -29,7 +29,7 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON f
 
 
 def say(text: str = "", *, err: bool = False, end: str = "\n") -> None:
-    """Print text on standard output, or on standard error; every command speaks through this.
+    """Print text on standard output, or on standard error; every command prints through this.
 
     Characters that a terminal would obey, or that its encoding has not, are shown as escapes.
 
@@ -147,6 +147,14 @@ def write_text(path: Path, text: str) -> None:
             "Choose another file, or free some space.",
             path=str(path),
         ) from error
+
+
+def show_text(text: str, output: Path | None) -> None:
+    """Print a text as it is, or write it to a file that the user named."""
+    if output is None:
+        say(text, end="")
+    else:
+        write_text(output, text)
 
 
 def plural(count: int, noun: str) -> str:

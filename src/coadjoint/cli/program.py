@@ -75,7 +75,7 @@ class Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
-        """Run the program; whatever else happens, what a stream refuses is said as what it is."""
+        """Run the program; an error of a standard stream is reported as such."""
         if sys.stdout is None or sys.stderr is None or sys.stdin is None:
             _open_closed_streams()
         try:
@@ -108,7 +108,7 @@ class Commands(click.Group):
                 fault = shorten(f"{type(error).__name__}: {error}")
                 self._report(
                     ctx,
-                    f"error: an internal error of coadjoint: {fault}. "
+                    f"error: a fault of coadjoint itself: {fault}. "
                     f"Please report it with the output of `{again}`.",
                 )
         ctx.exit(status or 0)
@@ -138,7 +138,7 @@ def _flush() -> None:
 
 
 def _refusal(error: OSError | ImportError) -> OutputError | None:
-    """What the operating system has refused, as an error that is none of ours; else None."""
+    """A refusal of the operating system as an error with its remedy; else None."""
     refused = system_error(error)
     if isinstance(error, ImportError):
         return refused

@@ -1,6 +1,6 @@
 """Command ``regenerate``, the main job: specs in, verified kernels out.
 
-Comes in: a folder of specs. Goes out: the generated folder beside it, a table, and the errors of
+Comes in: a folder of specs. Goes out: the generated folder next to it, a table, and the errors of
 systems that failed. Read next: `coadjoint.regenerate`.
 """
 
@@ -10,6 +10,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -77,23 +78,16 @@ def command(
     if not check:
         refuse_elsewhere(bool(derivations or output), target)
     paths = spec_paths(source, names)
-    complete = not names
+    run = engine.check
+    if not check:
+        wait = partial(say, f"waiting for another run in {target}", err=True)
+        run = partial(engine.regenerate, on_wait=wait)
     try:
         with progress_bars() as progress:
-            if check:
-                outcome = engine.check(
-                    paths, target, jobs=jobs, complete=complete, seconds=seconds, progress=progress
-                )
-            else:
-                outcome = engine.regenerate(
-                    paths,
-                    target,
-                    jobs=jobs,
-                    complete=complete,
-                    seconds=seconds,
-                    progress=progress,
-                    on_wait=lambda: say(f"waiting for another run in {target}", err=True),
-                )
+            whole = not names
+            outcome = run(
+                paths, target, jobs=jobs, complete=whole, seconds=seconds, progress=progress
+            )
     except DriftError as drift:
         show_drift(drift)
         raise
@@ -106,12 +100,12 @@ def folders(derivations: Path | None, output: Path | None) -> tuple[Path, Path]:
     here = Path("derivations")
     shipped = derivations_folder()
     source = derivations or (here if here.is_dir() else shipped)
-    beside = systems_folder() if source.resolve() == shipped.resolve() else None
-    return source, output or beside or source.parent / "generated"
+    installed = systems_folder() if source.resolve() == shipped.resolve() else None
+    return source, output or installed or source.parent / "generated"
 
 
 def refuse_elsewhere(is_named: bool, target: Path) -> None:
-    """Refuse a run that would write where nobody has asked for it.
+    """Refuse a run that would write to a folder that the user did not name.
 
     Args:
         is_named: Whether a folder of specs or a generated folder was named.
@@ -153,11 +147,8 @@ def spec_paths(folder: Path, names: Sequence[str] = ()) -> list[Path]:
             near = get_close_matches(name, by_name, n=1)
             hint = f" Did you mean {near[0]!r}?" if near else ""
             known = ", ".join(by_name)
-            raise SpecError(
-                f"{folder}: no spec is called {name!r}; expected one of {known}.{hint}",
-                path=str(folder),
-                found=name,
-            )
+            message = f"{folder}: no spec is called {name!r}; expected one of {known}.{hint}"
+            raise SpecError(message, path=str(folder), found=name)
     return [by_name[name] for name in dict.fromkeys(names or by_name)]
 
 

@@ -10,24 +10,21 @@ from pathlib import Path
 
 import click
 
-from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
-from coadjoint.cli.output import say, write_text
+from coadjoint.cli.arguments import (
+    format_option,
+    output_option,
+    seconds_option,
+    spec_path,
+    system_argument,
+)
+from coadjoint.cli.output import show_text
 
 
 @click.command("show")
 @system_argument
 @click.option("--route", help="One of the spec's routes. Default: the first, which is emitted.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", "latex", "html"]),
-    default="text",
-    show_default=True,
-    help="latex is a complete file, html one self-contained page.",
-)
-@click.option(
-    "--output", type=click.Path(path_type=Path), help="File to write, in place of the terminal."
-)
+@format_option("text", "latex", "html")
+@output_option
 @seconds_option
 def command(
     system: str, route: str | None, form: str, output: Path | None, seconds: int | None
@@ -36,8 +33,5 @@ def command(
     from coadjoint.bounded import derive_bounded
     from coadjoint.render.document import render_document
 
-    text = render_document(derive_bounded(spec_path(system), route, seconds=seconds), form)
-    if output is None:
-        say(text, end="")
-    else:
-        write_text(output, text)
+    record = derive_bounded(spec_path(system), route, seconds=seconds)
+    show_text(render_document(record, form), output)

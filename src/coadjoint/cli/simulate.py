@@ -11,6 +11,7 @@ import csv
 import io
 import math
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,29 +44,23 @@ def _assignments(
     return read
 
 
+_repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignments, multiple=True)
+
+
 @click.command("simulate")
 @system_argument
-@click.option(
+@_repeatable(
     "--set",
     "parameters",
-    metavar="NAME=NUMBERS",
-    callback=_assignments,
-    multiple=True,
     help="A parameter, e.g. I=1,2,3. Default: that of the spec. Repeatable.",
 )
-@click.option(
+@_repeatable(
     "--input",
     "inputs",
-    metavar="NAME=NUMBERS",
-    callback=_assignments,
-    multiple=True,
     help="A constant input, e.g. u=0.5. Default: that of the spec. Repeatable.",
 )
-@click.option(
+@_repeatable(
     "--state",
-    metavar="NAME=NUMBERS",
-    callback=_assignments,
-    multiple=True,
     help="Initial value of a variable or component, e.g. Pi=1,0,0, or of the whole state, e.g. "
     "1,0,0. Default: that of the spec, else 1 for scalars and unit vectors, projected onto the "
     "constraints. Repeatable.",
@@ -131,7 +126,7 @@ def command(
     driven = chosen_parameters(loaded.INPUTS, inputs) or None
     start: Any = initial_state(loaded.STATE, state)
     declared = state or all(quantity.default for quantity in loaded.STATE.values())
-    if "projection" in loaded.functions and not declared:  # no fault of the user
+    if "projection" in loaded.functions and not declared:  # the user gave none
         start = loaded.projection(start, given, driven, time=0.0 if loaded.TIME else None)
     solution = loaded.simulate(
         start,
@@ -223,39 +218,27 @@ def trajectory_csv(system: System, solution: Solution) -> str:
 
 def _print(system: System, solution: Solution) -> None:
     """First and last values, and the drift of the invariants."""
-    end = f"t = {solution.time_reached:g}"
-    print_table(
-        ("state", ">t = 0", f">{end}", "unit"),
-        [
-            (name, f"{first:.12g}", f"{last:.12g}", system.STATE.of_component(name).unit_of(name))
-            for name, first, last in _ends(solution, system.STATE.components)
-        ],
-        title=f"{system.title} ({system.name})",
-    )
+    _print_ends(solution, "state", system.STATE.components, f"{system.title} ({system.name})")
     if system.RECONSTRUCTED:
-        print_table(
-            ("reconstructed", ">t = 0", f">{end}", "unit"),
-            [
-                (name, f"{first:.12g}", f"{last:.12g}", solution.unit(name))
-                for name, first, last in _ends(solution, system.RECONSTRUCTED.components)
-            ],
-        )
-    print_table(
-        ("observable", ">t = 0", f">{end}", "unit", ">drift"),
-        [
-            (
-                name,
-                f"{first:.12g}",
-                f"{last:.12g}",
-                system.OBSERVABLES.of_component(name).unit_of(name),
-                f"{solution.drift[name]:.1e}" if name in solution.drift else "",
-            )
-            for name, first, last in _ends(solution, system.OBSERVABLES.components)
-        ],
-    )
+        _print_ends(solution, "reconstructed", system.RECONSTRUCTED.components)
+    _print_ends(solution, "observable", system.OBSERVABLES.components)
     for name, drift in solution.attitude_drift.items():
         say(f"|{name}|^2 - 1 up to {drift:.1e}")
     say(": ".join(filter(None, ("status", solution.status, solution.message))))
+
+
+def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str = "") -> None:
+    """First and last values as a table; of observables with the drift of those that are kept."""
+    columns = [kind, ">t = 0", f">t = {solution.time_reached:g}", "unit"]
+    rows = [
+        [name, f"{first:.12g}", f"{last:.12g}", solution.unit(name)]
+        for name, first, last in _ends(solution, names)
+    ]
+    if kind == "observable":
+        columns.append(">drift")
+        for row in rows:
+            row.append(f"{solution.drift[row[0]]:.1e}" if row[0] in solution.drift else "")
+    print_table(columns, rows, title=title)
 
 
 def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, float]]:

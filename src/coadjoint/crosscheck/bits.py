@@ -48,7 +48,7 @@ def equal_bits(subject: Subject, count: int) -> dict[str, dict[str, int]]:
         _compare_bits(subject, functions, batch, equal)
     missing = [function for function in functions if not all(equal[function].values())]
     if missing and subject.inside.size:
-        _compare_bits(subject, missing, subject.points.around(subject.inside, 5, BLOCK), equal)
+        _compare_bits(subject, missing, subject.points.draw_around(subject.inside, 5, BLOCK), equal)
     return equal
 
 
@@ -61,7 +61,7 @@ def _compare_bits(
         for target in subject.exact:
             own, expected = _expect(subject, function, target, batch, one)
             other = subject.evaluate(function, own, target)
-            different = differing(expected, other)
+            different = find_differing_bits(expected, other)
             if different.any():
                 row, member = np.argwhere(different)[0].tolist()
                 pair = {"numpy": float(expected[row, member]), target: float(other[row, member])}
@@ -76,7 +76,7 @@ def _expect(
     language, program = BUILDS[target], subject.programs[function]
     if language.is_slow:
         most = max(1, SLOW_WORK // work(program))
-        batch, numpy = batch.first(most), numpy[:, :most]
+        batch, numpy = batch.take(slice(most)), numpy[:, :most]
     if language.stops_at_poles:
         numpy = np.where(_has_numbers(subject, function, batch), numpy, np.nan)
     return batch, np.ascontiguousarray(numpy)
@@ -114,7 +114,7 @@ def _has_numbers(subject: Subject, function: str, batch: Batch) -> NDArray[np.bo
     A quotient by zero stops a language that has no infinity even where it is infinity's
     reciprocal that is wanted.
     """
-    goes_on = np.ones(batch.state.shape[1], dtype=bool)
+    goes_on = np.ones(batch.size, dtype=bool)
 
     def number(value: Fraction) -> _Stopping:
         return _Stopping(np.float64(value), goes_on)
@@ -131,28 +131,28 @@ def _has_numbers(subject: Subject, function: str, batch: Batch) -> NDArray[np.bo
 
 def _bit_batches(points: Points, count: int) -> Iterator[Batch]:
     """Blocks of every family, special values and odd sizes; parameters shared in every other."""
-    yield from _both_ways(points.special(seed, size) for seed, size in enumerate(ODD_SIZES))
-    yield from _both_ways(iter([points.special(99, BLOCK)]))
+    yield from _vary_sharing(points.draw_special(seed, size) for seed, size in enumerate(ODD_SIZES))
+    yield from _vary_sharing(iter([points.draw_special(99, BLOCK)]))
     for seed in range(-(-count // BLOCK)):
         quarter = -(-min(BLOCK, count - seed * BLOCK) // 4)
         for number, batch in enumerate(points.families(seed + 10, quarter).values()):
-            yield batch.with_shared_parameters() if (seed + number) % 2 else batch
+            yield batch.share("parameters") if (seed + number) % 2 else batch
 
 
-def _both_ways(batches: Iterator[Batch]) -> Iterator[Batch]:
+def _vary_sharing(batches: Iterator[Batch]) -> Iterator[Batch]:
     """Each batch with parameters of its own and with shared ones; inputs and time likewise."""
     for batch in batches:
         yield batch
-        yield batch.with_shared_parameters()
+        yield batch.share("parameters")
         if batch.driving:
-            yield batch.steady()
-            yield batch.with_shared_parameters().steady()
+            yield batch.share(*batch.driving)
+            yield batch.share("parameters", *batch.driving)
 
 
-def differing(one: Array, other: Array) -> NDArray[np.bool_]:
+def find_differing_bits(one: Array, other: Array) -> NDArray[np.bool_]:
     """Where two arrays differ in their bits, NaN apart.
 
-    >>> differing(np.array([0.0, np.nan, 1.0]), np.array([-0.0, -np.nan, 1.0])).tolist()
+    >>> find_differing_bits(np.array([0.0, np.nan, 1.0]), np.array([-0.0, -np.nan, 1.0])).tolist()
     [True, False, False]
     """
     different = one.view(np.int64) != other.view(np.int64)

@@ -57,7 +57,7 @@ class ExactPoints:
     @property
     def count(self) -> int:
         """How many points were drawn."""
-        return sum(batch.state.shape[1] for batch, _ in self.batches)
+        return sum(batch.size for batch, _ in self.batches)
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def exact_points(subject: Subject, function: str, count: int) -> ExactPoints:
     batches = []
     for batch in hard_batches(subject, function, -(-count // BATCHES)):
         exact = {}
-        for member in range(batch.state.shape[1]):
+        for member in range(batch.size):
             with suppress(OutsideDomain):
                 inputs = subject.inputs(batch, member)
                 exact[member] = oracle(subject.reference, function, inputs)
@@ -117,7 +117,7 @@ def against_oracle(subject: Subject, points: ExactPoints) -> Agreement:
                     measure(row, value) for row, value in enumerate(values[:, member].tolist())
                 ]
                 _check_threshold(subject, function, target, values, errors, exact, batch, member)
-                worst[target] = _worse(worst[target], errors)
+                worst[target] = _add_point(worst[target], errors)
             for target in apart:
                 _check_together(subject, function, target, results, exact, batch, member)
                 together[target] += 1
@@ -170,7 +170,7 @@ def _check_threshold(
         raise subject.failure(function, row, batch, member, rung=4, **pair, **limits)
 
 
-def _worse(figures: Figures, errors: list[tuple[float, float]]) -> Figures:
+def _add_point(figures: Figures, errors: list[tuple[float, float]]) -> Figures:
     """Figures with one more point."""
     ks, ulps = zip(*errors, strict=True)
     return Figures(max(figures.k, *ks), max(figures.ulp, *ulps), figures.points + 1)

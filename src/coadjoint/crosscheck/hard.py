@@ -8,12 +8,12 @@ Read next: `coadjoint.crosscheck.compare`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from typing import Final
+from functools import partial
+from typing import Any, Final
 
 import numpy as np
 
-from coadjoint.crosscheck.points import Batch, cancelling
+from coadjoint.crosscheck.points import Batch, move_to_cancellation
 from coadjoint.crosscheck.subject import Subject
 
 #: Points that are drawn, for each that is asked for, to find some at which a function has a value.
@@ -33,48 +33,35 @@ def hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]
     for family in subject.points.families(seed=0, count=1):
         yield _draw(subject, function, family, 0, size)
     start = _draw(subject, function, "random", 1, size)
-    alike = _alike(subject.points.families(2, size)["random"], start)
-    yield _complete(
-        subject, function, alike, lambda count: _alike(_others(subject, "random", count), start)
-    ).with_shared_parameters()
-    if start.driving:
-        calm = _calm(subject.points.families(4, size)["random"], start)
-        yield _complete(
-            subject, function, calm, lambda count: _calm(_others(subject, "random", count), start)
-        ).steady()
-    yield cancelling(lambda batch: subject.evaluate(function, batch, "numpy"), start, seed=2)
+    for seed, names in ((2, ("parameters",)), (4, start.driving)):
+        if names:  # time and inputs of driven systems alone
+            batch = subject.points.families(seed, size)["random"].repeat(start, *names)
+            others = partial(_draw_others, subject, "random", like=(start, *names))
+            yield _complete(subject, function, batch, others).share(*names)
+    yield move_to_cancellation(
+        lambda batch: subject.evaluate(function, batch, "numpy"), start, seed=2
+    )
 
 
 def _draw(subject: Subject, function: str, family: str, seed: int, size: int) -> Batch:
     """A batch of a family, as many of its members as possible with a value."""
     batch = subject.points.families(seed, size)[family]
-    return _complete(subject, function, batch, lambda count: _others(subject, family, count))
+    return _complete(subject, function, batch, partial(_draw_others, subject, family))
 
 
-def _others(subject: Subject, family: str, count: int) -> Batch:
-    """More points of a family, apart from those that are taken first, and points of the domain."""
+def _draw_others(subject: Subject, family: str, count: int, like: Any = ()) -> Batch:
+    """More points of a family, apart from those that are taken first, and points of the domain.
+
+    Args:
+        subject: The system.
+        family: Which family.
+        count: How many of each.
+        like: Another batch, and what its first member gives to all.
+    """
     more = subject.points.families(seed=3, count=count)[family]
-    if not subject.inside.size:
-        return more
-    near = subject.points.around(subject.inside, seed=3, count=count)
-    return Batch(
-        np.concatenate([more.state, near.state], axis=1),
-        np.concatenate([more.parameters, near.parameters], axis=1),
-        {name: np.concatenate([a, near.driving[name]], axis=1) for name, a in more.driving.items()},
-    )
-
-
-def _alike(batch: Batch, start: Batch) -> Batch:
-    """The states of a batch, all with the parameters of one member of another."""
-    members = batch.state.shape[1]
-    return replace(batch, parameters=np.repeat(start.parameters[:, :1], members, axis=1))
-
-
-def _calm(batch: Batch, start: Batch) -> Batch:
-    """The states and parameters of a batch, all with inputs and time of one member of another."""
-    members = batch.state.shape[1]
-    driving = {name: np.repeat(a[:, :1], members, axis=1) for name, a in start.driving.items()}
-    return replace(batch, driving=driving)
+    if subject.inside.size:
+        more = more.join(subject.points.draw_around(subject.inside, seed=3, count=count))
+    return more.repeat(*like) if like else more
 
 
 def _complete(
@@ -84,6 +71,6 @@ def _complete(
     missing = np.flatnonzero(~subject.is_defined(function, batch))
     if not missing.size:
         return batch
-    more = others(TRIES * batch.state.shape[1])
-    found = np.flatnonzero(subject.is_defined(function, more))[: missing.size]
-    return batch.with_members(missing[: found.size], more.members(found))
+    more = others(TRIES * batch.size)
+    usable = np.flatnonzero(subject.is_defined(function, more))[: missing.size]
+    return batch.with_members(missing[: usable.size], more.take(usable))

@@ -25,7 +25,7 @@ def points_inside(equations: Equations, names: Sequence[str]) -> Array:
     """Points of a domain, shape ``(names, N)``; NaN for what the domain does not depend on."""
     field = equations.setting.field
     field.region = region(equations)
-    found = Points(field, ())
-    points = islice(chain(found.near_defaults(), found), CENTRES)
+    source = Points(field, ())
+    points = islice(chain(source.near_defaults(), source), CENTRES)
     rows = [[float(point.get(name, np.nan)) for name in names] for point in points]
     return np.array(rows, dtype=np.float64).reshape(-1, len(names)).T

@@ -166,9 +166,9 @@ def _check_counts(report: Report, function: str, subject: Subject) -> None:
         4: [figures.points for figures in report.figures[function].values()],
         5: [compared[function].get(target, 0) for target in subject.exact],
     }
-    for rung, found in counts.items():
+    for rung, numbers in counts.items():
         _require(
-            (found or rung == 5) and all(found),
+            (numbers or rung == 5) and all(numbers),
             report.system,
             f"nothing of {function} was compared",
             rung,

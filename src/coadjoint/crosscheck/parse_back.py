@@ -12,7 +12,7 @@ from itertools import zip_longest
 from operator import itemgetter
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import Add, Call, Divide, Multiply, Negate, Node, Number, Program
+from coadjoint.lower.program import Negate, Node, Number, Program, children, with_children
 from coadjoint.render.targets.body import Body, failure
 from coadjoint.render.targets.protocol import Target
 
@@ -42,21 +42,10 @@ def as_printed(node: Node) -> Node:
     >>> as_printed(Number(Fraction(-1, 2)))
     Negate(operand=Number(value=Fraction(1, 2)))
     """
-    match node:
-        case Number(value=value):
-            nearest = Number(Fraction(abs(value.numerator / value.denominator)))
-            return Negate(nearest) if value < 0 else nearest
-        case Negate(operand=operand):
-            return Negate(as_printed(operand))
-        case Call(function=function, argument=argument):
-            return Call(function, as_printed(argument))
-        case Add(left=left, right=right):
-            return Add(as_printed(left), as_printed(right))
-        case Multiply(left=left, right=right):
-            return Multiply(as_printed(left), as_printed(right))
-        case Divide(left=left, right=right):
-            return Divide(as_printed(left), as_printed(right))
-    return node
+    if isinstance(node, Number):
+        nearest = Number(Fraction(abs(node.value.numerator / node.value.denominator)))
+        return Negate(nearest) if node.value < 0 else nearest
+    return with_children(node, map(as_printed, children(node)))
 
 
 def _check_same(program: Program, body: Body, file: str) -> int:
@@ -80,22 +69,22 @@ def _check_same(program: Program, body: Body, file: str) -> int:
         *zip_longest(body.statements, statements),
         *zip_longest(sorted(body.outputs, key=itemgetter(0)), outputs),
     ]
-    for found, expected in lines:
-        if found != expected:
-            what = str((expected or found)[0])
-            raise _difference(program, file, f"the line of {what}", found, expected)
+    for line, expected in lines:
+        if line != expected:
+            what = str((expected or line)[0])
+            raise _difference(program, file, f"the line of {what}", line, expected)
     return len(lines)
 
 
 def _difference(
-    program: Program, file: str, what: str, found: object, expected: object
+    program: Program, file: str, what: str, line: object, expected: object
 ) -> CrossCheckError:
     """A difference between text and Program."""
     return failure(
-        f"{file}, {program.name}: {what} reads back as {found}; expected {expected}. "
+        f"{file}, {program.name}: {what} reads back as {line}; expected {expected}. "
         "The printer, the template or the reader is wrong",
         program.name,
         file=file,
-        found=str(found),
+        found=str(line),
         expected=str(expected),
     )

@@ -10,7 +10,7 @@ Read next: `coadjoint.crosscheck.ladder`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import accumulate
 from typing import Final
@@ -42,57 +42,69 @@ class Batch:
     """Members on which a kernel is evaluated.
 
     Attributes:
-        state: Shape ``(n, N)``.
-        parameters: Shape ``(k,)`` if shared, else ``(k, N)``.
-        driving: The same of inputs and of time, one row of this, by name; as far as the system
+        arrays: By name, in this order: state, ``(n, N)``; parameters, ``(k,)`` if shared, else
+            ``(k, N)``; and in the same form inputs and time, one row of this, as far as the system
             has them.
     """
 
-    state: Array
-    parameters: Array
-    driving: Mapping[str, Array] = field(default_factory=dict)
+    arrays: Mapping[str, Array]
 
-    def with_shared_parameters(self) -> Batch:
-        """The same states with the first member's parameters for all."""
-        return replace(self, parameters=np.ascontiguousarray(self.parameters[:, 0]))
+    @property
+    def state(self) -> Array:
+        """Shape ``(n, N)``."""
+        return self.arrays["state"]
 
-    def steady(self) -> Batch:
-        """The same with the first member's inputs and time for all."""
-        firsts = {name: np.ascontiguousarray(a[:, 0]) for name, a in self.driving.items()}
-        return replace(self, driving=firsts)
+    @property
+    def parameters(self) -> Array:
+        """Shape ``(k,)`` or ``(k, N)``."""
+        return self.arrays["parameters"]
+
+    @property
+    def size(self) -> int:
+        """Number of members."""
+        return int(self.state.shape[1])
+
+    @property
+    def driving(self) -> tuple[str, ...]:
+        """Which of inputs and time there are."""
+        return tuple(self.arrays)[2:]
+
+    def share(self, *names: str) -> Batch:
+        """The same with the first member's parameters, inputs or time for all."""
+        firsts = {name: np.ascontiguousarray(self.arrays[name][:, 0]) for name in names}
+        return Batch({**self.arrays, **firsts})
 
     def arguments(self, states: int) -> tuple[list[Array], dict[str, Array]]:
         """What a function of so many rows of state takes, by position and by name."""
-        given = [self.state[:states], self.parameters]
-        given += [self.driving["inputs"]] if "inputs" in self.driving else []
-        return given, {"time": self.driving["time"][0]} if "time" in self.driving else {}
+        given = {**self.arrays, "state": self.state[:states]}
+        named = {"time": given.pop("time")[0]} if "time" in given else {}
+        return list(given.values()), named
 
     def rows(self) -> tuple[Array, ...]:
         """Every row of state, parameters, inputs and time."""
-        return (*self.state, *self.parameters, *(row for a in self.driving.values() for row in a))
+        return tuple(row for array in self.arrays.values() for row in array)
 
     def with_members(self, members: NDArray[np.intp], other: Batch) -> Batch:
-        """The same, some members put in the place of those of another batch."""
-        own = {"state": self.state, "parameters": self.parameters, **self.driving}
-        new = {"state": other.state, "parameters": other.parameters, **other.driving}
-        merged = {name: array.copy() for name, array in own.items()}
+        """The same, some members replaced by those of another batch."""
+        merged = {name: array.copy() for name, array in self.arrays.items()}
         for name, array in merged.items():
-            array[:, members] = new[name]
-        return Batch(merged.pop("state"), merged.pop("parameters"), merged)
+            array[:, members] = other.arrays[name]
+        return Batch(merged)
 
-    def first(self, count: int) -> Batch:
-        """The first members; what is shared stays so."""
-        driving = {
-            name: array[..., :count] if array.ndim > 1 else array
-            for name, array in self.driving.items()
-        }
-        parameters = self.parameters[:, :count] if self.parameters.ndim > 1 else self.parameters
-        return Batch(self.state[:, :count], parameters, driving)
+    def join(self, other: Batch) -> Batch:
+        """The members of this batch and those of another."""
+        pairs = ((name, [array, other.arrays[name]]) for name, array in self.arrays.items())
+        return Batch({name: np.concatenate(pair, axis=1) for name, pair in pairs})
 
-    def members(self, chosen: NDArray[np.intp]) -> Batch:
-        """Some of the members."""
-        driving = {name: array[:, chosen] for name, array in self.driving.items()}
-        return Batch(self.state[:, chosen], self.parameters[:, chosen], driving)
+    def repeat(self, start: Batch, *names: str) -> Batch:
+        """The same, all with the parameters, inputs or time of the first member of another."""
+        firsts = {name: start.arrays[name][:, :1] for name in names}
+        repeated = {name: np.repeat(a, self.size, axis=1) for name, a in firsts.items()}
+        return Batch({**self.arrays, **repeated})
+
+    def take(self, chosen: NDArray[np.intp] | slice) -> Batch:
+        """Some of the members; what is shared stays so."""
+        return Batch({n: a[:, chosen] if a.ndim > 1 else a for n, a in self.arrays.items()})
 
 
 @dataclass(frozen=True)
@@ -129,7 +141,7 @@ class Points:
             for number, (name, maker) in enumerate(makers.items())
         }
 
-    def around(self, centres: Array, seed: int, count: int) -> Batch:
+    def draw_around(self, centres: Array, seed: int, count: int) -> Batch:
         """Points near some others, at distances of six decades.
 
         Args:
@@ -140,10 +152,10 @@ class Points:
         generator = np.random.default_rng([SEED, seed, 98])
         start = centres[:, np.arange(count) % centres.shape[1]]
         sizes = 2.0 ** generator.uniform(-20, 0, count)
-        moved = start * (1 + sizes * generator.normal(size=start.shape))
-        return self._batch(np.where(np.isnan(start), generator.normal(size=start.shape), moved))
+        near = start * (1 + sizes * generator.normal(size=start.shape))
+        return self._batch(np.where(np.isnan(start), generator.normal(size=start.shape), near))
 
-    def special(self, seed: int, count: int) -> Batch:
+    def draw_special(self, seed: int, count: int) -> Batch:
         """Overflow, infinities, NaN, subnormals and signed zeros among ordinary numbers."""
         generator = np.random.default_rng([SEED, seed, 99])
         shape = (self._rows, count)
@@ -156,8 +168,9 @@ class Points:
         state, parameters, *others = np.split(rows, self._ends)
         signs = np.array(self.positive, dtype=bool)[:, np.newaxis]
         positive = np.where(np.abs(parameters) > 0, np.abs(parameters), 1.0)
+        parameters = np.where(signs, positive, parameters)
         driving = dict(zip(self.driving, others, strict=True))
-        return Batch(state, np.where(signs, positive, parameters), driving)
+        return Batch({"state": state, "parameters": parameters, **driving})
 
     @property
     def _ends(self) -> list[int]:
@@ -188,7 +201,7 @@ class Points:
         )
 
 
-def cancelling(evaluate: Evaluate, batch: Batch, seed: int) -> Batch:
+def move_to_cancellation(evaluate: Evaluate, batch: Batch, seed: int) -> Batch:
     """Move one state component of each member so that one output nearly cancels.
 
     Args:
@@ -197,25 +210,25 @@ def cancelling(evaluate: Evaluate, batch: Batch, seed: int) -> Batch:
         seed: Chooses the outputs and components.
     """
     generator = np.random.default_rng([SEED, seed, 7])
-    members = np.arange(batch.state.shape[1])
+    members = np.arange(batch.size)
     outputs = evaluate(batch).reshape(-1, members.size).shape[0]
     row = generator.integers(outputs, size=members.size)
     column = generator.integers(batch.state.shape[0], size=members.size)
 
-    def moved(component: Array) -> Batch:
+    def move(component: Array) -> Batch:
         state = batch.state.copy()
         state[column, members] = component
-        return replace(batch, state=state)
+        return Batch({**batch.arrays, "state": state})
 
     def output(component: Array) -> Array:
-        values = evaluate(moved(component)).reshape(-1, members.size)
+        values = evaluate(move(component)).reshape(-1, members.size)
         return np.asarray(values[row, members])
 
     start = batch.state[column, members]
     with np.errstate(all="ignore"):
         root = _secant(output, start, start * 1.001 + 1e-3)
         usable = np.isfinite(root) & (np.abs(root) < 1e3 * (1 + np.abs(start)))
-    return moved(np.where(usable, root, start))
+    return move(np.where(usable, root, start))
 
 
 def _secant(f: Callable[[Array], Array], x0: Array, x1: Array, steps: int = 4) -> Array:

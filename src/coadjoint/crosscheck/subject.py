@@ -92,7 +92,7 @@ class Subject:
 
     @cached_property
     def exact(self) -> tuple[str, ...]:
-        """The targets beside NumPy that have the same bits, as far as bits are promised."""
+        """The targets other than NumPy that have the same bits, as far as bits are promised."""
         return tuple(
             each
             for each in self.targets
@@ -147,7 +147,7 @@ class Subject:
         Raises:
             CrossCheckError: The kernel raised an error.
         """
-        program, members = self.programs[function], batch.state.shape[1]
+        program, members = self.programs[function], batch.size
         given, named = batch.arguments(len(program.state))
         values = np.full((*program.shape, members), UNTOUCHED)
         try:
@@ -180,10 +180,10 @@ class Subject:
 
         with np.errstate(all="ignore"):
             values = self.reference.evaluate(function, known, np.float64, call)
-        found = np.ones(batch.state.shape[1], dtype=bool)
+        defined = np.ones(batch.size, dtype=bool)
         for value in (*values, *called):
-            found &= np.isfinite(value)
-        return found
+            defined &= np.isfinite(value)
+        return defined
 
     def inputs(self, batch: Batch, member: int) -> dict[str, float]:
         """State, parameters, inputs and time of one member by name."""

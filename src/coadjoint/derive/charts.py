@@ -76,20 +76,9 @@ def declared_charts(first: Equations) -> list[Equations]:
         first: The emitted route.
 
     Raises:
-        DerivationError: The kernel solves for velocities, or a Lagrangian does not give its
-            accelerations.
+        DerivationError: A Lagrangian does not give its accelerations.
     """
-    setting, found = first.setting, []
-    for chart in _list_declared(setting.spec):
-        if first.kept:
-            formula = next(iter(chart.map.values()))
-            message = (
-                f"the route {first.route} leaves {first.kept[0]} to be solved for in the kernel; "
-                "expected rates that are written out. Declare a Hamiltonian, or remove the chart."
-            )
-            raise fault(setting, formula, message, first.kept[0])
-        found.append(_equations(setting, chart))
-    return found
+    return [_equations(first.setting, chart) for chart in _list_declared(first.spec)]
 
 
 def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
@@ -113,11 +102,11 @@ def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
     relations = [
         Relation(f"{each.in_one_line} = 0", setting.formula(each, known)) for each in chart.where
     ]
-    found = in_chart(setting, chart.name, rates, image, through, relations=relations)
-    assert found.chart is not None, "just made"
+    motion = in_chart(setting, chart.name, rates, image, through, relations=relations)
+    assert motion.chart is not None, "just made"
     lines = write_rates(tuple(rates), rates.values())
     step = write_step("Motion in the chart", "dy/dt = Y(y)", r"\dot y = Y(y)", lines)
-    return replace(found, chart=replace(found.chart, name=chart.name), steps=(step,))
+    return replace(motion, chart=replace(motion.chart, name=chart.name), steps=(step,))
 
 
 def _motion(setting: Setting, chart: DeclaredChart, function: Element) -> dict[str, Element]:

@@ -166,8 +166,8 @@ def _mathml(terms: list[sympy.Expr]) -> str:
 
 def _of_kernel(terms: list[sympy.Expr]) -> list[sympy.Symbol]:
     """The symbols whose names are those of kernels, in order."""
-    found = {s for term in terms for s in term.free_symbols if is_of_kernel(s.name)}
-    return sorted(found, key=str)
+    symbols = {s for term in terms for s in term.free_symbols if is_of_kernel(s.name)}
+    return sorted(symbols, key=str)
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

@@ -27,13 +27,13 @@ def bounds(equations: Equations) -> tuple[tuple[Bound, Element], ...]:
 
     None where nothing is declared and nothing is constrained.
     """
-    setting, found = equations.setting, list[tuple[Bound, Element]]()
+    setting, conditions = equations.setting, list[tuple[Bound, Element]]()
     for condition in equations.spec.domain:
         value = setting.excess(condition, setting.reactions)
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)
-        found.append((Bound(condition.name, "condition", strict, inputs), value))
-    return (*found, *_pivots(equations))
+        conditions.append((Bound(condition.name, "condition", strict, inputs), value))
+    return (*conditions, *_pivots(equations))
 
 
 def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyType({})) -> Region:
@@ -44,11 +44,11 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
         momenta: The momenta in terms of velocities, for what is written in these.
     """
     known = equations.setting.field.region
-    found = [Condition(value, bound.strict) for bound, value in bounds(equations)]
-    found += _arguments(equations)
+    conditions = [Condition(value, bound.strict) for bound, value in bounds(equations)]
+    conditions += _arguments(equations)
     return replace(
         known,
-        bounds=tuple(each for each in found if each not in known.conditions),
+        bounds=tuple(each for each in conditions if each not in known.conditions),
         definitions=dict(equations.exact.definitions),
         momenta=momenta,
     )
@@ -81,15 +81,15 @@ def _pivots(equations: Equations) -> list[tuple[Bound, Element]]:
         return []
     kept = enumerate(equations.distribution.kept)
     reactions = {multiplier_name(n): equation.reaction for n, (equation, _) in kept}
-    found = list[tuple[Bound, Element]]()
+    pairs = list[tuple[Bound, Element]]()
     for solve in equations.exact.solves:
         for place, name in zip(solve.block, solve.names, strict=True):
             pivot = equations.setting.field[pivot_name(place)]
             kind = "reaction" if name in reactions else "acceleration"
             value = -pivot if name in reactions else pivot
             inputs = _inputs(equations, pivot)
-            found.append((Bound(reactions.get(name, name), kind, True, inputs), value))
-    return found
+            pairs.append((Bound(reactions.get(name, name), kind, True, inputs), value))
+    return pairs
 
 
 def _inputs(equations: Equations, element: Element) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Emitted: what is emitted beside the dynamics, as one list that everything else reads.
+"""Emitted: what is emitted in addition to the rates, as one list that everything else reads.
 
 Comes in: a Setting and a route's energy. Goes out: the energy, the claimed Casimirs, velocities,
 the reactions and momenta of constraints, what the spec declares, momentum maps, the integrals of a
@@ -21,6 +21,7 @@ from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import in_formulas, momentum_maps
 from coadjoint.exact import Element
 from coadjoint.spec.model import component_names
+from coadjoint.spec.spatial import spatial_momenta
 
 
 def list_emitted(
@@ -35,11 +36,11 @@ def list_emitted(
     """
     return (
         *(() if energy is None else (emitted_energy(setting, energy),)),
-        *_first(setting),
+        *_list_first(setting),
         *_along_distribution(setting, dict(momenta)),
         *_declared_observables(setting),
         *_momentum_maps(setting, energy),
-        *_last(setting),
+        *_list_last(setting),
     )
 
 
@@ -49,22 +50,22 @@ def emitted_energy(setting: Setting, energy: Element) -> Emitted:
 
 
 @once
-def _first(setting: Setting) -> tuple[Emitted, ...]:
+def _list_first(setting: Setting) -> tuple[Emitted, ...]:
     """Casimirs, velocities that the state gives, and reactions."""
     spec, elements = setting.spec, setting.elements
-    found = []
+    emitted = []
     for n, casimir in enumerate(spec.casimirs, 1):
         name, unit = f"casimir{n}", units.of_formula(setting, casimir)
         names, values = component_names(name, casimir.shape), setting.components(casimir)
-        found.append(Emitted(name, casimir.shape, names, unit, values, Kept.UNLESS_WORKED_ON))
+        emitted.append(Emitted(name, casimir.shape, names, unit, values, Kept.UNLESS_WORKED_ON))
     for v in spec.defined:
         values, form = elements(v.components), setting.values[v.name]
-        found.append(Emitted(v.name, v.shape, v.components, v.unit, values, form=form))
+        emitted.append(Emitted(v.name, v.shape, v.components, v.unit, values, form=form))
     for each in spec.constraints:
         name, unit = each.reaction, units.of_reaction(setting, each)
         names, values = each.reactions, elements(each.reactions)
-        found.append(Emitted(name, each.shape, names, unit, values))
-    return tuple(found)
+        emitted.append(Emitted(name, each.shape, names, unit, values))
+    return tuple(emitted)
 
 
 def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterator[Emitted]:
@@ -105,18 +106,18 @@ def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted
 
 
 @once
-def _last(setting: Setting) -> tuple[Emitted, ...]:
+def _list_last(setting: Setting) -> tuple[Emitted, ...]:
     """The integrals of the Lax pair, then momenta as seen from space."""
-    found, pair = [], lax_integrals(setting)
+    emitted, pair = [], lax_integrals(setting)
     for name, value in () if pair is None else pair.named:
         unit = units.of_value(setting, value)
-        found.append(Emitted(name, (), (name,), unit, (value,), Kept.ALWAYS))
-    for each in setting.spec.spatial:
+        emitted.append(Emitted(name, (), (name,), unit, (value,), Kept.ALWAYS))
+    for each in spatial_momenta(setting.spec):
         inner, kept = each.momentum, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
         seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
         parts = tuple(seen[name] for name in inner.components)
-        found.append(Emitted(each.name, inner.shape, each.components, inner.unit, parts, kept))
-    return tuple(found)
+        emitted.append(Emitted(each.name, inner.shape, each.components, inner.unit, parts, kept))
+    return tuple(emitted)
 
 
 def _find_claim(setting: Setting, name: str) -> Kept:

@@ -9,9 +9,10 @@ Read next: `coadjoint.prove.claims` and `coadjoint.lower.lowering`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import sympy
 
@@ -40,6 +41,7 @@ class Equations:
             the route moves.
         pair: The Lax pair by which the route goes, if it is one of those.
         distribution: What the constraints allow; None for motions that are free.
+        built: What functions under `coadjoint.derive.setting.once` have built of them.
     """
 
     setting: Setting
@@ -49,6 +51,7 @@ class Equations:
     chart: Chart | None = None
     pair: LaxPair | None = None
     distribution: Distribution | None = None
+    built: dict[Any, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def spec(self) -> Spec:
@@ -96,7 +99,7 @@ class Equations:
 
     @cached_property
     def observables(self) -> dict[str, sympy.Expr]:
-        """Scalars emitted beside the dynamics, closed as the rates are."""
+        """Scalars emitted in addition to the rates, closed as the rates are."""
         return {name: self._sympy(value) for name, value in self.exact.observables}
 
     @cached_property

@@ -47,8 +47,8 @@ class Rows:
 def rows_of(equations: Equations, function: str) -> Rows | None:
     """What a function of the table computes; None where a system has no such function."""
     formula = getattr(sys.modules[__name__], KERNEL_FUNCTIONS[function].name)
-    found: Rows | None = formula(equations)
-    return found
+    rows: Rows | None = formula(equations)
+    return rows
 
 
 def rhs(equations: Equations) -> Rows:
@@ -81,8 +81,8 @@ def energy(equations: Equations) -> Rows | None:
 
 def observables(equations: Equations) -> Rows | None:
     """The observables in their order."""
-    found = equations.exact.observables
-    return _rows(equations, found) if found else None
+    values = equations.exact.observables
+    return _rows(equations, values) if values else None
 
 
 def poisson_tensor(equations: Equations) -> Rows | None:
@@ -100,8 +100,8 @@ def poisson_tensor(equations: Equations) -> Rows | None:
 
 def constraint_residual(equations: Equations) -> Rows | None:
     """What vanishes on the constraints."""
-    found = equations.exact.residuals
-    return _rows(equations, found) if found else None
+    residuals = equations.exact.residuals
+    return _rows(equations, residuals) if residuals else None
 
 
 def projection(equations: Equations) -> Rows | None:
@@ -124,8 +124,8 @@ def reconstruction(equations: Equations) -> Rows | None:
 
 def domain(equations: Equations) -> Rows | None:
     """What is positive where the system is defined."""
-    found = [(bound.label, value) for bound, value in bounds(equations)]
-    return _rows(equations, found) if found else None
+    positive = [(bound.label, value) for bound, value in bounds(equations)]
+    return _rows(equations, positive) if positive else None
 
 
 def _rows(

@@ -44,8 +44,8 @@ class ImplicitSolve:
         definitions = dict(equations.exact.definitions)
         last = [name for name in definitions if name in solve.names][-1]
         unknowns = equations.setting.elements(solve.names)
-        found = factors(equations.setting.field, solve, definitions)
-        return cls(solve, found, unknowns, last)
+        factored = factors(equations.setting.field, solve, definitions)
+        return cls(solve, factored, unknowns, last)
 
     @property
     def elements(self) -> list[Element]:
@@ -76,13 +76,13 @@ class ImplicitSolve:
 
     def _residual(self, i: int, x: list[Any], value: Evaluate) -> dict[int, Any]:
         """``(k' - A' x)_i`` by each variable."""
-        found = dict(value(self.solve.known[i]).slopes)
+        total = dict(value(self.solve.known[i]).slopes)
         for entry, unknown in zip(self.solve.matrix[i], x, strict=True):
             slopes = value(entry).slopes if entry != 0 else {}
             for variable, slope in slopes.items():
                 part = negative(mul(slope, unknown))
-                found[variable] = add(found[variable], part) if variable in found else part
-        return found
+                total[variable] = add(total[variable], part) if variable in total else part
+        return total
 
     def _substitute(self, column: list[Any], weights: Mapping[tuple[int, int], Any]) -> list[Any]:
         """``A^-1 r`` by L, D and U; None is zero."""
@@ -90,16 +90,16 @@ class ImplicitSolve:
         y: list[Any] = []
         for i in size:
             before = [(weights[i, k], y[k]) for k in size[:i] if (i, k) in weights]
-            y.append(_less(column[i], before))
-        found: list[Any] = [None] * len(column)
+            y.append(_subtract_products(column[i], before))
+        solution: list[Any] = [None] * len(column)
         for i in reversed(size):
-            after = [(weights[i, k], found[k]) for k in size[i + 1 :] if (i, k) in weights]
+            after = [(weights[i, k], solution[k]) for k in size[i + 1 :] if (i, k) in weights]
             scaled = None if y[i] is None else mul(y[i], weights[i, i])
-            found[i] = _less(scaled, after)
-        return found
+            solution[i] = _subtract_products(scaled, after)
+        return solution
 
 
-def _less(start: Any, products: list[tuple[Any, Any]]) -> Any:
+def _subtract_products(start: Any, products: list[tuple[Any, Any]]) -> Any:
     """A value minus some products; None is zero."""
     parts = [] if start is None else [start]
     parts += [negative(mul(a, b)) for a, b in products if b is not None]

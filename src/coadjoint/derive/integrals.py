@@ -5,7 +5,7 @@ of the spectral parameter, then :math:`\frac{d}{dt} \mathrm{tr}\, L^k = k\, \mat
 [L, M]) = 0`, power by power of the parameter.
 Comes in: a Setting whose spec declares a pair, or a route that finds one. Goes out: the
 coefficients that depend on the state, and which of them are emitted: as many as there are
-independent ones beside the claimed Casimirs and the energy, the shortest first.
+independent ones in addition to the claimed Casimirs and the energy, the shortest first.
 Read next: `coadjoint.prove.lax`.
 """
 
@@ -86,7 +86,7 @@ def expanded_traces(setting: Setting, pair: LaxPair) -> Iterator[Coefficient]:
     field = setting.field
     for k, trace in enumerate(traces(field, pair.L), 1):
         for power, whole in field.coefficients(trace, pair.spectral).items():
-            moving = field.sum(_moving(setting, whole))
+            moving = field.sum(_pick_moving(setting, whole))
             if moving:
                 scale = _scale(field, moving)
                 yield Coefficient(k, power, scale, moving * scale)
@@ -96,18 +96,18 @@ def traces(field: Field, L: Matrix) -> Iterator[Element]:
     """``tr L``, ``tr L^2``, ... up to the size of L."""
 
     @cache
-    def raised(k: int) -> Matrix:
+    def raise_to(k: int) -> Matrix:
         if k == 0:
             return diagonal([field.one] * len(L))
-        return L if k == 1 else product(raised(k // 2), raised(k - k // 2))
+        return L if k == 1 else product(raise_to(k // 2), raise_to(k - k // 2))
 
     for k in range(1, len(L) + 1):
-        a, b = raised(k // 2), zip(*raised(k - k // 2), strict=True)
+        a, b = raise_to(k // 2), zip(*raise_to(k - k // 2), strict=True)
         pairs = ((x, y) for p, q in zip(a, b, strict=True) for x, y in zip(p, q, strict=True))
         yield field.sum(x * y for x, y in pairs if x and y)
 
 
-def _moving(setting: Setting, element: Element) -> Iterable[Element]:
+def _pick_moving(setting: Setting, element: Element) -> Iterable[Element]:
     """The addends of an element in which the state occurs."""
     state = set(setting.state)
     return (term for term in setting.field.terms(element) if setting.field.reach(term) & state)
@@ -139,7 +139,7 @@ def known_integrals(setting: Setting) -> list[Element]:
     if not setting.has_energy:
         return casimirs
     energy, solves = hamiltonian(setting)
-    # where the kernel solves for velocities, the energy names them beside the momenta
+    # where the kernel solves for velocities, the energy names them next to the momenta
     return [*casimirs, *([] if solves else [energy])]
 
 

@@ -50,20 +50,20 @@ def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Val
     Raises:
         DerivationError: Division by zero or the inverse of a singular matrix.
     """
-    found: dict[int, Value] = {}
+    known: dict[int, Value] = {}
     for part in tree.walk_up(node):  # definitions put into each other may be 1000 levels deep
-        below = [found[id(child)] for child in tree.children(part)]
+        below = [known[id(child)] for child in tree.children(part)]
         match part:
             case tree.Binary(operator="/", right=tree.Power(base=base, exponent=n)) if n > 0:
                 # by the base n times: a factor of its own cancels, its expanded power does not
-                value, divisor = below[0], found[id(base)]
+                value, divisor = below[0], known[id(base)]
                 check_divisor(divisor, field)
                 for _ in range(n):
                     value = scale(1 / divisor, value)
             case _:
                 value = _value(part, below, values, field)
-        found[id(part)] = value
-    return found[id(node)]
+        known[id(part)] = value
+    return known[id(node)]
 
 
 def _value(node: tree.Node, below: list[Value], values: Mapping[str, Value], field: Field) -> Value:

@@ -107,12 +107,12 @@ def rates_of(setting: Setting, pair: LaxPair, route: str) -> tuple[Element, ...]
         if equation.slopes:
             span.add(equation.slopes)
             rows.append(equation)  # the span numbers dependent equations, too
-    found: dict[str, Element] = {}
+    rates: dict[str, Element] = {}
     for name in setting.state:
         combination = span.coordinates({name: field.one})
         if combination is not None:
-            found[name] = field.sum(rows[n].right * value for n, value in combination.items())
-    missing = [name for name in setting.state if name not in found]
+            rates[name] = field.sum(rows[n].right * value for n, value in combination.items())
+    missing = [name for name in setting.state if name not in rates]
     if missing:
         raise refusal(
             setting,
@@ -122,7 +122,7 @@ def rates_of(setting: Setting, pair: LaxPair, route: str) -> tuple[Element, ...]
             "an L in which every component of the state occurs, independently of the others",
             "Put it into L.",
         )
-    return tuple(found[name] for name in setting.state)
+    return tuple(rates[name] for name in setting.state)
 
 
 def _check_affine(setting: Setting, equation: LaxEquation, route: str) -> None:

@@ -155,7 +155,7 @@ class Kept(Enum):
 
 @dataclass(frozen=True)
 class Emitted:
-    """A quantity that is emitted beside the dynamics.
+    """A quantity that is emitted in addition to the dynamics.
 
     Attributes:
         name: As kernels and claims call it.
@@ -191,8 +191,8 @@ class Exact:
             are intermediates of a solve in the kernel (`coadjoint.derive.mechanics.solver`).
         rates: Time derivative of each state component.
         energy: The Hamiltonian, in terms of the state; None for forces without a potential.
-        emitted: What is emitted beside the dynamics, energy included.
-        poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route knows no bracket.
+        emitted: What is emitted in addition to the rates, energy included.
+        poisson_tensor: ``{x_i, x_j}`` for the state x; None where the route gives no bracket.
         solves: Linear equations that definitions solve in the kernel, in that order.
         residuals: What vanishes on the constraints, by the names of these.
         forces: What external forces add to each rate; empty where none act, and with constraints.

@@ -9,17 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
+from typing import cast
 
 from coadjoint.derive import charts
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics import external, legendre
+from coadjoint.derive.mechanics import external, kinematics, legendre
 from coadjoint.derive.setting import Setting
 from coadjoint.spec import Spec
 from coadjoint.spec.routes import ROUTES
 
-#: What names symbols whatever the routes are.
-_BESIDE = (external.symbols, legendre.symbols, charts.symbols)
+#: What names symbols whatever the routes are, after these.
+_ALWAYS = (external.symbols, legendre.symbols, charts.symbols)
 _FOLDER = "coadjoint.derive.routes"
 
 
@@ -29,8 +30,8 @@ def load_route(name: str) -> Callable[[Setting], Equations]:
     >>> load_route("lie-poisson").__module__
     'coadjoint.derive.routes.lie_poisson'
     """
-    found: Callable[[Setting], Equations] = import_module(f"{_FOLDER}.{ROUTES[name].module}").derive
-    return found
+    module = import_module(f"{_FOLDER}.{ROUTES[name].module}")
+    return cast(Callable[[Setting], Equations], module.derive)
 
 
 def make_setting(spec: Spec) -> Setting:
@@ -38,5 +39,5 @@ def make_setting(spec: Spec) -> Setting:
     modules = [import_module(f"{_FOLDER}.{ROUTES[name].module}") for name in spec.routes]
     # routes that share their variables share the function that names them, too
     makers = dict.fromkeys(module.symbols for module in modules if hasattr(module, "symbols"))
-    names = [name for make in (*makers, *_BESIDE) for name in make(spec)]
+    names = [name for make in (kinematics.symbols, *makers, *_ALWAYS) for name in make(spec)]
     return settings.make_setting(spec, tuple(dict.fromkeys(names)))

@@ -7,14 +7,14 @@ results. Read next: `coadjoint.derive.routes.euler_poincare`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import field as attribute
 from fractions import Fraction
 from functools import cached_property, wraps
 from random import Random
 from types import MappingProxyType
-from typing import TypeVar, cast
+from typing import Any, Protocol, TypeVar, cast
 
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
@@ -52,7 +52,7 @@ class Setting:
     spec: Spec
     field: Field
     values: Mapping[str, Value]
-    built: dict[Callable[[Setting], object], object] = attribute(
+    built: dict[Any, object] = attribute(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
@@ -61,17 +61,17 @@ class Setting:
     @cached_property
     def state(self) -> tuple[str, ...]:
         """Component names of the state, in declared order."""
-        return tuple(name for variable in self.spec.state for name in variable.components)
+        return list_components(self.spec.state)
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """Component names of the parameters."""
-        return tuple(name for parameter in self.spec.parameters for name in parameter.components)
+        return list_components(self.spec.parameters)
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
         """Component names of the inputs."""
-        return tuple(name for each in self.spec.inputs for name in each.components)
+        return list_components(self.spec.inputs)
 
     @cached_property
     def time(self) -> tuple[str, ...]:
@@ -111,11 +111,11 @@ class Setting:
 
     @cached_property
     def weights(self) -> tuple[Fraction, ...]:
-        """What ``{q, p}`` is for each momentum: 1, or 1/2 beside the diagonal of symmetric ones."""
+        """What ``{q, p}`` is for each momentum: 1, or 1/2 off the diagonal of symmetric ones."""
         coordinates = self.spec.having_role("coordinate") if self.spec.algebra is None else ()
         partners = [self.spec.partner("momentum", variable.name) for variable in coordinates]
-        found = [w for p in partners if p for w in pairing_weights(len(p.components), p.form)]
-        return tuple(found) or (Fraction(1),) * len(self.momenta)
+        weights = [w for p in partners if p for w in pairing_weights(len(p.components), p.form)]
+        return tuple(weights) or (Fraction(1),) * len(self.momenta)
 
     @cached_property
     def advected(self) -> tuple[Variable, ...]:
@@ -161,18 +161,22 @@ class Setting:
     @cached_property
     def positions(self) -> tuple[str, ...]:
         """Component names of the coordinates; empty over an algebra."""
-        coordinates = self.spec.having_role("coordinate")
-        return tuple(name for variable in coordinates for name in variable.components)
+        return list_components(self.spec.having_role("coordinate"))
+
+    @cached_property
+    def advected_names(self) -> tuple[str, ...]:
+        """Component names of all that is advected."""
+        return list_components(self.advected)
 
     def _along_basis(self, role: str) -> tuple[str, ...]:
         if self.spec.algebra is None:
             coordinates = self.spec.having_role("coordinate")
             partners = (self.spec.partner(role, variable.name) for variable in coordinates)
-            return tuple(name for each in partners if each for name in each.components)
+            return list_components(filter(None, partners))
         places = {
             place: name
             for variable in self.spec.having_role(role)
-            if not variable.of  # of coordinates beside the algebra
+            if not variable.of  # of coordinates next to the algebra
             for place, name in zip(variable.block, variable.components, strict=True)
         }
         return tuple(places[place] for place in sorted(places))
@@ -180,12 +184,12 @@ class Setting:
     @cached_property
     def reactions(self) -> Mapping[str, Value]:
         """The multipliers of constraints, whole and by component, as symbols."""
-        found: dict[str, Value] = {}
+        values: dict[str, Value] = {}
         for each in self.spec.constraints:
             parts = self.elements(each.reactions)
-            found |= zip(each.reactions, parts, strict=True)
-            found[each.reaction] = shape(parts, each.shape)
-        return found
+            values |= zip(each.reactions, parts, strict=True)
+            values[each.reaction] = shape(parts, each.shape)
+        return values
 
     def excess(
         self, condition: Inequality, others: Mapping[str, Value] = MappingProxyType({})
@@ -216,8 +220,8 @@ class Setting:
         self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
     ) -> Element:
         """The value of a declared scalar formula; arguments as in `value`."""
-        found: Element = self.value(formula, observables)
-        return found
+        value: Element = self.value(formula, observables)
+        return value
 
     def components(
         self, formula: Formula, observables: Mapping[str, Value] = MappingProxyType({})
@@ -258,8 +262,26 @@ class Setting:
         return self.field.vector(by_name[name] for name in self.state)
 
 
-def once(build: Callable[[Setting], Built]) -> Callable[[Setting], Built]:
+def list_components(quantities: Iterable[Declared]) -> tuple[str, ...]:
+    """Names of the components of some quantities, in order."""
+    return tuple(name for each in quantities for name in each.components)
+
+
+class Owner(Protocol):
+    """What remembers values that functions have built of it."""
+
+    @property
+    def built(self) -> dict[Any, object]:
+        """The values, by the functions."""
+
+
+Shared = TypeVar("Shared", bound=Owner)
+
+
+def once(build: Callable[[Shared], Built]) -> Callable[[Shared], Built]:
     """Let a function of a Setting alone build its value once; all routes of the Setting share it.
+
+    So it is with a function of anything else that remembers what was built, as a motion does.
 
     >>> from coadjoint.spec import read_spec
     >>> from coadjoint.resources import derivations_folder
@@ -270,10 +292,10 @@ def once(build: Callable[[Setting], Built]) -> Callable[[Setting], Built]:
     """
 
     @wraps(build)
-    def look_up(setting: Setting) -> Built:
-        if build not in setting.built:
-            setting.built[build] = build(setting)
-        return cast(Built, setting.built[build])
+    def look_up(owner: Shared) -> Built:
+        if build not in owner.built:
+            owner.built[build] = build(owner)
+        return cast(Built, owner.built[build])
 
     return look_up
 
@@ -285,13 +307,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         spec: What was declared.
         symbols: Names that the routes need beyond those of the spec.
     """
-    quantities: list[Declared] = [
-        *spec.state,
-        *spec.defined,
-        *spec.parameters,
-        *spec.driving,
-    ]
-    names = [name for quantity in quantities for name in quantity.components]
+    quantities: list[Declared] = [*spec.state, *spec.defined, *spec.parameters, *spec.driving]
+    names = [*list_components(quantities)]
     names += [name for each in spec.reconstruction for name in each.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
     positive += [name for each in spec.domain if (name := _positive_name(each)) in names]
@@ -302,13 +319,12 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     more += bool(spec.having_role("momentum") and spec.having_role("velocity"))
     if spec.in_frame and _calls_parameters(spec):  # with numbers in their place, twice
         more += 2
-    room = _function_calls(spec) * (1 + more)
+    room = len(_list_calls(spec)) * (1 + more)
     field = Field([*names, *symbols], room, positive)
-    parameters = frozenset(name for p in spec.parameters for name in p.components)
-    field.region = Region(parameters, _defaults(quantities))
+    field.region = Region(frozenset(list_components(spec.parameters)), _defaults(quantities))
     values: dict[str, Value] = {name: field[name] for name in names}
     for quantity in quantities:
-        values[quantity.name] = whole(quantity, values)
+        values[quantity.name] = assemble(quantity, values)
     for each in spec.reconstruction:
         values[each.name] = shape([values[name] for name in each.components], each.shape)
     setting = Setting(spec, field, values)
@@ -329,14 +345,14 @@ def _positive_name(condition: Inequality) -> str:
 
 def _conditions(setting: Setting) -> tuple[Condition, ...]:
     """The declared domain, but for bounds of reactions, which are no functions of the state."""
-    found = []
+    conditions = []
     for each in setting.spec.domain:
         nodes = [node for side in (each.left, each.right) for node in tree.walk(side.tree)]
         named = {node.name for node in nodes if isinstance(node, tree.Name | tree.Index)}
         if not named <= setting.values.keys():
             continue
-        found.append(Condition(setting.excess(each), strict=not each.sign.endswith("=")))
-    return tuple(found)
+        conditions.append(Condition(setting.excess(each), strict=not each.sign.endswith("=")))
+    return tuple(conditions)
 
 
 def _defaults(quantities: Sequence[Declared]) -> dict[str, Fraction]:
@@ -353,35 +369,32 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
 
     What a formula depends on in these shows much sooner there than among all the symbols.
     """
-    kept = spec.having_role(role)
-    names = [name for variable in kept for name in variable.components]
-    field = Field(names, _function_calls(spec))
+    names = list_components(spec.having_role(role))
+    field = Field(names, len(_list_calls(spec)))
     values: dict[str, Value] = {name: field[name] for name in names}
     quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
     for quantity in quantities:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))
             values.setdefault(name, field.number(number))
-        values[quantity.name] = whole(quantity, values)
+        values[quantity.name] = assemble(quantity, values)
     return Setting(spec, field, values)
 
 
-def _function_calls(spec: Spec) -> int:
-    """How many elementary functions the formulas of a spec call at the most."""
+def _list_calls(spec: Spec) -> list[tree.Call]:
+    """The calls of elementary functions in the formulas of a spec."""
     nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
-    return sum(isinstance(node, tree.Call) and node.function in _ADJOINED for node in nodes)
+    return [node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED]
 
 
 def _calls_parameters(spec: Spec) -> bool:
     """Whether an elementary function is taken of parameters, which have numbers in some proofs."""
     names = {n for each in spec.parameters for n in (each.name, *each.components)}
-    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
-    calls = (node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED)
-    inside = (part for call in calls for part in tree.walk(call))
+    inside = (part for call in _list_calls(spec) for part in tree.walk(call))
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 
 
-def whole(quantity: Declared, values: Mapping[str, Value]) -> Value:
+def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:

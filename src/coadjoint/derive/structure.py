@@ -41,8 +41,7 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
         return _declared_structure(setting, bracket)
     if setting.spec.algebra is None:
         return _of_configuration(setting)
-    advected = [name for variable in setting.advected for name in variable.components]
-    coordinates = (*setting.momenta, *advected)
+    coordinates = (*setting.momenta, *setting.advected_names)
     sign = -setting.sign  # minus for left-invariant systems
     whole = lie_poisson(momentum_algebra(setting), setting.field, coordinates, sign)
     return _reorder(whole, setting.state)

@@ -13,13 +13,13 @@ from coadjoint.spec import Parameter, Spec, Variable
 from coadjoint.spec.model import Input, Time
 
 
-def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
+def choose_names(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     """The names, or all of them with one ending if the spec has one of them already.
 
     >>> from coadjoint.spec import read_spec
     >>> from coadjoint.resources import derivations_folder
     >>> spec = read_spec(derivations_folder() / "rigid_body.toml")
-    >>> fresh(spec, ["Q1", "Q2"]), fresh(spec, ["I0", "I1"])
+    >>> choose_names(spec, ["Q1", "Q2"]), choose_names(spec, ["I0", "I1"])
     (('Q1', 'Q2'), ('I0_0', 'I1_0'))
     """
     quantities: list[Variable | Parameter | Input | Time] = [
@@ -31,7 +31,7 @@ def fresh(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     if not taken & set(names):
         return tuple(names)
     for n in count():
-        found = [f"{name}_{n}" for name in names]
-        if not taken & set(found):
-            return tuple(found)
+        numbered = [f"{name}_{n}" for name in names]
+        if not taken & set(numbered):
+            return tuple(numbered)
     raise AssertionError("some number is free")

@@ -62,7 +62,7 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
         setting.field, setting.state, tuple(map(equations.close, equations.exact.rates))
     )
     generators = []
-    for element, value in _resting(setting)[symmetry.name]:
+    for element, value in _maps_at_rest(setting)[symmetry.name]:
         resting = equations.close(value)
         X, is_lifted = _generator(setting, structure, symmetry, element, resting)
         if symmetry.time is not None:
@@ -85,7 +85,7 @@ def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:
 
 
 def structure_of(equations: Equations) -> PoissonStructure:
-    """The emitted bracket, velocities put in."""
+    """The emitted bracket, velocities substituted."""
     tensor = equations.exact.poisson_tensor
     assert tensor is not None, "only what has a bracket is asked for it"
     closed = tuple(tuple(map(equations.close, row)) for row in tensor)
@@ -159,15 +159,15 @@ def moved_components(
     Raises:
         DerivationError: A matrix is not of the form of its variable.
     """
-    found: dict[str, Element] = {}
+    components: dict[str, Element] = {}
     for variable in setting.spec.state:
         formula = formulas.get(variable.name)
         if formula is not None:
             parts = entries(setting.value(formula, known))
             if variable.form in FORMS:
                 parts = _kept_entries(setting, parts, variable.form, formula)
-            found |= zip(variable.components, parts, strict=True)
-    return found
+            components |= zip(variable.components, parts, strict=True)
+    return components
 
 
 def _kept_entries(
@@ -191,19 +191,19 @@ def _kept_entries(
 
 def _values(setting: Setting, symmetry: Symmetry, energy: Element | None) -> tuple[Element, ...]:
     """J of each basis vector."""
-    found = []
-    for element, value in _resting(setting)[symmetry.name]:
+    values = []
+    for element, value in _maps_at_rest(setting)[symmetry.name]:
         if symmetry.time is not None:
             if energy is None:
                 problem = "time moves, and the motion has no energy"
                 raise _fault(setting, symmetry.time, problem, "Leave time out.")
             value = value - energy * _evaluate_at(setting, symmetry.time, symmetry, element)
-        found.append(value)
-    return tuple(found)
+        values.append(value)
+    return tuple(values)
 
 
 @once
-def _resting(setting: Setting) -> dict[str, list[tuple[Value, Element]]]:
+def _maps_at_rest(setting: Setting) -> dict[str, list[tuple[Value, Element]]]:
     """J of each basis vector without the part of time, by the names of the momentum maps."""
     return {
         each.name: [(x, _value(setting, each, x)) for x in _elements(setting, each)]
@@ -225,13 +225,13 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
         structure = poisson_structure(setting)
-        return generating_function(structure, _whole(setting, moves))
+        return generating_function(structure, _extend_moves(setting, moves))
     except AlgebraError as error:
         raise _fault(setting, formula, str(error).rstrip("."), "", symmetry) from None
 
 
 def _pairs(setting: Setting) -> list[Pair]:
-    """Positions with canonical momenta; empty beside magnetic terms, and without momenta."""
+    """Positions with canonical momenta; empty with magnetic terms, and without momenta."""
     bracket, field, names = setting.spec.poisson, setting.field, setting.state
     if bracket is None:
         weights = setting.weights if setting.momenta else ()
@@ -248,7 +248,7 @@ def _pairs(setting: Setting) -> list[Pair]:
 
 
 def _covector(setting: Setting) -> dict[str, Element]:
-    """What pairs with the velocity of each position; empty beside magnetic terms."""
+    """What pairs with the velocity of each position; empty with magnetic terms."""
     field = setting.field
     pairs = _pairs(setting)
     if pairs or setting.spec.poisson is not None or setting.spec.lagrangian is None:
@@ -279,7 +279,7 @@ def _generator(
     """
     moves, pairs = _moves(setting, symmetry, element), _pairs(setting)
     if not moves.keys() <= set(positions(setting)):
-        return _whole(setting, moves), False
+        return _extend_moves(setting, moves), False
     if pairs:
         return lift(structure, pairs, moves), True
     by_map = structure.hamiltonian_vector_field(resting)
@@ -289,7 +289,7 @@ def _generator(
     return whole, True
 
 
-def _whole(setting: Setting, moves: Moves) -> VectorField:
+def _extend_moves(setting: Setting, moves: Moves) -> VectorField:
     """A vector field on the state; what is not named stands still."""
     zero = setting.field.zero
     return VectorField(
@@ -308,7 +308,7 @@ def _fault(
     path = str(setting.spec.path)
     line = f":{formula.line}" if formula is not None else ""
     key = formula.key if formula is not None else f"symmetries.{symmetry.name if symmetry else ''}"
-    found = formula.text if formula is not None else ""
+    text = formula.text if formula is not None else ""
     return DerivationError(
-        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=found
+        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=text
     )

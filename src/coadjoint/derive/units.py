@@ -47,7 +47,7 @@ def of_energy(setting: Setting) -> str:
 def of_reaction(setting: Setting, constraint: Constraint) -> str:
     """The unit of a multiplier: with the residual of its constraint it makes a power."""
     units, energy = declared_units(setting), setting.spec.lagrangian
-    assert energy is not None, "the reader asks for a Lagrangian beside constraints"
+    assert energy is not None, "the reader asks for a Lagrangian with constraints"
     known = {
         "energy": unit_of(energy.tree, units),
         "time": parse_unit("s"),

@@ -25,13 +25,8 @@ from fractions import Fraction
 from itertools import combinations_with_replacement
 from typing import Generic, TypeVar
 
-from coadjoint.exact.linear import (
-    Row,
-    echelon_modulo,
-    nullspace,
-    nullspace_modulo,
-    rational_vector,
-)
+from coadjoint.exact.linear import echelon_modulo, nullspace, rational_vector
+from coadjoint.exact.packed import PackedSpan
 
 Member = TypeVar("Member", bound=Hashable)
 Place = TypeVar("Place", bound=Hashable)
@@ -62,21 +57,21 @@ class Solution(Generic[Member]):
 
 
 def solve(
-    members: Sequence[Member], conditions: Iterable[Row], prime: int
+    members: Sequence[Member], conditions: Iterable[Sequence[int]], prime: int
 ) -> list[Solution[Member]]:
     """A basis of the solutions of ``sum of row[n] c_n = 0`` modulo a prime.
 
     Args:
         members: The family.
-        conditions: Rows by the places of the members.
+        conditions: Rows of residues, one for each member.
         prime: The prime.
 
-    >>> [solution.lift() for solution in solve("xyz", [{0: 1, 1: 2}, {2: 1}], 2**61 - 1)]
+    >>> [solution.lift() for solution in solve("xyz", [[1, 2, 0], [0, 0, 1]], 2**61 - 1)]
     [{'x': Fraction(1, 1), 'y': Fraction(-1, 2)}]
     """
     return [
         Solution({members[n]: value for n, value in sorted(vector.items())}, prime)
-        for vector in nullspace_modulo(list(conditions), len(members), prime)
+        for vector in PackedSpan(prime, len(members), conditions).nullspace()
     ]
 
 

@@ -191,28 +191,40 @@ def diagonal(values: Sequence[Any]) -> Matrix:
 # -- minors ---------------------------------------------------------------------------------------
 
 
+#: Minors by their rows and columns.
+_Minors = dict[tuple[tuple[int, ...], tuple[int, ...]], Any]
+
+
 def minor(a: Sequence[Sequence[Entry]], rows: Sequence[int], columns: Sequence[int]) -> Entry:
     """The determinant of some rows and columns."""
-    return determinant(tuple(tuple(a[i][j] for j in columns) for i in rows))
+    result: Entry = _expand(a, tuple(rows), tuple(columns), {})
+    return result
 
 
-def determinant(a: tuple[tuple[Entry, ...], ...]) -> Entry:
+def determinant(a: Sequence[Sequence[Entry]]) -> Entry:
     """The determinant, by expansion along the first row: no division, for small matrices.
 
     >>> determinant(((2, 1), (3, 4)))
     5
     """
-    first: Sequence[Any] = a[0]
-    if len(a) == 1:
-        return a[0][0]
-    terms = [(-1) ** j * x * determinant(_drop(a, 0, j)) for j, x in enumerate(first) if x != 0]
-    result: Entry = sum(terms, 0 * first[0])
-    return result
+    return minor(a, range(len(a)), range(len(a)))
 
 
-def _drop(a: Matrix, row: int, column: int) -> Matrix:
-    """A matrix without a row and a column."""
-    return tuple(line[:column] + line[column + 1 :] for i, line in enumerate(a) if i != row)
+def _expand(
+    a: Sequence[Sequence[Any]], rows: tuple[int, ...], columns: tuple[int, ...], known: _Minors
+) -> Any:
+    """A minor by expansion along its first row, with the minors in it that are known."""
+    first = a[rows[0]]
+    if len(rows) == 1:
+        return first[columns[0]]
+    if (rows, columns) not in known:
+        result = 0 * first[columns[0]]
+        for j, column in enumerate(columns):
+            if first[column] != 0:
+                rest = _expand(a, rows[1:], columns[:j] + columns[j + 1 :], known)
+                result = result + (-1) ** j * first[column] * rest
+        known[rows, columns] = result
+    return known[rows, columns]
 
 
 def inverse(a: Matrix) -> Matrix:
@@ -221,10 +233,19 @@ def inverse(a: Matrix) -> Matrix:
     Raises:
         ZeroDivisionError: The determinant is zero.
     """
-    share = quotient(1, determinant(a))
+    size, known = tuple(range(len(a))), _Minors()
+    share = quotient(1, _expand(a, size, size, known))
     if len(a) == 1:
         return ((share,),)
-    size = range(len(a))
     return tuple(
-        tuple((-1) ** (i + j) * determinant(_drop(a, j, i)) * share for j in size) for i in size
+        tuple(
+            (-1) ** (i + j) * _expand(a, _skip(size, j), _skip(size, i), known) * share
+            for j in size
+        )
+        for i in size
     )
+
+
+def _skip(places: tuple[int, ...], place: int) -> tuple[int, ...]:
+    """All places but one, of as many as there are."""
+    return places[:place] + places[place + 1 :]

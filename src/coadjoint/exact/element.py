@@ -34,7 +34,7 @@ class Factors:
         ring: Where they live.
         functions: How many of the last generators stand for functions. Quotients over different
             ones stay apart, like those over different factors: the forces between three particles
-            have three distances, and over a common denominator the shortest one would drown.
+            have three distances, and over a common denominator all of them would be long.
     """
 
     def __init__(self, ring: PolyRing, functions: int = 0) -> None:
@@ -130,8 +130,8 @@ def remove_factor(
 def _quotient(p: PolyElement, factor: PolyElement) -> PolyElement | None:
     """``p / factor`` if the division is exact, else None, mostly found at the first look.
 
-    Nearly every trial fails, and SymPy's `div` would go on to a remainder that nobody wants: this
-    loop gives up at the first term that the factor does not divide.
+    Nearly every trial fails, and SymPy's `div` would go on to a remainder that is not needed:
+    this loop ends at the first term that the factor does not divide.
     """
     if len(factor) == 1:
         if not all(_divides(factor.LM, monomial) for monomial in p):
@@ -259,8 +259,7 @@ class Element:
         if isinstance(other, Element):
             return other
         if isinstance(other, int | Fraction):
-            exact = Fraction(other)
-            ground = QQ(exact.numerator, exact.denominator)
+            ground = QQ(other.numerator, other.denominator)
             return Element(self.factors, [(self.factors.ring.ground_new(ground), {})])
         return None
 

@@ -8,15 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from math import isqrt
 from typing import Any
 
 from sympy import factorint
-from sympy.polys.rings import PolyElement
+from sympy.polys.rings import PolyElement, PolyRing
 
 #: Largest polynomial that is factored: terms and degree.
 LARGEST_FACTORED = 40
 LARGEST_DEGREE = 16
+#: Polynomials whose factors are remembered.
+REMEMBERED = 1000
 #: Primes up to here are split off numbers.
 PRIMES = 1000
 #: A factor: a prime, -1, or a monic polynomial.
@@ -25,6 +28,45 @@ Factor = Any
 Powers = dict[Factor, int]
 #: Factors the signs of which have a product that is known, and whether that is negative.
 SignRow = tuple[frozenset[Factor], int]
+
+
+def in_own_symbols(*polynomials: PolyElement) -> tuple[list[PolyElement], list[int]]:
+    """Polynomials in a ring of the symbols that they have, and the places of these.
+
+    SymPy takes time for each symbol of a ring, also for those that do not occur.
+    """
+    degrees = zip(*(p.degrees() for p in polynomials), strict=True)
+    places = [n for n, each in enumerate(degrees) if max(each) > 0]
+    whole = polynomials[0].ring
+    own = PolyRing([whole.symbols[n] for n in places], whole.domain, whole.order)
+    return [
+        own.from_dict({tuple(e[n] for n in places): x for e, x in p.items()}) for p in polynomials
+    ], places
+
+
+def in_ring(ring: PolyRing, p: PolyElement, places: Sequence[int]) -> PolyElement:
+    """A polynomial in a larger ring, where its symbols have the given places."""
+    terms = {}
+    for exponents, value in p.items():
+        whole = [0] * ring.ngens
+        for place, exponent in zip(places, exponents, strict=True):
+            whole[place] = exponent
+        terms[tuple(whole)] = value
+    return ring.from_dict(terms)
+
+
+def common_divisor(p: PolyElement, q: PolyElement) -> PolyElement:
+    """The greatest common divisor of two polynomials.
+
+    >>> from sympy import QQ, ring
+    >>> _, x, y, z = ring("x, y, z", QQ)
+    >>> common_divisor(x**2 - z**2, 2 * x - 2 * z)
+    x - z
+    """
+    if not p or not q:
+        return p.gcd(q)
+    (a, b), places = in_own_symbols(p, q)
+    return in_ring(p.ring, a.gcd(b), places) if places else p.gcd(q)
 
 
 def factors_of(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
@@ -36,13 +78,24 @@ def factors_of(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
     gens = [(gen, e) for gen, e in zip(p.ring.gens, least, strict=True) if e]
     p = p.quo_term((least, p.ring.domain.one))
     small = len(p) <= LARGEST_FACTORED and max(map(sum, p)) <= LARGEST_DEGREE
-    content, result = p.factor_list() if small and len(p) > 1 else (p.ring.domain.one, [(p, 1)])
+    content, result = p.ring.domain.one, [(p, 1)]
+    if small and len(p) > 1:
+        (own,), places = in_own_symbols(p)
+        content, parts = _factor_list(own)
+        result = [(in_ring(p.ring, factor, places), exponent) for factor, exponent in parts]
     for factor, exponent in result:
         content *= factor.LC**exponent
     return content, [*gens, *((f.monic(), e) for f, e in result if not f.is_ground)]
 
 
-def exact(number: Any) -> Fraction:
+@lru_cache(REMEMBERED)
+def _factor_list(p: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
+    """The factors of a polynomial, remembered: the same functions occur in many elements."""
+    content, factors = p.factor_list()
+    return content, factors
+
+
+def to_fraction(number: Any) -> Fraction:
     """A rational number of SymPy's domains as one of Python."""
     return Fraction(int(number.numerator), int(number.denominator))
 

@@ -132,8 +132,6 @@ class Field(Rationals):
         With functions the element is one quotient: a common denominator brings new squares. It is
         0 also where other relations of the functions show that (`coadjoint.exact.relations`).
         """
-        from coadjoint.exact.relations import vanish_by_relations  # which needs fields
-
         if not self.adjoined or self.is_function_free(element):
             return element
         called = self.functions_in(element)
@@ -144,6 +142,8 @@ class Field(Rationals):
         short = element.combine()
         if self.is_function_free(short):
             return short
+        from coadjoint.exact.relations import vanish_by_relations  # which needs fields
+
         hidden = vanish_by_relations(self, short, called | self.functions_in(short))
         return self.zero if hidden else short
 
@@ -229,7 +229,8 @@ class Field(Rationals):
 
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
-        result = element.diff(self._position[name])
+        here = name in self.names_in(element)
+        result = element.diff(self._position[name]) if here else self.zero
         for generator in self._calls_in(element):
             result += self.slope(element, generator) * self._derivative_of(
                 self.adjoined[generator], name
@@ -276,13 +277,12 @@ class Field(Rationals):
             factors: Remembers the factors of denominators, for many elements at the same values.
         """
         factors = {} if factors is None else factors
-        known = dict(values)
-        for generator in self._calls_in(element):
-            if generator in known:
-                continue
+        calls = [name for name in self._calls_in(element) if name not in values]
+        known = dict(values) if calls else values
+        for generator in calls:
             argument = self.adjoined[generator].argument
             inner = self.evaluate(argument, known, number, call, factors)
-            known[generator] = call(self.adjoined[generator].function, inner)
+            known[generator] = call(self.adjoined[generator].function, inner)  # type: ignore[index]
         quotients = [self._quotient(q, known, number, factors) for q in element.parts]
         return total(quotients) if quotients else number(Fraction(0))
 
@@ -295,8 +295,13 @@ class Field(Rationals):
         """The element with symbols replaced by elements; symbols not named stay."""
         if not self.reach(element) & values.keys():
             return element
-        known = {name: values.get(name, self[name]) for name in self.names}
-        return self.evaluate(element, known, self.number, self.call)
+        new = {name: values[name] for name in self.names if name in values}
+        for generator in self._calls_in(element):
+            known = self.adjoined[generator]
+            argument = self.substitute(known.argument, values)
+            if argument is not known.argument:
+                new[generator] = self.call(known.function, argument)
+        return self._replace(element, new)
 
     def reach(self, element: Element) -> frozenset[str]:
         """Symbols that occur in an element or in the arguments of its functions."""

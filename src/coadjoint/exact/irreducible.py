@@ -1,4 +1,4 @@
-"""Irreducible factors of polynomials, in a time that does not rest on luck.
+"""Irreducible factors of polynomials, in a time that does not depend on random choices.
 
 SymPy lifts factors from random points, and takes minutes where these are badly chosen; polynomials
 of mechanics are linear or quadratic in some symbol, and then their factors follow from coefficients
@@ -15,11 +15,10 @@ from functools import reduce
 from itertools import combinations
 from typing import Any
 
-from sympy.polys.orderings import lex
-from sympy.polys.rings import PolyElement, PolyRing
+from sympy.polys.rings import PolyElement
 
 from coadjoint.exact.element import Element, numerator, remove_factor, split_by_powers
-from coadjoint.exact.factors import exact, rational_root
+from coadjoint.exact.factors import common_divisor, in_own_symbols, rational_root, to_fraction
 from coadjoint.exact.field import Field
 
 #: Symbols that are eliminated at a time by the relations of functions, to find factors.
@@ -101,14 +100,12 @@ def find_factors(field: Field, element: Element, known: Sequence[Element] = ()) 
 
 def _irreducible(polynomial: PolyElement) -> Iterator[tuple[list[str], PolyElement]]:
     """The irreducible factors, with the names of their symbols: of those that occur alone."""
-    places = [n for n, degree in enumerate(polynomial.degrees()) if degree > 0]
-    symbols = [polynomial.ring.symbols[n] for n in places]
-    if not symbols:
+    if polynomial.is_ground:
         return
-    small = PolyRing(symbols, polynomial.ring.domain, lex)
-    terms = {tuple(exponents[n] for n in places): x for exponents, x in polynomial.terms()}
-    for factor in factors_of(small.from_dict(terms)):
-        yield list(map(str, symbols)), factor
+    (small,), places = in_own_symbols(polynomial)
+    names = [str(polynomial.ring.symbols[n]) for n in places]
+    for factor in factors_of(small):
+        yield names, factor
 
 
 #: A symbol by its place, a power of it, and what that is.
@@ -118,9 +115,8 @@ Elimination = tuple[int, int, PolyElement]
 def _eliminations(relation: PolyElement) -> Iterator[Elimination]:
     """The symbols x of which a relation has ``x`` or ``x^2`` alone, times a number: the root last.
 
-    >>> from sympy import QQ
-    >>> ring = PolyRing(["x", "h"], QQ, lex)
-    >>> x, h = ring.gens
+    >>> from sympy import QQ, ring
+    >>> _, x, h = ring("x, h", QQ)
     >>> list(_eliminations(h**2 - x**2 - 1))
     [(0, 2, h**2 - 1), (1, 2, x**2 + 1)]
     """
@@ -142,9 +138,8 @@ def _eliminate(polynomial: PolyElement, elimination: Elimination) -> PolyElement
 def factors_of(polynomial: PolyElement) -> list[PolyElement]:
     """The irreducible factors of a polynomial with whole coefficients, each once.
 
-    >>> from sympy import QQ
-    >>> ring = PolyRing(["x", "y"], QQ, lex)
-    >>> x, y = ring.gens
+    >>> from sympy import QQ, ring
+    >>> _, x, y = ring("x, y", QQ)
     >>> factors_of(x**2 * (x - y) * (x + y) / 2)
     [x, x - y, x + y]
     """
@@ -164,7 +159,7 @@ def _place_of(factor: PolyElement) -> tuple[Any, ...]:
 
 
 def _factors_of(polynomial: PolyElement) -> Iterator[PolyElement]:
-    r"""The irreducible factors of a polynomial, in a time that does not rest on luck.
+    r"""The irreducible factors of a polynomial, in a time that does not depend on random choices.
 
     One that is linear in a symbol has no factors but those of all its coefficients. Of a quadratic
     one the discriminant is a square if it has others: ``4 A p = (2 A x + B - D) (2 A x + B + D)``.
@@ -196,7 +191,7 @@ def _part_content(polynomial: PolyElement, place: int) -> tuple[PolyElement, Pol
     """The greatest factor without a symbol, and the rest."""
     content = polynomial.ring.zero
     for part in split_by_powers(polynomial, place).values():
-        content = content.gcd(part)
+        content = common_divisor(content, part)
     return content, polynomial.exquo(content)
 
 
@@ -205,7 +200,7 @@ def _square_root(polynomial: PolyElement) -> PolyElement | None:
     if not polynomial:
         return polynomial
     number, parts = polynomial.sqf_list()
-    whole = rational_root(exact(number))
+    whole = rational_root(to_fraction(number))
     if whole is None or any(power % 2 for _, power in parts):
         return None
     root = polynomial.ring.one * polynomial.ring.domain(whole.numerator, whole.denominator)

@@ -13,8 +13,9 @@ from fractions import Fraction
 from math import lcm
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.factors import exact
+from coadjoint.exact.factors import to_fraction
 from coadjoint.exact.field import Field
+from coadjoint.exact.linear import Span
 
 Row = tuple[Fraction, ...]
 
@@ -49,22 +50,19 @@ def _reduce(row: Sequence[int], by: Sequence[int], column: int) -> list[int]:
     return [a - count * b for a, b in zip(row, by, strict=True)]
 
 
-def coordinates(vector: Sequence[Fraction], basis: Sequence[Row]) -> list[int]:
-    """The integers that multiply the vectors of a Hermite basis.
+def coordinates(
+    vectors: Sequence[Sequence[Fraction]], basis: Sequence[Row]
+) -> list[dict[int, int]]:
+    """The integers other than 0 that multiply the vectors of a basis, for each of some vectors.
 
     >>> basis = lattice_basis([(Fraction(1, 2), Fraction(0)), (Fraction(3), Fraction(2))])
-    >>> coordinates((Fraction(1), Fraction(4)), basis)
-    [2, 2]
+    >>> coordinates([(Fraction(1), Fraction(4))], basis)
+    [{0: 2, 1: 2}]
     """
-    result, rest = [], list(vector)
-    for row in basis:
-        column = next(n for n, x in enumerate(row) if x)
-        count = rest[column] / row[column]
-        assert count.denominator == 1, (vector, basis)
-        result.append(int(count))
-        rest = [a - count * b for a, b in zip(rest, row, strict=True)]
-    assert not any(rest), (vector, basis)
-    return result
+    span = Span(dict(enumerate(row)) for row in basis)
+    whole = [span.coordinates(dict(enumerate(vector))) for vector in vectors]
+    assert None not in whole, (vectors, basis)
+    return [row for row in whole if row is not None]
 
 
 class Lattice:
@@ -84,10 +82,11 @@ class Lattice:
     def __init__(self, field: Field, arguments: Sequence[Element], *, halved: bool = False) -> None:
         tops, below = field.numerators(map(field.normal, arguments))
         monomials = sorted({monomial for p in tops for monomial in p}, reverse=True)
-        self.vectors = [tuple(exact(p.get(m, 0)) for m in monomials) for p in tops]
+        self.vectors = [tuple(to_fraction(p.get(m, 0)) for m in monomials) for p in tops]
         wanted = [tuple(x / 2 for x in v) for v in self.vectors] if halved else self.vectors
         result = lattice_basis(wanted) if wanted else []
-        self.rows = [coordinates(vector, result) for vector in self.vectors]
+        places = range(len(result))
+        self.rows = [[row.get(n, 0) for n in places] for row in coordinates(self.vectors, result)]
         self.basis = [
             below * field.polynomial(field.generators, dict(zip(monomials, row, strict=True)))
             for row in result

@@ -2,7 +2,7 @@
 
 Comes in: vectors as dictionaries of their nonzero entries. Goes out: coordinates, bases, ranks, all
 exact. `Span` works with any exact values (integers, fractions, elements of a function field);
-`nullspace` and `rank` are for large systems over the rationals. SciPy has no exact solver, SymPy
+`nullspace` is for large systems over the rationals. SciPy has no exact solver, SymPy
 must stay out of everything that the spec reader imports.
 Read next: `coadjoint.algebra.invariants`.
 """
@@ -167,18 +167,6 @@ def nullspace(
     )
 
 
-def rank(rows: Iterable[Mapping[int, Fraction | int]]) -> int:
-    """The rank over the rationals.
-
-    >>> rank([{0: 1, 1: 2}, {0: 2, 1: 4}, {5: 1}])
-    2
-    """
-    kept = [dict(row) for row in rows]
-    number = {column: n for n, column in enumerate(sorted({c for row in kept for c in row}))}
-    numbered = [{number[c]: value for c, value in row.items()} for row in kept]
-    return len(number) - len(nullspace(numbered, len(number)))
-
-
 def primes() -> Iterator[int]:
     """Endless primes that are 3 modulo 4, `PRIME` first: an input may hold any one of them.
 
@@ -186,7 +174,7 @@ def primes() -> Iterator[int]:
     >>> [2**61 - prime for prime in islice(primes(), 3)]
     [1, 45, 229]
     """
-    from sympy import isprime  # which whoever reads a spec does without
+    from sympy import isprime  # reading a spec does not load SymPy
 
     yield from filter(isprime, range(PRIME, 0, -4))
 

@@ -19,12 +19,12 @@ from coadjoint.exact.factors import (
     Powers,
     SignRow,
     eliminate_signs,
-    exact,
     factors_of,
     multiply,
     number_factors,
     odd_factors,
     reduce_signs,
+    to_fraction,
 )
 from coadjoint.exact.field import Field
 from coadjoint.exact.signs import sign_of_sum
@@ -231,7 +231,7 @@ class Products:
         vector: Powers = {}
         for p, power in [(top, 1), *((p, -e) for p, e in bottom)]:
             content, factors = factors_of(p)
-            numbers = number_factors(exact(content))
+            numbers = number_factors(to_fraction(content))
             vector = multiply(vector, {f: e * power for f, e in numbers.items()})
             vector = multiply(vector, {f: e * power for f, e in factors})
         return vector

@@ -11,8 +11,8 @@ every point of the connected set around it on which the entries are analytic.
 
 From above nothing is certain. Rational minors of degree d that are not zero vanish at a random
 point with a chance below d/p, about 1e-15, and not at both of two points with two primes; values of
-functions bound no such chance. Who needs the rank itself has to bound it from above by other means,
-as Casimirs do the rank of a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
+functions bound no such chance. A caller that needs the rank itself bounds it from above by other
+means, as Casimirs do for a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
 primes are the same in every run.
 """
 
@@ -21,7 +21,6 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import islice
 
 import mpmath
@@ -29,7 +28,6 @@ import mpmath
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.linear import SpanModulo, primes, rank_modulo
-from coadjoint.exact.residues import Residue, residue
 from coadjoint.exact.witness import TRIES as REAL_POINTS
 from coadjoint.exact.witness import (
     UNDEFINED,
@@ -74,7 +72,8 @@ def generic_rank(field: Field, rows: Sequence[Mapping[int, Element]]) -> int:
     if not most:
         return 0
     exact = is_exact(field, _entries(rows))
-    ranks = _ranks_modulo(field, rows) if exact else map(len, _enclose(field, rows))
+    modular = (rank_modulo(numbers, prime) for prime, numbers in _sample(field, rows))
+    ranks = modular if exact else map(len, _enclose(field, rows))
     for rank in islice(ranks, POINTS):
         largest = max(largest, rank)
         if largest == most:
@@ -142,10 +141,6 @@ def _most(rows: Sequence[Mapping[int, Element]]) -> int:
 # -- modulo primes --------------------------------------------------------------------------------
 
 
-def _ranks_modulo(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[int]:
-    return (rank_modulo(numbers, prime) for prime, numbers in _sample(field, rows))
-
-
 def _sample(
     field: Field, rows: Sequence[Mapping[int, Element]]
 ) -> Iterator[tuple[int, list[dict[int, int]]]]:
@@ -155,12 +150,19 @@ def _sample(
     """
     source = random.Random(1)  # noqa: S311 (not for secrets)
     for prime in islice(primes(), TRIES):
-        point = {name: Residue(source.randrange(1, prime), prime) for name in field.names}
-        value = partial(
-            field.evaluate, values=point, number=partial(residue, prime=prime), factors={}
-        )
+        point = {name: source.randrange(1, prime) for name in field.names}
         with suppress(ZeroDivisionError):
-            yield prime, [{j: value(e).value for j, e in row.items()} for row in rows]
+            yield prime, _take_modulo(field, rows, point, prime)
+
+
+def _take_modulo(
+    field: Field, rows: Sequence[Mapping[int, Element]], point: Mapping[str, int], prime: int
+) -> list[dict[int, int]]:
+    """The matrix at a point."""
+    known = dict[int, int]()
+    return [
+        {j: field.evaluate_modulo(e, point, prime, known) for j, e in row.items()} for row in rows
+    ]
 
 
 # -- at real points -------------------------------------------------------------------------------
@@ -183,7 +185,7 @@ def _enclose(field: Field, rows: Sequence[Mapping[int, Element]]) -> Iterator[li
         text = element_text(field, entry)
         shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
         raise AlgebraError(
-            f"no point was found where {shown} and what stands with it are real; expected formulas "
+            f"no point was found where {shown} and the other entries are real; expected formulas "
             "that are defined together somewhere. State in [domain] where they are.",
             found=text,
         )
@@ -209,7 +211,7 @@ def certain_rows(
 ) -> list[int]:
     """Places of rows that are independent of those before, by bounds that exclude zero.
 
-    The elimination is one of exact numbers that nobody knows better than their bounds: a pivot is
+    This eliminates exact numbers of which only bounds are known: a pivot is certainly
     not zero, so that every row that has one raises the rank.
     """
     pivots: list[tuple[int, dict[int, Enclosure]]] = []
@@ -221,8 +223,8 @@ def certain_rows(
                 factor = rest.pop(column) / pivot[column]
                 for other, value in pivot.items():
                     if other != column:
-                        taken = minus * factor * value
-                        rest[other] = rest[other] + taken if other in rest else taken
+                        change = minus * factor * value
+                        rest[other] = rest[other] + change if other in rest else change
         chosen = choose(place, rest)
         if chosen is not None:
             pivots.append((chosen, rest))

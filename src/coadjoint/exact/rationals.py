@@ -8,7 +8,6 @@ Read next: `coadjoint.exact.field`, which gives the free generators a meaning.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -23,6 +22,8 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.factors import to_fraction
+from coadjoint.exact.residues import residue
 
 Value = TypeVar("Value")
 
@@ -49,6 +50,11 @@ class Rationals:
     Args:
         names: The symbols, in the order that fixes the normal form.
         slots: How many generators stand behind them, for functions of symbols.
+
+    Attributes:
+        generators: The symbols and the slots for functions, in the order of the ring.
+        zero: The element 0.
+        one: The element 1.
     """
 
     def __init__(self, names: Sequence[str], slots: int = 0) -> None:
@@ -57,13 +63,19 @@ class Rationals:
         self._free = [f"_f{n + 1}" for n in range(slots)]
         self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
         self._factors = Factors(self._ring, len(self._free))
-        self._names = (*names, *self._free)
-        self._position = {name: n for n, name in enumerate(self._names)}
+        #: A block in which arithmetic ends after so much work: see `Factors.budget`.
+        self.budget = self._factors.budget
+        self.generators = (*names, *self._free)
+        self._position = {name: n for n, name in enumerate(self.generators)}
         self._generators = {
             name: self.from_polynomial(generator)
-            for name, generator in zip(self._names, self._ring.gens, strict=True)
+            for name, generator in zip(self.generators, self._ring.gens, strict=True)
         }
+        self.zero = self.from_polynomial(self._ring.zero)
+        self.one = self.from_polynomial(self._ring.one)
         self._remembered: dict[PolyElement, tuple[Monomial, ...]] = {}
+        self._occurring: dict[PolyElement, frozenset[str]] = {}
+        self._residues: dict[int, dict[PolyElement, list[tuple[int, list[str]]]]] = {}
 
     def __getitem__(self, name: str) -> Element:
         return self._generators[name]
@@ -71,16 +83,6 @@ class Rationals:
     def from_polynomial(self, p: PolyElement) -> Element:
         """A polynomial of the ring as an element."""
         return Element(self._factors, [(p, {})])
-
-    @property
-    def zero(self) -> Element:
-        """The element 0."""
-        return self.from_polynomial(self._ring.zero)
-
-    @property
-    def one(self) -> Element:
-        """The element 1."""
-        return self.from_polynomial(self._ring.one)
 
     def number(self, value: Fraction | int) -> Element:
         """A rational number as an element."""
@@ -124,7 +126,7 @@ class Rationals:
         places = [self._position[names[n]] for n in used]
         result = {}
         for exponents, number in terms.items():
-            powers = [0] * len(self._names)
+            powers = [0] * len(self.generators)
             for place, n in zip(places, used, strict=True):
                 powers[place] = exponents[n]
             result[tuple(powers)] = number
@@ -141,13 +143,19 @@ class Rationals:
 
     def names_in(self, element: Element) -> frozenset[str]:
         """Names of the generators that occur in an element."""
-        return frozenset(
-            name
-            for quotient in element.parts
-            for part in (quotient.numer, *map(self._factors.known.__getitem__, quotient.powers))
-            for monomial in self._written(part)
-            for name, _ in monomial.powers
-        )
+        found = frozenset[str]()
+        for quotient in element.parts:
+            found |= self._names_of(quotient.numer)
+            for factor in quotient.powers:
+                found |= self._names_of(self._factors.known[factor])
+        return found
+
+    def _names_of(self, p: PolyElement) -> frozenset[str]:
+        """The same of a polynomial, remembered."""
+        if p not in self._occurring:
+            pairs = zip(self.generators, p.degrees(), strict=True)
+            self._occurring[p] = frozenset(name for name, degree in pairs if degree > 0)
+        return self._occurring[p]
 
     def _quotient(
         self,
@@ -184,19 +192,93 @@ class Rationals:
         if p not in self._remembered:
             self._remembered[p] = tuple(
                 Monomial(
-                    Fraction(int(coefficient.numerator), int(coefficient.denominator)),
-                    tuple((self._names[place], e) for place, e in enumerate(exponents) if e),
+                    to_fraction(coefficient),
+                    tuple((self.generators[place], e) for place, e in enumerate(exponents) if e),
                 )
                 for exponents, coefficient in p.terms()
             )
         return self._remembered[p]
 
-    # -- parts, for signs and relations -------------------------------------------------
+    def _replace(self, element: Element, values: Mapping[str, Element]) -> Element:
+        """An element with generators replaced; the others stay together, as they are."""
+        places = {self._position[name]: value for name, value in values.items()}
+        factors = dict[int, Element]()
+        parts = list[Element]()
+        for quotient in element.parts:
+            top = self._replace_in(quotient.numer, places)
+            for n in quotient.powers:
+                if n not in factors:
+                    factors[n] = self._replace_in(self._factors.known[n], places)
+            below = [factors[n] for n, e in quotient.powers.items() for _ in range(e)]
+            parts.append(top / reduce(mul, below) if below else top)
+        return self.sum(parts)
 
-    @property
-    def generators(self) -> tuple[str, ...]:
-        """The symbols and the slots for functions, in the order of the ring."""
-        return self._names
+    def _replace_in(self, p: PolyElement, values: Mapping[int, Element]) -> Element:
+        """A polynomial with generators replaced, by their places."""
+        self._factors.spend(len(p))
+        groups: dict[tuple[tuple[int, int], ...], dict[tuple[int, ...], Any]] = {}
+        for exponents, number in p.terms():
+            moved = tuple((n, exponents[n]) for n in values if exponents[n])
+            rest = list(exponents)
+            for n, _ in moved:
+                rest[n] = 0
+            groups.setdefault(moved, {})[tuple(rest)] = number
+        return self.sum(
+            reduce(
+                mul,
+                (values[n] ** e for n, e in moved),
+                self.from_polynomial(self._ring.from_dict(g)),
+            )
+            for moved, g in groups.items()
+        )
+
+    # -- values modulo a prime ----------------------------------------------------------
+
+    def evaluate_modulo(
+        self, element: Element, values: Mapping[str, int], prime: int, inverses: dict[int, int]
+    ) -> int:
+        """The value of an element modulo a prime, where each generator has a value given.
+
+        Args:
+            element: What to evaluate.
+            values: Residues of the generators that occur.
+            prime: The prime.
+            inverses: Remembers what stands below a bar, for many elements at the same values.
+
+        Raises:
+            ZeroDivisionError: What stands below a bar is zero there.
+        """
+        result = 0
+        for quotient in element.parts:
+            top = self._modulo(quotient.numer, values, prime)
+            for factor, exponent in quotient.powers.items():
+                if factor not in inverses:
+                    below = self._modulo(self._factors.known[factor], values, prime)
+                    if not below:
+                        raise ZeroDivisionError(f"division by zero modulo {prime}")
+                    inverses[factor] = pow(below, -1, prime)
+                for _ in range(exponent):
+                    top = top * inverses[factor] % prime
+            result += top
+        return result % prime
+
+    def _modulo(self, p: PolyElement, values: Mapping[str, int], prime: int) -> int:
+        """The value of a polynomial; its terms modulo the prime are remembered."""
+        self._factors.spend(len(p))
+        known = self._residues.setdefault(prime, {})
+        if p not in known:
+            known[p] = [
+                (residue(each.number, prime).value, [x for x, e in each.powers for _ in range(e)])
+                for each in self._written(p)
+            ]
+        result = 0
+        for value, factors in known[p]:
+            for name in factors:
+                value = value * values[name] % prime
+            result += value
+        return result % prime
+
+    # -- parts, for signs and relations -------------------------------------------------
 
     def fraction(self, element: Element) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
         """Numerator and factors of the denominator, with exponents, of a nonzero quotient."""
@@ -225,21 +307,20 @@ class Rationals:
         quotient, *others = element.parts
         if others or quotient.powers or not quotient.numer.is_ground:
             return None
-        value = quotient.numer.LC
-        return Fraction(int(value.numerator), int(value.denominator))
+        return to_fraction(quotient.numer.LC)
 
     def quotients(self, element: Element) -> list[Written]:
         """The quotients whose sum the element is, in the order of the field."""
         return [
             Written(
                 self._written(quotient.numer),
-                tuple((self._factor(n), exponent) for n, exponent in quotient.powers.items()),
+                tuple(
+                    (self.from_polynomial(self._factors.known[n]), exponent)
+                    for n, exponent in quotient.powers.items()
+                ),
             )
             for quotient in element.parts
         ]
-
-    def _factor(self, number: int) -> Element:
-        return self.from_polynomial(self._factors.known[number])
 
     def terms(self, element: Element) -> tuple[Element, ...]:
         """The addends of the numerators, each over the whole denominator of its quotient."""
@@ -260,7 +341,3 @@ class Rationals:
             key = tuple(sorted(term.parts[0].powers.items()))
             groups.setdefault(key, []).append(term)
         return [self.sum(terms) for terms in groups.values()] or [element]
-
-    def budget(self, work: int) -> AbstractContextManager[None]:
-        """A block in which arithmetic ends after so much work: see `Factors.budget`."""
-        return self._factors.budget(work)

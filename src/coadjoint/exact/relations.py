@@ -92,9 +92,9 @@ class Relations:
         if not element:
             return True
         top, _ = self.field.fraction(element.combine())
-        return not self.products.normalize(
-            self.products.normalize(self._of_polynomial(top)), self.products.derive_signs()
-        )
+        image = self._image(self.field.from_polynomial(top))
+        whole = self.products.normalize(image)  # over one denominator: squares come up again
+        return not self.products.normalize(whole, self.products.derive_signs())
 
     @cached_property
     def are_any(self) -> bool:
@@ -118,9 +118,6 @@ class Relations:
         values = {name: self.ring[name] for name in self.field.names} | self._images
         result = self.field.evaluate(element, values, self.ring.number)
         return self.products.normalize(result)
-
-    def _of_polynomial(self, p: PolyElement) -> Element:
-        return self._image(self.field.from_polynomial(p))
 
     def _exponent_of(self, factor: Factor) -> Element | None:
         """The argument of the exponential that a factor is, if it can be written by now."""

@@ -211,7 +211,8 @@ class Signs:
         It bounds the given one from one side where what they multiply is not negative. Else that
         has no sign, and what a pair makes up for is its size: ``a*b*(1 + cos)`` may be ``2*a*b``.
         """
-        circular = [n for n, name in enumerate(self.field.generators) if self._is_circular(name)]
+        circles = {g for g, f in self.field.adjoined.items() if f.function in ("sin", "cos")}
+        circular = [n for n, name in enumerate(self.field.generators) if name in circles]
         fixed, swing = dict[tuple[int, ...], Any](), dict[tuple[int, ...], Any]()
         for exponents, number in p.terms():
             rest = tuple(0 if n in circular else e for n, e in enumerate(exponents))
@@ -225,11 +226,6 @@ class Signs:
             own = fixed.get(rest, 0)
             terms[rest] = own + side * most if signed else side * (abs(own) + most)
         return p.ring.from_dict({rest: number for rest, number in terms.items() if number})
-
-    def _is_circular(self, name: str) -> bool:
-        """Whether a generator is a sine or a cosine."""
-        known = self.field.adjoined.get(name)
-        return known is not None and known.function in ("sin", "cos")
 
     def _forms(self, p: PolyElement) -> Iterator[tuple[PolyElement, KnownSign]]:
         """A polynomial in several forms, each with what is known of its generators.

@@ -11,7 +11,7 @@ from functools import reduce
 from operator import mul
 
 from coadjoint.exact.element import Element
-from coadjoint.exact.factors import exact, factors_of, rational_root
+from coadjoint.exact.factors import factors_of, rational_root, to_fraction
 from coadjoint.exact.field import Field
 from coadjoint.exact.signs import sign
 
@@ -45,7 +45,7 @@ def _root(field: Field, argument: Element) -> Element | None:
         return whole
     top, bottom = field.fraction(whole)
     content, factors = factors_of(top)
-    number = rational_root(exact(content))
+    number = rational_root(to_fraction(content))
     if number is None:
         return None
     powers = list(factors)

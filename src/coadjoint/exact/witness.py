@@ -269,7 +269,7 @@ class Domain:
         return False
 
     def move_inside(self, start: Point) -> Point | None:
-        """The point itself where it is inside, else one that steps along gradients lead to."""
+        """The point itself where it is inside, else one reached by steps along gradients."""
         if self.contains(start):
             return start
         place = {name: float(value) for name, value in start.items()}

@@ -15,7 +15,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact.dense import Matrix
 
 
-def exact(value: Any) -> Any:
+def allow_division(value: Any) -> Any:
     """The value, integers as fractions, so that a division stays exact."""
     return Fraction(value) if isinstance(value, int) else value
 
@@ -36,8 +36,8 @@ class Complex:
     im: Any = 0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "re", exact(self.re))
-        object.__setattr__(self, "im", exact(self.im))
+        object.__setattr__(self, "re", allow_division(self.re))
+        object.__setattr__(self, "im", allow_division(self.im))
 
     @property
     def conjugate(self) -> Complex:

@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Self
 
 from coadjoint.errors import AlgebraError
 from coadjoint.exact.dense import Matrix, Vector, add, hat, identity, product, scale, transpose
-from coadjoint.groups.complex_numbers import Complex, exact
+from coadjoint.groups.complex_numbers import Complex, allow_division
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Hypercomplex:
 
     def __post_init__(self) -> None:
         for name in "wxyz":
-            object.__setattr__(self, name, exact(getattr(self, name)))
+            object.__setattr__(self, name, allow_division(getattr(self, name)))
 
     @classmethod
     def pure(cls, vector: Sequence[Any]) -> Self:
@@ -189,4 +189,4 @@ def euler_rodrigues(q: Quaternion) -> Matrix:
     """
     cross_q = hat(q.vector)
     turn = add(product(cross_q, cross_q), scale(q.w, cross_q))
-    return add(identity(3), scale(2 / exact(q.norm), turn))
+    return add(identity(3), scale(2 / allow_division(q.norm), turn))

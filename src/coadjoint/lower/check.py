@@ -21,7 +21,7 @@ from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS
 from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
-from coadjoint.lower.vanishing import vanishing
+from coadjoint.lower.vanishing import find_vanishing
 
 #: Points modulo a prime at which Programs without a closed form are compared.
 POINTS = 3
@@ -64,16 +64,16 @@ def check_size(equations: Equations, program: Program) -> None:
     # Outputs that are zero everywhere are set by one loop.
     results = sum(output.value != ZERO for output in program.outputs)
     statements = len(program.statements) + results
-    for found, most, what, limit in (
+    for count, most, what, limit in (
         (operations, OPERATIONS, "operations", "OPERATIONS"),
         (statements, C_STATEMENTS, "statements", "C_STATEMENTS"),
     ):
-        if found > most:
+        if count > most:
             raise LimitError(
-                f"{equations.spec.path}: {program.name} takes {found} {what}; expected at most "
+                f"{equations.spec.path}: {program.name} takes {count} {what}; expected at most "
                 f"{most} ({limit}). Declare a smaller system, or fewer observables.",
                 path=str(equations.spec.path),
-                found=found,
+                found=count,
                 limit=most,
             )
 
@@ -88,10 +88,10 @@ def check_inverse(equations: Equations, program: Program) -> None:
     Raises:
         CrossCheckError: An output differs.
     """
-    different = _differing_residues if equations.kept else _differing_elements
+    different = _find_differing_residues if equations.kept else _find_differing_elements
     for place, output, a, b in different(equations, program):
         # the relations between functions, which residues do not have, may make an output zero
-        if output.value == ZERO and list(vanishing(program.name, [place], equations)):
+        if output.value == ZERO and list(find_vanishing(program.name, [place], equations)):
             continue
         raise CrossCheckError(
             f"{equations.spec.name}: lowering changed {program.name}, output {output.label}: "
@@ -103,19 +103,19 @@ def check_inverse(equations: Equations, program: Program) -> None:
         )
 
 
-def _differing_elements(equations: Equations, program: Program) -> Iterator[_Pair]:
+def _find_differing_elements(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say, as elements."""
     field = equations.setting.field
     inputs = {name: field[name] for name in program.names}
-    found = run(program, inputs, field.number, field.call)
+    computed = run(program, inputs, field.number, field.call)
     expected = expected_outputs(equations, program.name)
-    assert len(found) == len(expected) > 0, (program.name, len(found), len(expected))
-    for n, (output, a, b) in enumerate(zip(program.outputs, found, expected, strict=True)):
+    assert len(computed) == len(expected) > 0, (program.name, len(computed), len(expected))
+    for n, (output, a, b) in enumerate(zip(program.outputs, computed, expected, strict=True)):
         if not field.is_zero(a - b):
             yield n, output, a, b
 
 
-def _differing_residues(equations: Equations, program: Program) -> Iterator[_Pair]:
+def _find_differing_residues(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say at some points modulo a prime."""
     source, reference = random.Random(1), Reference(equations, implicit=False)  # noqa: S311
     names, reached = program.names, 0
@@ -123,13 +123,13 @@ def _differing_residues(equations: Equations, program: Program) -> Iterator[_Pai
         number, call = partial(residue, prime=prime), partial(_call, prime=prime)
         inputs = {name: Residue(source.randrange(1, prime), prime) for name in names}
         try:
-            found = run(program, inputs, number, call)
+            computed = run(program, inputs, number, call)
             expected = reference.evaluate(program.name, inputs, number, call)
         except ZeroDivisionError:  # a pole, which about one point in 2^61 is
             continue
         reached += 1
-        assert len(found) == len(expected) > 0, (program.name, len(found), len(expected))
-        for n, (output, a, b) in enumerate(zip(program.outputs, found, expected, strict=True)):
+        assert len(computed) == len(expected) > 0, (program.name, len(computed), len(expected))
+        for n, (output, a, b) in enumerate(zip(program.outputs, computed, expected, strict=True)):
             if a != b:
                 yield n, output, a, b
         if reached == POINTS:

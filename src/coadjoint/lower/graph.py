@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from coadjoint.lower.program import Add, Call, Multiply, Negate, Node, Number, Symbol, children
+from coadjoint.lower.program import Call, Node, Number, Symbol, children, operation
 
 
 class Graph:
@@ -154,14 +154,7 @@ class Graph:
             case Call(function=function, argument=argument):
                 return self.call(function, self.insert(argument, values))
         operands = [self.insert(child, values) for child in children(tree)]
-        match tree:
-            case Negate():
-                return self.negate(*operands)
-            case Add():
-                return self.add(*operands)
-            case Multiply():
-                return self.multiply(*operands)
-        return self.divide(*operands)
+        return int(getattr(self, str(operation(tree)))(*operands))
 
     # -- derivative ---------------------------------------------------------------------
 
@@ -176,8 +169,8 @@ class Graph:
         if node not in slopes:
             parts = [self.derivative(operand, slopes) for operand in self.operands[node]]
             variables = dict.fromkeys(name for part in parts for name in part)
-            found = {name: self._slope(node, name, parts) for name in variables}
-            slopes[node] = {name: s for name, s in found.items() if not self.is_zero(s)}
+            own = {name: self._slope(node, name, parts) for name in variables}
+            slopes[node] = {name: s for name, s in own.items() if not self.is_zero(s)}
         return slopes[node]
 
     def _slope(self, node: int, name: str, parts: list[dict[str, int]]) -> int:

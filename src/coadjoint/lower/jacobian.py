@@ -11,7 +11,7 @@ Read next: `coadjoint.lower.check`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.solver import Solve, factors
@@ -19,7 +19,7 @@ from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
-from coadjoint.lower.vanishing import hidden_zeros
+from coadjoint.lower.vanishing import find_hidden_zeros
 
 #: Derivatives of one value by state, inputs or parameters, zeros left out.
 Slopes = dict[str, int]
@@ -42,7 +42,7 @@ class ResidualSlope:
 
 def residual_slopes(equations: Equations, variables: Sequence[str]) -> list[ResidualSlope]:
     """The derivatives of ``b - A x`` of all solves by what they name, zeros left out."""
-    field, found, row = equations.setting.field, list[ResidualSlope](), 0
+    field, partials, row = equations.setting.field, list[ResidualSlope](), 0
     solved = {name for solve in equations.exact.solves for name in solve.names}
     inner = {name for name, _ in equations.exact.definitions}
     inner -= solved | equations.intermediates | equations.numbers.keys()
@@ -53,9 +53,9 @@ def residual_slopes(equations: Equations, variables: Sequence[str]) -> list[Resi
             residual = known - field.sum(products)
             names = [*variables, *sorted(inner & field.reach(residual))]
             slopes = zip(names, field.gradient(residual, names), strict=True)
-            found += [ResidualSlope(row, name, slope) for name, slope in slopes if slope != 0]
+            partials += [ResidualSlope(row, name, slope) for name, slope in slopes if slope != 0]
             row += 1
-    return found
+    return partials
 
 
 def factors_of_solves(equations: Equations) -> list[dict[tuple[int, int], Element]]:
@@ -73,7 +73,7 @@ def jacobian(
 ) -> Program:
     """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program.
 
-    Definitions keep their names; temporaries are found anew where they are still shared.
+    Definitions keep their names; temporaries are made anew where they are still shared.
 
     Args:
         name: Of the function.
@@ -104,7 +104,7 @@ def jacobian(
     first, factors_of = 0, iter(values[n + len(residuals) :])
     for solve, places in zip(equations.exact.solves, factors_of_solves(equations), strict=True):
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
-        columns = [_through(graph, row, slopes, variables) for row in own]
+        columns = [_differentiate_through(graph, row, slopes, variables) for row in own]
         own_factors = {place: next(factors_of) for place in places}
         solved |= _solve_slopes(graph, solve, variables, columns, own_factors)
         first += len(solve.names)
@@ -115,17 +115,16 @@ def jacobian(
 
     def program() -> Program:
         naming = Naming(graph, list(definitions.items()), outputs, rhs.parameters)
-        found = naming.program(name, rhs.state, rhs.parameters, (n, len(variables)))
-        return replace(found, inputs=rhs.inputs, time=rhs.time)
+        return naming.program(name, (n, len(variables)), **rhs.arrays)
 
     computed = program()
-    zeros = hidden_zeros(computed, equations)
+    zeros = find_hidden_zeros(computed, equations)
     for place in zeros:
         outputs[place] = outputs[place][0], graph.number(0)
     return program() if zeros else computed
 
 
-def _through(
+def _differentiate_through(
     graph: Graph, row: Mapping[str, int], slopes: Mapping[int, Slopes], variables: Sequence[str]
 ) -> list[int]:
     """Derivatives of a residual by each variable, through definitions too."""

@@ -137,7 +137,7 @@ class _Making:
 
     def __init__(self, rhs: Program) -> None:
         self.rhs = rhs
-        self._fixed = list(rhs.at_level("parameters"))
+        self._fixed = list(rhs.statements_at("parameters"))
         self._constant = {*rhs.parameters, *(statement.name for statement in self._fixed)}
         self._depth = dict.fromkeys((*rhs.state, *rhs.inputs, *rhs.time), 0)
         self._cells: list[Cell] = []
@@ -146,7 +146,7 @@ class _Making:
 
     def jets(self) -> Jets:
         """All of them."""
-        for statement in self.rhs.at_level("member"):
+        for statement in self.rhs.statements_at("member"):
             self._state(statement.name, statement.value)
         rates = [self._combine(output.value) for output in self.rhs.outputs]
         return Jets(

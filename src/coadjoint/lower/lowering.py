@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -27,7 +27,7 @@ from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slope
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
-from coadjoint.lower.vanishing import hidden_zeros
+from coadjoint.lower.vanishing import find_hidden_zeros
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Ratio:
 
 
 #: What the factors of products are: whatever occurs, so that coefficients are numbers; what moves,
-#: beside coefficients of parameters; what depends on the state, beside coefficients that inputs
+#: next to coefficients of parameters; what depends on the state, next to coefficients that inputs
 #: and time may drive.
 _FIXED, _DRIVEN, _MEMBER = range(3)
 #: An element as a sum of quotients, one for each denominator that moves with the member.
@@ -80,8 +80,8 @@ class Lowering:
         self._shared: dict[int, dict[Product, Product]] = {}
         self._pairs: dict[str, Pair] = {}
         for level, products in self._products.items():
-            found, pairs = share_pairs(products, f"_m{level}_{{}}".format)
-            self._shared[level] = dict(zip(products, found, strict=True))
+            over_pairs, pairs = share_pairs(products, f"_m{level}_{{}}".format)
+            self._shared[level] = dict(zip(products, over_pairs, strict=True))
             self._pairs |= pairs
 
     # -- collecting ---------------------------------------------------------------------
@@ -122,17 +122,17 @@ class Lowering:
     ) -> Ratio:
         """One quotient, equal coefficients factored out."""
         groups: dict[Any, list[tuple[int, Product]]] = {}
-        found: dict[Any, Element] = {}
+        by_mark: dict[Any, Element] = {}
         for product, part in coefficients.items():
             if part == 0:  # quotients over different parameters may cancel
                 continue
             sign, coefficient, mark = self._signed_coefficient(part)
-            found.setdefault(mark, coefficient)
+            by_mark.setdefault(mark, coefficient)
             groups.setdefault(mark, []).append((sign, product))
             self._products[level].append(product)
             self._note_functions(product)
         return Ratio(
-            tuple((self._coefficient(found[mark]), tuple(g)) for mark, g in groups.items()),
+            tuple((self._coefficient(by_mark[mark]), tuple(g)) for mark, g in groups.items()),
             tuple((self._form(divisor, level), power) for divisor, power in divisors),
         )
 
@@ -279,15 +279,15 @@ def lower(equations: Equations) -> dict[str, Program]:
             programs[name] = (
                 _jacobian(name, rows, programs["rhs"])
                 if rows.by
-                else _without_hidden_zeros(equations, name, rows)
+                else _clear_hidden_zeros(equations, name, rows)
             )
     return programs
 
 
-def _without_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
+def _clear_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
     """A Program in which what vanishes everywhere is written as zero, where a row may hide it."""
     program = _program(rows.of, name, rows.lines, rows.shape, rows.state)
-    zeros = hidden_zeros(program, equations) if rows.may_hide_zeros else []
+    zeros = find_hidden_zeros(program, equations) if rows.may_hide_zeros else []
     if not zeros:
         return program
     lines = list(rows.lines)
@@ -303,8 +303,8 @@ def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
     labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
     labelled += [
         (f"factor {i} {k}", value)
-        for found in factors_of_solves(equations)
-        for (i, k), value in found.items()
+        for own_factors in factors_of_solves(equations)
+        for (i, k), value in own_factors.items()
     ]
     # what the residuals name has a derivative, whether or not the rates need it
     inner = dict.fromkeys(each.by for each in slopes if each.by not in rows.by)
@@ -323,18 +323,18 @@ def _program(
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
     setting = equations.setting
-    shorter = [(label, _shorter(equations, element)) for label, element in outputs]
-    definitions, outputs = _without_single_uses(equations, shorter)
+    shorter = [(label, _shorten(equations, element)) for label, element in outputs]
+    definitions, outputs = _inline_single_uses(equations, shorter)
     lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
     naming = Naming(lowering.graph, named, results, setting.parameters)
-    program = naming.program(name, state, setting.parameters, shape)
-    return replace(program, inputs=setting.inputs, time=setting.time)
+    driving = {"inputs": setting.inputs, "time": setting.time}
+    return naming.program(name, shape, state=state, parameters=setting.parameters, **driving)
 
 
-def _without_single_uses(equations: Equations, outputs: _Lines) -> tuple[_Lines, _Lines]:
-    """Definitions and outputs, with an intermediate product put in where it is used only once.
+def _inline_single_uses(equations: Equations, outputs: _Lines) -> tuple[_Lines, _Lines]:
+    """Definitions and outputs, intermediate products that are used once being substituted.
 
     ``_b1 = r*cos(phi)`` goes into ``vx = vtheta*_b1``, where ``r*vtheta`` may be shared. What the
     equations of a solve name stays, since the Jacobian asks for its derivative; so do factors.
@@ -380,7 +380,7 @@ def _uses(field: Field, element: Element) -> Counter[str]:
     return uses
 
 
-def _shorter(equations: Equations, element: Element) -> Element:
+def _shorten(equations: Equations, element: Element) -> Element:
     """An element with its definitions multiplied out where that leaves fewer terms in the state.
 
     ``Pi2*Omega3 - Pi3*Omega2`` becomes ``(1/I3 - 1/I2)*Pi2*Pi3``, whose coefficient depends on

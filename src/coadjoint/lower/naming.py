@@ -14,10 +14,8 @@ from fractions import Fraction
 
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.program import (
-    Add,
+    OPERATIONS,
     Call,
-    Divide,
-    Multiply,
     Negate,
     Node,
     Number,
@@ -26,8 +24,6 @@ from coadjoint.lower.program import (
     Statement,
     Symbol,
 )
-
-_TREES = {"add": Add, "multiply": Multiply, "divide": Divide, "negate": Negate}
 
 
 class Naming:
@@ -58,10 +54,8 @@ class Naming:
         self._counters: Counter[str] = Counter()
         self.statements: list[Statement] = []
 
-    def program(
-        self, name: str, state: tuple[str, ...], parameters: tuple[str, ...], shape: tuple[int, ...]
-    ) -> Program:
-        """The finished Program."""
+    def program(self, name: str, shape: tuple[int, ...], **arrays: tuple[str, ...]) -> Program:
+        """The finished Program; ``arrays`` are the names of its rows, as a Program has them."""
         for definition, node in self.definitions.items():
             if self._uses[self.graph.symbol(definition)]:
                 self._define(definition, node)
@@ -69,7 +63,7 @@ class Naming:
             Output(label, self._inline(node, fixed=False)) for label, node in self.outputs
         )
         order = sorted(self.statements, key=lambda statement: statement.level == "member")
-        return Program(name, state, parameters, tuple(order), outputs, shape)
+        return Program(name=name, statements=tuple(order), outputs=outputs, shape=shape, **arrays)
 
     # -- what depends on what -----------------------------------------------------------
 
@@ -155,5 +149,4 @@ class Naming:
         operands = [self._inline(operand, fixed) for operand in self.graph.operands[node]]
         if kind == "call":
             return Call(str(payload), *operands)
-        tree: Node = _TREES[kind](*operands)
-        return tree
+        return OPERATIONS[kind](*operands)

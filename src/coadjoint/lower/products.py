@@ -41,8 +41,8 @@ def share_pairs(
         name = new_name(len(pairs) + 1)
         pairs[name] = best
         current = [_replace(product, best, name) for product in current]
-    found = dict(zip(dict.fromkeys(products), map(tuple, current), strict=True))
-    return [found[product] for product in products], pairs
+    shared = dict(zip(dict.fromkeys(products), map(tuple, current), strict=True))
+    return [shared[product] for product in products], pairs
 
 
 def _pairs(product: list[str]) -> Counter[Pair]:

@@ -8,7 +8,7 @@ Read next: `coadjoint.lower.lowering`, which makes Programs of Equations.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeVar
@@ -76,6 +76,13 @@ class Call:
 
 
 Node = Number | Symbol | Negate | Add | Multiply | Divide | Call
+#: The nodes that are operations on others, by the name of what they cost.
+OPERATIONS: Mapping[str, type[Add | Multiply | Divide | Negate]] = {
+    "add": Add,
+    "multiply": Multiply,
+    "divide": Divide,
+    "negate": Negate,
+}
 ZERO = Number(Fraction(0))
 
 
@@ -115,7 +122,7 @@ class Program:
 
     Attributes:
         name: One of `coadjoint.kernel_functions`.
-        state: Component names of the state, in order, and of what else it takes beside it.
+        state: Component names of the state, in order, and of what follows it in the same array.
         parameters: Component names of the parameters, in order.
         statements: In the order of evaluation, those of level ``parameters`` first.
         outputs: One per row of the result, row by row.
@@ -148,7 +155,7 @@ class Program:
         """The names of all rows of all arrays."""
         return tuple(name for rows in self.arrays.values() for name in rows)
 
-    def at_level(self, level: str) -> tuple[Statement, ...]:
+    def statements_at(self, level: str) -> tuple[Statement, ...]:
         """The statements of one level."""
         return tuple(statement for statement in self.statements if statement.level == level)
 
@@ -168,8 +175,8 @@ class Program:
 
         A negation inside a sum is a subtraction and costs nothing of its own.
         """
-        counts = dict.fromkeys(("add", "multiply", "divide", "negate", *FUNCTIONS), 0)
-        values = [statement.value for statement in self.at_level(level)]
+        counts = dict.fromkeys((*OPERATIONS, *FUNCTIONS), 0)
+        values = [statement.value for statement in self.statements_at(level)]
         if level == "member":
             values += [output.value for output in self.outputs]
         for value in values:
@@ -184,30 +191,26 @@ class Program:
 
 def operation(node: Node) -> str | None:
     """The operation that a node costs, or None for a leaf."""
-    match node:
-        case Add():
-            return "add"
-        case Multiply():
-            return "multiply"
-        case Divide():
-            return "divide"
-        case Negate():
-            return "negate"
-        case Call(function=function):
-            return function
-    return None
+    if isinstance(node, Call):
+        return node.function
+    return next((name for name, kind in OPERATIONS.items() if isinstance(node, kind)), None)
 
 
 def children(node: Node) -> tuple[Node, ...]:
     """Operands of a node, in the order of evaluation."""
     match node:
-        case Add(left=left, right=right) | Multiply(left=left, right=right):
-            return (left, right)
-        case Divide(left=left, right=right):
+        case Add(left, right) | Multiply(left, right) | Divide(left, right):
             return (left, right)
         case Negate(operand=operand) | Call(argument=operand):
             return (operand,)
     return ()
+
+
+def with_children(node: Node, operands: Iterable[Node]) -> Node:
+    """The operation of a node on other operands; a leaf as it is."""
+    if isinstance(node, Call):
+        return Call(node.function, *operands)
+    return node if isinstance(node, Number | Symbol) else type(node)(*operands)
 
 
 def walk(node: Node) -> Iterator[Node]:

@@ -2,8 +2,8 @@
 
 Comes in: Programs of functions that may hide zeros: derivatives, and ``projection``. Goes out: the
 places of these outputs. They rest on definitions, and on functions with relations between them, so
-that an output may vanish only once everything is put in. What is not zero at a random point modulo
-a prime is not zero; of the others closed forms decide, exactly.
+that an output may vanish only once everything is substituted. What is not zero at a random point
+modulo a prime is not zero; of the others closed forms decide, exactly.
 Read next: `coadjoint.derive.mechanics.decided`, which decides the definitions.
 """
 
@@ -21,12 +21,12 @@ from coadjoint.exact.residues import Residue, residue
 from coadjoint.lower.program import ZERO, Program, run
 
 
-def hidden_zeros(program: Program, equations: Equations) -> list[int]:
+def find_hidden_zeros(program: Program, equations: Equations) -> list[int]:
     """Places of the outputs that are computed and zero everywhere."""
-    return list(vanishing(program.name, _suspects(program), equations))
+    return list(find_vanishing(program.name, _list_suspects(program), equations))
 
 
-def vanishing(function: str, places: Iterable[int], equations: Equations) -> Iterator[int]:
+def find_vanishing(function: str, places: Iterable[int], equations: Equations) -> Iterator[int]:
     """Those of some outputs of a function that may hide zeros whose closed forms are zero."""
     rows = rows_of(equations, function)
     if rows is None or not rows.may_hide_zeros:
@@ -46,13 +46,13 @@ def vanishing(function: str, places: Iterable[int], equations: Equations) -> Ite
             yield place
 
 
-def _suspects(program: Program) -> list[int]:
+def _list_suspects(program: Program) -> list[int]:
     """Places of the outputs that are computed, and zero at a random point modulo a prime."""
     source, names = random.Random(1), program.names  # noqa: S311
     for _ in range(TRIES):
         inputs = {name: Residue(source.randrange(1, PRIME)) for name in names}
         with suppress(ZeroDivisionError):  # a pole, or no square root
-            found = run(program, inputs, residue, call_modulo)
-            pairs = enumerate(zip(found, program.outputs, strict=True))
+            values = run(program, inputs, residue, call_modulo)
+            pairs = enumerate(zip(values, program.outputs, strict=True))
             return [n for n, (x, output) in pairs if not x.value and output.value != ZERO]
     return []

@@ -2,7 +2,7 @@ r"""The Poisson structures that mechanics uses, each from what determines it.
 
 Comes in: an algebra, pairs of coordinates, Casimirs, or the brackets themselves. Goes out: a
 `PoissonStructure`. What could fail to be Poisson is checked: a magnetic two-form for closedness,
-declared brackets for the Jacobi identity. Read next: `coadjoint.poisson.nambu`.
+declared brackets for the Jacobi identity. Read next: `coadjoint.poisson.structure`.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 Comes in: a tensor J and a way to take its derivatives. Goes out: the components of its Schouten
 bracket ``J_am d_m J_bc + cyclic``. Only entries that are there are visited. A tensor that is affine
-in the coordinates never comes this far: `coadjoint.poisson.structure` reads its structure constants
-off and decides by their arithmetic.
+in the coordinates is not handled here: `coadjoint.poisson.structure` reads off its structure
+constants and decides by their arithmetic.
 """
 
 from __future__ import annotations

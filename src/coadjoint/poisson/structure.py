@@ -63,8 +63,12 @@ class PoissonStructure:
                 if (id(there), id(back)) in opposite:
                     continue
                 if (there or back) and not self.field.is_zero(there + back):
+                    a, b = self.names[i], self.names[j]
                     raise AlgebraError(
-                        self._skew_message(i, j), pair=[self.names[i], self.names[j]]
+                        f"{self.label}: {{{a}, {b}}} = {element_text(self.field, there)} and "
+                        f"{{{b}, {a}}} = {element_text(self.field, back)}; expected opposite "
+                        "values.",
+                        pair=[a, b],
                     )
                 opposite.add((id(there), id(back)))
 
@@ -108,7 +112,7 @@ class PoissonStructure:
     def jacobi_defects(self) -> dict[Triple, Element]:
         """``{x_i, {x_j, x_k}} + cyclic`` by triple i < j < k, where its normal form is not zero."""
         try:
-            if self.lie_algebra() is not None:
+            if self.lie_algebra is not None:
                 return {}
         except AlgebraError:
             pass  # the identity fails; the expansion below names every triple
@@ -147,7 +151,7 @@ class PoissonStructure:
     def _tested_places(self) -> Sequence[int]:
         """Coordinates that generate the others where Jacobi is proved by constants; else all."""
         try:
-            algebra = self.lie_algebra()
+            algebra = self.lie_algebra
         except AlgebraError:
             algebra = None
         if algebra is None or algebra.dimension > self.dimension:
@@ -162,6 +166,7 @@ class PoissonStructure:
 
     # -- the algebra behind an affine tensor --------------------------------------------
 
+    @cached_property
     def lie_algebra(self) -> LieAlgebra | None:
         """The algebra with ``[x_i, x_j] = J_ij``, if the tensor is affine in the coordinates.
 
@@ -171,11 +176,6 @@ class PoissonStructure:
         Raises:
             AlgebraError: The tensor is affine and violates the Jacobi identity.
         """
-        return self._algebra
-
-    @cached_property
-    def _algebra(self) -> LieAlgebra | None:
-        """`lie_algebra`, remembered."""
         constants: dict[tuple[int, int], dict[int, Fraction | Element]] = {}
         read: dict[int, dict[int, Fraction | Element] | None] = {}  # by object: most are repeated
         for i, row in enumerate(self._rows):
@@ -193,9 +193,6 @@ class PoissonStructure:
 
     def _affine(self, entry: Element) -> dict[int, Fraction | Element] | None:
         """Coefficients of an entry by the place of their coordinate, the constant one last."""
-        plain = self._linear(entry)
-        if plain is not None:
-            return plain
         field, result, rest = self.field, {}, entry
         for m, slope in self.gradient(entry).items():
             rest = rest - slope * field[self.names[m]]
@@ -206,37 +203,12 @@ class PoissonStructure:
             return None
         return {m: _number(field, value) for m, value in result.items()}
 
-    def _linear(self, entry: Element) -> dict[int, Fraction | Element] | None:
-        """Coefficients of a sum of numbers times coordinates, which most entries are."""
-        result: dict[int, Fraction | Element] = {}
-        for written in self.field.quotients(entry):
-            if written.divisors:
-                return None
-            for monomial in written.monomials:
-                match monomial.powers:
-                    case ((name, 1),) if name in self._places:
-                        result[self._places[name]] = monomial.number
-                    case _:
-                        return None
-        return result
-
-    @cached_property
-    def _places(self) -> Mapping[str, int]:
-        return {name: place for place, name in enumerate(self.names)}
-
     # -- sums ---------------------------------------------------------------------------
 
     def __add__(self, other: object) -> PoissonStructure:
         if not isinstance(other, PoissonStructure):
             return NotImplemented
         return compatible_sum(self, other)
-
-    def _skew_message(self, i: int, j: int) -> str:
-        a, b, text = self.names[i], self.names[j], element_text
-        return (
-            f"{self.label}: {{{a}, {b}}} = {text(self.field, self.tensor[i][j])} and {{{b}, {a}}} "
-            f"= {text(self.field, self.tensor[j][i])}; expected opposite values."
-        )
 
 
 def compatible_sum(

@@ -74,7 +74,7 @@ def about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 
 def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
-    """That a motion in variables of its own is the same motion, and where."""
+    """That a motion in other variables is the same motion, and where."""
     assert other.chart is not None
     chart_map = ChartMap(first, other)
     relations = ", ".join(relation.text for relation in other.chart.relations)
@@ -88,6 +88,9 @@ def _about_chart(first: Equations, other: Equations) -> Iterator[Examined]:
         "equivalence",
         chart_map.decide_related,
     )
+    if first.distribution is not None and first.distribution.kept:
+        kept = ", ".join(f"{equation.name} = 0" for equation, _ in first.distribution.kept)
+        yield f"{other.way} lies where {kept}", "equivalence", chart_map.decide_bound
     if relations:
         yield f"{other.way} keeps {relations}{held}", "equivalence", chart_map.decide_kept
     statement, decision = reach(chart_map)

@@ -47,7 +47,7 @@ from coadjoint.prove.zero import (
     Discovery,
     Examined,
     decide_zero,
-    proved_by_normal_form,
+    prove_by_normal_form,
 )
 
 Pair = tuple[int, int]
@@ -259,7 +259,7 @@ def _jacobi(bracket: ReducedBracket) -> Decision:
     defects = bracket.jacobi_defects()
     if defects:
         return decide_zero(defects, bracket.field)
-    return proved_by_normal_form(bracket.field)
+    return prove_by_normal_form(bracket.field)
 
 
 def _inverse_of_numbers(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:

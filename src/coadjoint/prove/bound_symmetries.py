@@ -32,7 +32,7 @@ from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.findings import SHOWN, finding
 from coadjoint.prove.momenta import law_along
-from coadjoint.prove.zero import Decision, Examined, claimed_by, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 from coadjoint.spec.model import Symmetry
 
 
@@ -127,7 +127,7 @@ def about_constrained_symmetries(motion: ConstrainedRates) -> Iterator[Examined]
     for symmetry in motion.spec.symmetries:
         action = ConstrainedAction(motion, symmetry)
         examined = [*_about_action(motion, action), *_about_momenta(motion, action, values)]
-        yield from claimed_by(motion.spec, ("symmetries", symmetry.name), examined, motion.field)
+        yield from mark_accepted(motion.spec, ("symmetries", symmetry.name), examined, motion.field)
 
 
 def _about_action(motion: ConstrainedRates, action: ConstrainedAction) -> Iterator[Examined]:

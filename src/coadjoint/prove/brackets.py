@@ -1,7 +1,7 @@
 """Brackets: the Poisson bracket of a motion, that it gives the motion, and its Casimirs.
 
 Comes in: a motion with a bracket. Goes out: statements, and what must be zero. Of each Casimir it
-is said whether what acts beside the bracket leaves it alone.
+is said whether what acts in addition to the bracket leaves it alone.
 Read next: `coadjoint.prove.completeness`.
 """
 
@@ -32,9 +32,9 @@ from coadjoint.prove.zero import (
     CONSTANTS,
     Decision,
     Examined,
-    claimed_by,
     decide_zero,
-    proved_by_normal_form,
+    mark_accepted,
+    prove_by_normal_form,
 )
 from coadjoint.spec import Formula
 
@@ -76,16 +76,16 @@ def _jacobi(first: Equations) -> Decision:
     """Jacobi identity of the emitted tensor: of its constants where it is affine in the state."""
     structure = bracket_of(first)
     with suppress(AlgebraError):  # the identity fails; the defects below show where
-        if structure.lie_algebra() is not None:
+        if structure.lie_algebra is not None:
             return Decision(Verdict.PROVED, CONSTANTS)
     defects = list(structure.jacobi_defects().values())
     if defects:
         return decide_zero(defects, structure.field)
-    return proved_by_normal_form(structure.field)
+    return prove_by_normal_form(structure.field)
 
 
 def about_hamiltonian(motion: Motion) -> Iterator[Examined]:
-    """That the motion is the bracket with the energy, and what acts beside it."""
+    """That the motion is the bracket with the energy, and what acts in addition to it."""
     first = motion.equations
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
@@ -97,7 +97,7 @@ def about_hamiltonian(motion: Motion) -> Iterator[Examined]:
 
 
 def _beside(first: Equations) -> str:
-    """What acts beside the energy, as the end of a statement."""
+    """What acts in addition to the energy, as the end of a statement."""
     spec, relaxation = first.spec, first.spec.relaxation
     parts = [" + dx/dt at fixed momenta"] * has_moving_momenta(first)
     parts += [" and the forces"] * spec.is_forced
@@ -120,7 +120,7 @@ def about_casimirs(motion: Motion) -> Iterator[Examined]:
     for place, casimir in enumerate(spec.casimirs):
         decide = cache(partial(_casimir, first, casimir))
         examined = [(f"{casimir.in_one_line} is a Casimir", "casimir", decide)]
-        yield from claimed_by(spec, ("claims", "casimirs", place), examined, field)
+        yield from mark_accepted(spec, ("claims", "casimirs", place), examined, field)
         if decide().verdict is Verdict.PROVED:
             proved += first.setting.components(casimir)
             yield from _about_survival(motion, casimir)
@@ -152,7 +152,7 @@ def _about_survival(motion: Motion, casimir: Formula) -> Iterator[Examined]:
 
 
 def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator[Examined]:
-    """Casimirs beside those claimed and proved, and whether these are all."""
+    """Casimirs other than those claimed and proved, and whether these are all."""
     known = completeness(first, proved=proved)
     for casimir in known.found:
         yield (

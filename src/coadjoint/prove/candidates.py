@@ -44,9 +44,10 @@ from coadjoint.prove.completeness import describe
 from coadjoint.prove.motion import Motion, vector_names
 from coadjoint.prove.polynomial_families import SPARE, Degrees, PolynomialFamily
 from coadjoint.prove.reversibility import reversal_defects
-from coadjoint.prove.samples import Samples
+from coadjoint.prove.samples import Samples, samples_of
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
+from coadjoint.spec.spatial import spatial_momenta
 
 #: Degrees in the velocities and in the positions up to which integrals are looked for: those of
 #: Jellett and Routh have the degrees (1, 1) and (2, 2).
@@ -95,10 +96,11 @@ class CandidateSearch(PolynomialFamily):
         self.known = tuple(known)
         self._rates = motion if parameters is None else motion.at(parameters)
         self._decided: dict[Element, Decision] = {}
+        self._bases: dict[Degrees, list[Solution[Exponents]]] = {}
 
     @cached_property
     def reversible(self) -> bool:
-        """Whether the motion runs back when its velocities are turned round."""
+        """Whether the motion runs backwards when its velocities change their signs."""
         defects = reversal_defects(self.motion)
         return all(map(self.field.is_zero, defects.values()))
 
@@ -111,16 +113,19 @@ class CandidateSearch(PolynomialFamily):
 
     def integrals(self, members: Sequence[Exponents]) -> list[Solution[Exponents]]:
         """A basis of the integrals among combinations of monomials."""
-        basis, tables = self.independent_places(members), self.tables(members)
-        conditions = (dict(enumerate(rates[n] for n in basis)) for _, rates in tables)
-        return solve([members[n] for n in basis], conditions, self.samples.prime)
+        basis = [members[n] for n in self.independent_places(members)]
+        conditions = ([table[e][1] for e in basis] for table in self.tables(len(members)))
+        return solve(basis, conditions, self.samples.prime)
 
-    def found(self, degrees: Degrees) -> list[Solution[Exponents]]:
+    def find(self, degrees: Degrees) -> list[Solution[Exponents]]:
         """A basis of the integrals up to some degrees."""
-        return [each for members in self.sectors(degrees) for each in self.integrals(members)]
+        if degrees not in self._bases:
+            sectors = map(self.integrals, self.sectors(degrees))
+            self._bases[degrees] = [each for basis in sectors for each in basis]
+        return self._bases[degrees]
 
-    def bounded(self, degrees: Degrees) -> bool:
-        """Whether there are certainly no more integrals than `found`: all relations are known."""
+    def is_bounded(self, degrees: Degrees) -> bool:
+        """Whether there are certainly no more integrals than `find` gives."""
         sectors = ((e, len(self.independent_places(e))) for e in self.sectors(degrees))
         return all(
             count + self.count_relations(members, degrees) == len(members)
@@ -147,7 +152,7 @@ class CandidateSearch(PolynomialFamily):
     ) -> tuple[int, list[int]]:
         """The number of independent products, that of constants among them, and their factors."""
         count, prime = len(self.points(len(self.monomials(degrees)) + SPARE)), self.samples.prime
-        values = [[p.value(part) for p in self._points[:count]] for _, part, _ in known]
+        values = [[p.value(part) for p in self.drawn[:count]] for _, part, _ in known]
         span, used = SpanModulo(prime), set[int]()
         for factors in islice(_factors([d for *_, d in known], degrees), PRODUCTS):
             if span.add({p: prod(values[n][p] for n in factors) for p in range(count)}):
@@ -173,16 +178,16 @@ class CandidateSearch(PolynomialFamily):
         parts = (*self.samples.where.relations, *(p for known in self.known for p in known.parts))
         slopes = (map(point.value, self.field.gradient(part, state)) for part in parts)
         span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
-        return span.add_independent(self.gradient(point, each) for each in found)
+        return span.add_independent(self.gradient(each) for each in found)
 
-    def new(self, degrees: Degrees) -> Iterator[Element]:
+    def find_new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
 
         They are known from then on. Coefficients modulo the prime that are those of no small
         fractions give functions that no proof holds for, and these are passed over.
         """
         for lower in (d for d in STEPS if d[0] <= degrees[0] and d[1] <= degrees[1]):
-            found = self.found(lower)
+            found = self.find(lower)
             for place in self.independent(found):
                 numbers = found[place].lift()
                 if numbers is None:
@@ -201,11 +206,11 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
         yield _pass_over(search)
         return
     degrees = affordable(search)
-    if search.independent(search.found(degrees)):
+    if search.independent(search.find(degrees)):
         at_numbers = CandidateSearch(motion, known, default_numbers(motion.equations.spec))
         if not at_numbers.samples.obstacle:
             search, where = at_numbers, _at_defaults(motion)
-            for element in search.new(degrees):
+            for element in search.find_new(degrees):
                 text = f"{describe(motion.field, element)} is conserved{where.lstrip(',')}"
                 yield text, "integrals", partial(search.drift, element)
     yield _count(search, degrees, where)
@@ -213,9 +218,9 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
 
 def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     """How many integrals there are: proved where bounds from both sides meet, else found."""
-    found, scope = search.found(degrees), f"integrals {_scope(search, degrees)}{where}"
-    (certain, names), bounded = search.polynomials(degrees), search.bounded(degrees)
-    points = f"ranks at {len(search.values_at)} random points modulo {search.samples.prime}"
+    found, scope = search.find(degrees), f"integrals {_scope(search, degrees)}{where}"
+    (certain, names), bounded = search.polynomials(degrees), search.is_bounded(degrees)
+    points = f"ranks at {len(search.drawn)} random points modulo {search.samples.prime}"
     listed = f"polynomials in {', '.join(names)}" if names else "constants"
     size = f"a space of dimension {len(found)} with constants"
     if bounded and certain == len(found):
@@ -259,7 +264,7 @@ def known_integrals(motion: Motion) -> list[Known]:
 
     What changes at a random point is none; what does not is proved where a proof rests on it.
     """
-    setting, spec, where = motion.setting, motion.spec, Samples(motion).where
+    setting, spec, where = motion.setting, motion.spec, samples_of(motion).where
     names, energy = motion.emitted, motion.equations.exact.energy
     stated = {} if energy is None else {"energy": [motion.close(energy)]}
     for claim in spec.conserved:
@@ -272,7 +277,7 @@ def known_integrals(motion: Motion) -> list[Known]:
     emitted = dict(motion.equations.exact.observables)
     named = [(each.name, each.components) for each in spec.sections]
     named += [(each.name, each.components) for each in spec.symmetries]
-    named += [(each.name, each.components) for each in spec.spatial]
+    named += [(each.name, each.components) for each in spatial_momenta(spec)]
     for name, components in named:
         stated[name] = [motion.close(emitted[component]) for component in components]
     pair = lax_integrals(setting)
@@ -287,8 +292,10 @@ def known_integrals(motion: Motion) -> list[Known]:
 
 def _changes(motion: Motion, parts: Sequence[Element]) -> bool:
     """Whether functions certainly change along the motion, or have no values at its points."""
-    samples = Samples(motion, None, parts)
-    point = next(samples.points(), None)
+    samples = samples_of(motion)
+    if not samples.serves(parts):
+        samples = Samples(motion, None, parts)
+    point = samples.first
     return point is None or any(point.differentiate(samples.slopes(part)) for part in parts)
 
 

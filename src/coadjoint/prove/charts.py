@@ -25,9 +25,11 @@ from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.ansatz import monomials, solve_exactly
+from coadjoint.exact.dense import determinant
 from coadjoint.exact.linear import rank_modulo
 from coadjoint.exact.ranks import error_of_ranks, generic_rank, source_of_ranks
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import Decision, Discovery, decide_zero, random_points
 
@@ -79,8 +81,11 @@ class ChartMap:
         """Whether ``D phi . Y = X o phi``.
 
         Velocities that both routes define stay symbols, where the definitions agree: what is left
-        is polynomial. Only if that fails is everything written out.
+        is polynomial. Only if that fails is everything written out, and so it is where the kernel
+        solves for something.
         """
+        if self.first.kept:
+            return decide_zero(self._solved_defects(), self.field, self.domain)
         shared = [*self._definition_defects(), *self._shared_defects()]
         decision = decide_zero(shared, self.field, self.domain)
         if decision.verdict is Verdict.PROVED:
@@ -105,6 +110,41 @@ class ChartMap:
         for name, rate in zip(self.first.setting.state, self.first.exact.rates, strict=True):
             own = self.other.close(self.rate_along_route(self.image[name]))
             yield own - self.pull_back(self.first.close(rate))
+
+    def _solved_defects(self) -> list[Element]:
+        """``D phi . Y - X o phi`` with the solution of linear equations put in."""
+        if self.first.distribution is not None:
+            rates = {n: self.pull_back(x) for n, x in motion_of(self.first).written_rates.items()}
+        else:
+            names, solved = self.first.setting.state, self._solution
+            closed = (self.pull_back(self.first.close(rate)) for rate in self.first.exact.rates)
+            written = (self.field.substitute(rate, solved) for rate in closed)
+            rates = dict(zip(names, written, strict=True))
+        return [
+            self.other.close(self.rate_along_route(self.image[name])) - rate
+            for name, rate in rates.items()
+        ]
+
+    @cached_property
+    def _solution(self) -> dict[str, Element]:
+        """The velocities that the kernel solves for, at the image: by Cramer's rule."""
+        found = dict[str, Element]()
+        for solve in self.first.exact.solves:
+            rows = [[*row, k] for row, k in zip(solve.matrix, solve.known, strict=True)]
+            placed = [[self.pull_back(self.first.close(entry)) for entry in row] for row in rows]
+            whole = determinant(tuple(tuple(row[:-1]) for row in placed))
+            for n, name in enumerate(solve.names):
+                turned = tuple((*row[:n], row[-1], *row[n + 1 : -1]) for row in placed)
+                found[name] = determinant(turned) / whole
+        return found
+
+    def constraint_defects(self) -> list[Element]:
+        """The constraints that the motion keeps, at the image."""
+        return [self.pull_back(residual) for _, residual in motion_of(self.first).kept]
+
+    def decide_bound(self) -> Decision:
+        """Whether all of the chart is where these constraints hold."""
+        return decide_zero(self.constraint_defects(), self.field, self.domain)
 
     def _definition_defects(self) -> Iterator[Element]:
         """What the emitted route defines, at the image, minus what this one defines."""

@@ -226,7 +226,7 @@ def _examine(
     examine: Callable[[], Sequence[Element] | Decision | Discovery],
     field: Field,
 ) -> Decision | Discovery:
-    """What becomes of one claim.
+    """The decision about one claim.
 
     Raises:
         UndecidedError: No point is found at which it could fail; with the claim.

@@ -1,4 +1,4 @@
-r"""Constrained motions: what is claimed of constraints, of both roads and of the energy.
+r"""Constrained motions: what is claimed of constraints, of two routes and of the energy.
 
 Comes in: Equations with a distribution. Goes out: claims for the certificate. A rate is affine in
 the accelerations, which solve :math:`\mathcal{M} x = k`; its value is written with
@@ -22,9 +22,10 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.driving import explicit
-from coadjoint.derive.mechanics.kinematics import kept_rows, rate_name
+from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.derive.mechanics.sections import section_components
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import determinant, dot
 from coadjoint.exact.ranks import generic_rank, source_of_ranks
@@ -73,7 +74,7 @@ class ConstrainedRates(Motion):
     @property
     def kept_rows(self) -> list[Row]:
         """``(A, -b)`` of these."""
-        return kept_rows(self.distribution)
+        return self.distribution.kept_rows
 
     @cached_property
     def where(self) -> Ideal:
@@ -110,10 +111,10 @@ class ConstrainedRates(Motion):
         slopes = zip(self.field.gradient(function, names), names, strict=True)
         return own + self.field.sum(s * self.rates[name] for s, name in slopes if s != 0)
 
-    @cached_property
+    @property
     def written_rates(self) -> dict[str, Element]:
         """The rates in the state, without accelerations."""
-        return {name: self.rate(self.field[name]) for name in self.setting.state}
+        return self.decidable_rates
 
     def write(self, function: Element) -> Element:
         """A function of the state alone."""
@@ -156,7 +157,12 @@ class ConstrainedRates(Motion):
             *((*row, k) for row, k in zip(block.matrix, block.known, strict=True)),
             (*c, field.zero),
         )
-        return -determinant(bordered) / determinant(tuple(map(tuple, block.matrix)))
+        return -determinant(bordered) / self._determinants[block.names[0]]
+
+    @cached_property
+    def _determinants(self) -> dict[str, Element]:
+        """The determinant of every solve, by the name of its first unknown."""
+        return {solve.names[0]: determinant(solve.matrix) for solve in self.solves}
 
     def _weights(self, block: Solve, direction: Mapping[str, Element]) -> Iterator[Row]:
         """Combinations of the equations of a block that are worth a trial."""
@@ -210,7 +216,7 @@ class ConstrainedRates(Motion):
         rates, field = self.rates, self.field
         parts = [field.derivative(rates[name], name) for name in self.positions]
         for solve in self.solves:
-            whole = determinant(tuple(map(tuple, solve.matrix)))
+            whole = self._determinants[solve.names[0]]
             for place, name in enumerate(solve.names):
                 velocity = next((v for v in self.fibre if rates[v] == field[name]), None)
                 if velocity is None:  # a multiplier
@@ -254,6 +260,7 @@ class ConstrainedRates(Motion):
         return self.value(self._differentiate(self.close(balance.energy)) - balance.power)
 
 
+@once
 def motion_of(equations: Equations) -> Motion:
     """The motion of Equations, whatever binds it."""
     return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)
@@ -332,7 +339,7 @@ def _rank_drops(found: Distribution) -> list[Element]:
 
 def _products(found: Distribution) -> tuple[Row, ...]:
     """``A A^T`` of the constraints that are kept, in the velocities of the state."""
-    field, rows = found.setting.field, [row[:-1] for row in kept_rows(found)]
+    field, rows = found.setting.field, [row[:-1] for row in found.kept_rows]
     return tuple(
         tuple(field.sum(x * y for x, y in zip(a, b, strict=True)) for b in rows) for a in rows
     )

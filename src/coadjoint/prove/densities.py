@@ -29,6 +29,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
 
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element
 from coadjoint.exact.ansatz import solve_with_right_side
 from coadjoint.exact.dense import minor
@@ -203,6 +204,12 @@ class Measure:
         """``d ln rho / dt + div X``, zero if the measure is invariant."""
         growth = [self.motion.rate(factor) / factor * x for factor, x in powers]
         return self.field.sum([self.divergence, *growth])
+
+
+@once
+def measure_of(motion: Motion) -> Measure:
+    """The conditions for a motion, made once."""
+    return Measure(motion)
 
 
 def _powers(factors: Sequence[Element], rows: Sequence[Sequence[int]], prime: int) -> Powers | None:

@@ -42,7 +42,7 @@ def has_moving_momenta(equations: Equations) -> bool:
 
 
 def motion_defects(equations: Equations, defects: Sequence[Element]) -> list[Element]:
-    """What vanishes if the motion is the bracket with h beside ``dx/dt`` at fixed momenta.
+    """What vanishes if the motion is the bracket with h plus ``dx/dt`` at fixed momenta.
 
     Of a velocity v that is ``M dv/dt|explicit = -dp/dt|explicit`` with ``M = dp/dv``.
 

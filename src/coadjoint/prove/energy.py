@@ -138,7 +138,7 @@ class Balance:
     @property
     def _is_quadratic(self) -> bool:
         """Whether ``<dR/dxi, xi> = 2 R``, as of every R quadratic in the velocities."""
-        assert self.spec.dissipation is not None, "asked for only beside R"
+        assert self.spec.dissipation is not None, "asked for only where R is declared"
         R = self.setting.formula(self.spec.dissipation, self.setting.reactions)
         return self.field.is_zero(self._lost - 2 * R)
 

@@ -3,7 +3,7 @@
 Comes in: Equations by two routes of one Spec, in one Setting. Goes out: elements that must be zero,
 by the claim they belong to. Where a Lagrangian is given, the map is the Legendre transform
 ``mu = dl/dxi``: both sides are pulled back to velocities, where everything is polynomial. It
-loses nothing where the transform is invertible; a claim of its own says where that is proved.
+loses nothing where the transform is invertible; another claim says where that is proved.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from coadjoint.derive.mechanics.configuration import (
 )
 from coadjoint.derive.mechanics.legendre import known_side
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.ranks import witness_regular
@@ -169,12 +170,18 @@ def kept_velocities(equations: Equations) -> list[str]:
 def in_velocities(equations: Equations, elements: Iterable[Element]) -> list[Element]:
     """Elements with a decidable zero: in the state, or where the kernel solves, in velocities.
 
-    A velocity that keeps its name is no independent symbol beside its momentum. The momentum is
+    A velocity that keeps its name is not independent of its momentum. The momentum is
     replaced by ``dl/dxi``, and velocities and the rest of the state are independent again.
     """
     closed = [equations.close(element) for element in elements]
     if not equations.kept:
         return closed
-    pairs = zip(equations.setting.velocities, LegendreMap(equations).momenta.items(), strict=True)
-    momenta = {mu: slope for xi, (mu, slope) in pairs if xi in equations.kept}
+    momenta = _solved_momenta(equations)
     return [equations.setting.field.substitute(element, momenta) for element in closed]
+
+
+@once
+def _solved_momenta(equations: Equations) -> dict[str, Element]:
+    """The momenta of the velocities that the kernel solves for, in velocities."""
+    pairs = zip(equations.setting.velocities, LegendreMap(equations).momenta.items(), strict=True)
+    return {mu: slope for xi, (mu, slope) in pairs if xi in equations.kept}

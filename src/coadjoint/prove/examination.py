@@ -23,7 +23,7 @@ from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import search_summands
 from coadjoint.prove.certificate import Certificate, Claim, Finding, Verdict
 from coadjoint.prove.completeness import DEGREE, Completeness, describe, scope_of
-from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero, make_entry, proved_by_normal_form
+from coadjoint.prove.zero import CONSTANTS, Decision, decide_zero, make_entry, prove_by_normal_form
 
 #: Columns of text that a table of brackets may take.
 TABLE = 94
@@ -324,7 +324,7 @@ def _examine(
 def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
     """Whether a function commutes with all; the point where it does not is looked for if so."""
     if structure.is_casimir(function):
-        return proved_by_normal_form(structure.field)
+        return prove_by_normal_form(structure.field)
     return decide_zero(structure.casimir_defects(function), structure.field)
 
 

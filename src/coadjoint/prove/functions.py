@@ -187,10 +187,9 @@ class Functions:
         rows = [tuple(vector.get(key, Fraction(0)) for key in keys) for vector in vectors]
         basis = lattice_basis(rows)
         pivots = [next(n for n, x in enumerate(row) if x) for row in basis]
-        whole = (coordinates(row, basis) for row in rows)
         return Lattice(
             tuple(self._moves(keys[pivot]) for pivot in pivots),
-            tuple({n: x for n, x in enumerate(row) if x} for row in whole),
+            tuple(coordinates(rows, basis)),
         )
 
     def _moves(self, key: Any) -> bool:

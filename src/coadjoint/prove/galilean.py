@@ -21,7 +21,7 @@ from functools import partial
 from coadjoint.derive import Equations, Setting
 from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.forces import accelerations
-from coadjoint.derive.setting import Declared, whole
+from coadjoint.derive.setting import Declared, assemble
 from coadjoint.exact import Element
 from coadjoint.groups.galilean import (
     Galilean,
@@ -31,7 +31,7 @@ from coadjoint.groups.galilean import (
     transformation_defects,
 )
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.zero import Decision, Examined, claimed_by, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 
 #: The subgroup that moves time.
 SHIFT = "time shift"
@@ -41,7 +41,7 @@ def about_galilean(motion: Motion) -> Iterator[Examined]:
     """One claim for each subgroup, if the spec claims Galilean relativity."""
     if motion.spec.galilean:
         examined = _about_subgroups(motion.equations)
-        yield from claimed_by(motion.spec, ("claims", "galilean"), examined, motion.field)
+        yield from mark_accepted(motion.spec, ("claims", "galilean"), examined, motion.field)
 
 
 def _about_subgroups(first: Equations) -> Iterator[Examined]:
@@ -96,5 +96,5 @@ def _with_names(setting: Setting, system: Particles, names: Mapping[str, str]) -
     spec = setting.spec
     quantities: list[Declared] = [*spec.state, *spec.parameters, *spec.driving]
     for quantity in quantities:
-        values[quantity.name] = whole(quantity, values)
+        values[quantity.name] = assemble(quantity, values)
     return Setting(setting.spec, system.field, values)

@@ -35,7 +35,7 @@ from coadjoint.prove.points import Branch, Points, Values
 
 #: Branches of a zero set that are told apart; beyond them relations stay as they are.
 BRANCHES = 32
-#: Addends of a factor by which a relation is divided, on a branch of its own where it vanishes.
+#: Addends of a factor by which a relation is divided, on a separate branch where it vanishes.
 SLOPE = 4
 
 _Numerators = dict[tuple[int, ...], PolyElement]
@@ -49,7 +49,7 @@ class Ideal:
         relations: What is zero.
         text: The relations for people, ``dot(Pi, Gamma) = 0``.
         variables: Symbols that may be solved for; by default all but parameters.
-        nonzero: What is not zero where the relations are looked at, beside what has a declared
+        nonzero: What is not zero where the relations are looked at, apart from what has a declared
             sign: where the rows of constraints vanish, no motion is defined.
 
     >>> field = Field(["x", "y", "z"])
@@ -102,7 +102,7 @@ class Ideal:
 
     @property
     def scope(self) -> str:
-        """The relations for people, and what is not zero beside them."""
+        """The relations for people, and what is not zero where they hold."""
         shown = sorted(element_text(self.field, each) for each in self.excluded)
         return ", ".join([*filter(None, [self.text]), *(f"{each} not 0" for each in shown)])
 
@@ -166,7 +166,7 @@ class Ideal:
         return reduce(mul, kept)
 
     def may_vanish(self, element: Element) -> bool:
-        """Whether a polynomial in what moves may vanish, as far as we know, beside what does."""
+        """Whether a polynomial in what moves may vanish where it is not known to be nonzero."""
         value = self.field.normal(element)  # cos^2 + sin^2 is 1
         moves = not self.field.reach(value) <= self.field.region.parameters
         factors = list(all_factors(self.field, value)) or [value]
@@ -240,7 +240,7 @@ class Ideal:
         """The branches of some relations below what is solved for already."""
         try:
             left = [self.field.normal(self._on(branch, each)) for each in relations]
-        except ZeroDivisionError:  # where that vanishes is a branch of its own
+        except ZeroDivisionError:  # where that vanishes is another branch
             return
         left = [each for each in left if each != 0]
         if self._count >= BRANCHES:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.setting import once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import dot
@@ -42,9 +43,14 @@ def casimir_defects(
 
 def drift(equations: Equations, function: Element) -> list[Element]:
     """Time derivative of a function of state and time along the motion, inputs held constant."""
-    rates = in_velocities(equations, equations.exact.rates)
-    carried = dot(gradient(equations, function), rates)
+    carried = dot(gradient(equations, function), decidable_rates(equations))
     return [carried + own_rate(equations, function)]
+
+
+@once
+def decidable_rates(equations: Equations) -> list[Element]:
+    """The rates of the state with a decidable zero, computed once for all functions."""
+    return in_velocities(equations, equations.exact.rates)
 
 
 def own_rate(equations: Equations, function: Element) -> Element:

@@ -22,9 +22,9 @@ from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.zero import Decision, Examined, UndecidedError, claimed_by, decide_zero
+from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
 from coadjoint.spec.model import Integral
-from coadjoint.spec.spatial import SpatialMomentum
+from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
 
 
 def about_energy(motion: Motion) -> Iterator[Examined]:
@@ -43,7 +43,7 @@ def about_integrals(motion: Motion) -> Iterator[Examined]:
     for place, claim in enumerate(spec.conserved):
         if claim.everywhere != said:
             claimed = [(_statement(motion, claim), "conserved", partial(_integral, motion, claim))]
-            yield from claimed_by(spec, ("claims", "conserved", place), claimed, motion.field)
+            yield from mark_accepted(spec, ("claims", "conserved", place), claimed, motion.field)
 
 
 def _statement(motion: Motion, claim: Integral) -> str:
@@ -98,7 +98,7 @@ def is_conserved(equations: Equations, each: Emitted) -> bool:
 
 def about_spatial(motion: Motion) -> Iterator[Examined]:
     """The momenta as seen from space."""
-    for seen in motion.spec.spatial:
+    for seen in spatial_momenta(motion.spec):
         if seen.conserved:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, motion, seen)
 

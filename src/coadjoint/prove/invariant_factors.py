@@ -21,6 +21,7 @@ from functools import cached_property, reduce
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant
 from coadjoint.exact.element import numerator, remove_factor
+from coadjoint.exact.factors import common_divisor
 from coadjoint.exact.irreducible import find_factors
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import leading
@@ -87,7 +88,7 @@ class InvariantFactors:
         numerators = [numerator(rate) for rate in self.rates if rate != 0]
         if not numerators or max(map(len, numerators)) > LONGEST:
             return []
-        divisor = reduce(lambda p, q: p.gcd(q), numerators)
+        divisor = reduce(common_divisor, numerators)
         whole = self.field.from_polynomial(divisor)
         return find_factors(self.field, whole, velocities) if len(divisor) <= TERMS else [whole]
 

@@ -96,11 +96,12 @@ def _about_integrals(
         "conserved",
         partial(_complete, first, found, rank),
     )
+    again = cache(lambda: list(expanded_traces(first.setting, found.pair)))
     for name, each in zip(names, found.emitted, strict=True):
         yield (
             f"{name}, from tr L^{each.trace} at {found.pair.spectral}^{each.power}, is conserved",
             "conserved",
-            partial(_decide_conserved, first, found, name, each, of_pair),
+            partial(_decide_conserved, first, name, each, of_pair, again),
         )
     pairs = list(combinations(found.emitted, 2))
     length = first.setting.field.terms
@@ -121,7 +122,7 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
 
 
 def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Discovery:
-    """Every coefficient depends on what is emitted, and nothing of that is there in vain.
+    """Every coefficient depends on what is emitted, which is independent.
 
     That the emitted ones are independent is certain, that the others depend on them is not.
     """
@@ -148,10 +149,10 @@ def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Disco
 
 def _decide_conserved(
     first: Equations,
-    found: Integrals,
     name: str,
     each: Coefficient,
     of_pair: Callable[[], Decision],
+    again: Callable[[], Sequence[Coefficient]],
 ) -> Sequence[Element] | Decision:
     """Whether an emitted integral is conserved: by its rate, or if it is long by the pair."""
     value = dict(first.exact.observables)[name]
@@ -159,8 +160,7 @@ def _decide_conserved(
         return drift(first, value)
     if of_pair().verdict is not Verdict.PROVED:
         return Decision(Verdict.REFUTED, "the Lax equation does not hold", {}, "[L, M] - dL/dt")
-    again = expanded_traces(first.setting, found.pair)
-    (same,) = (c for c in again if (c.trace, c.power) == (each.trace, each.power))
+    (same,) = (c for c in again() if (c.trace, c.power) == (each.trace, each.power))
     decision = decide_zero([same.value - value], first.setting.field)
     proved = decision.verdict is Verdict.PROVED
     return Decision(Verdict.PROVED, TRACE_IDENTITY) if proved else decision

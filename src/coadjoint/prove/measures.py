@@ -23,12 +23,20 @@ from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, describe
-from coadjoint.prove.densities import DENOMINATOR, POINTS, REST, Condition, Measure, Powers
+from coadjoint.prove.densities import (
+    DENOMINATOR,
+    POINTS,
+    REST,
+    Condition,
+    Measure,
+    Powers,
+    measure_of,
+)
 from coadjoint.prove.findings import show_value
 from coadjoint.prove.invariant_factors import LONGEST as COMMON
 from coadjoint.prove.invariant_factors import SYMBOLS, TERMS, InvariantFactors
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.samples import Point, Samples, leading, random_numbers
+from coadjoint.prove.samples import Point, Samples, leading, random_numbers, samples_of
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 #: Unknowns of one solve; the determinants of larger ones take too long, and no measure is claimed.
@@ -85,7 +93,7 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     )
     if not moved and (value := point.value(measure.divergence)):
         proof = Decision(Verdict.PROVED, f"{value} at a random point modulo {samples.prime}")
-        shown_text = show_value(motion.field, Measure(motion).divergence)
+        shown_text = show_value(motion.field, measure_of(motion).divergence)
         return f"{none}: div X{shown_text}", "measure", lambda: proof
     if measure.is_affine and any(point.value(second) for second in measure.curved):
         decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
@@ -119,7 +127,7 @@ def _is_certain(
     """
     if rank == len(measure.positions) - len(samples.unit):
         return True
-    whole = {each.name: each for each in Measure(motion).conditions} if rank == 0 else {}
+    whole = {each.name: each for each in measure_of(motion).conditions} if rank == 0 else {}
     last = whole.get(found[-1].name)
     return last is not None and all(map(motion.field.is_zero, last.parts[:-1]))
 
@@ -153,7 +161,7 @@ def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examin
     """A density that depends on velocities: a product of powers of invariant factors."""
     short, tried = InvariantFactors(measure.motion, measure.allowed), list[Element]()
     if short.short() or short.all():
-        whole = InvariantFactors(motion, Measure(motion).allowed)
+        whole = InvariantFactors(motion, measure_of(motion).allowed)
         others = _factors_of_minors(motion, measure)
         for search in (whole.short, whole.all):
             tried = search()
@@ -170,7 +178,7 @@ def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examin
 
 def _state(motion: Motion, powers: Powers) -> Examined | None:
     """A measure, on vectors of any length if it can be; None if it is refuted."""
-    defect, samples = [Measure(motion).defect(powers)], Samples(motion)
+    defect, samples = [measure_of(motion).defect(powers)], samples_of(motion)
     finite = ", where its density is finite" if any(x < 0 for _, x in powers) else ""
     written = f"{_write(motion, powers)}{_form(motion)}{motion.at_all_times}"
     proof = decide_zero(defect, motion.field, motion.where)
@@ -204,7 +212,7 @@ def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     With numbers for the parameters it shows at once whether there are factors; the others are not
     tried, since to find that a polynomial of many symbols is irreducible may take minutes.
     """
-    whole, found = Measure(motion), list[Element]()
+    whole, found = measure_of(motion), list[Element]()
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
         reducible = len(find_factors(measure.field, short)) > 1
         own = find_factors(measure.field, minor, found) if reducible else [minor]

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
-from typing import Self
+from typing import Any, Self
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Value
@@ -37,12 +37,16 @@ class Motion:
     Args:
         equations: What one route derived.
         numbers: Values of all parameters, where the motion is looked at for these alone.
+
+    Attributes:
+        built: What functions under `coadjoint.derive.setting.once` have built of this motion.
     """
 
     def __init__(
         self, equations: Equations, numbers: Mapping[str, Fraction] = MappingProxyType({})
     ) -> None:
         self.equations, self.field = equations, equations.setting.field
+        self.built: dict[Any, object] = {}
         self._numbers = {name: self.field.number(x) for name, x in numbers.items()}
 
     def at(self, numbers: Mapping[str, Fraction]) -> Self:
@@ -97,7 +101,7 @@ class Motion:
     # -- rates ----------------------------------------------------------------------------
 
     def close(self, element: Element) -> Element:
-        """An element in what equations know by name, the parameters put in where they have numbers.
+        """An element in what equations know by name, with the numbers of the parameters if given.
 
         With constraints that is the state and the accelerations.
         """
@@ -116,6 +120,11 @@ class Motion:
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and time, inputs held constant."""
         return self.put(drift(self.equations, function)[0])
+
+    @cached_property
+    def decidable_rates(self) -> dict[str, Element]:
+        """The same with a decidable zero: in the state, or in velocities in its place."""
+        return {name: self.rate(self.field[name]) for name in self.setting.state}
 
     @property
     def written_rates(self) -> dict[str, Element]:

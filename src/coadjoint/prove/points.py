@@ -7,7 +7,7 @@ moved: by Newton's method onto the branch, and to where the conditions that fail
 where nothing has to be solved for are rational, all others have the working precision of mpmath.
 The sequence is the same in every run.
 
-`coadjoint.exact.witness` has points of its own, which lie strictly inside a domain, as intervals
+`coadjoint.exact.witness` has other points, which lie strictly inside a domain, as intervals
 prove. Here a point may lie where a value is 0 that need not be positive, it has to satisfy the
 bounds of `Region` with the definitions that these name, and it moves along all that fails at once:
 a level set leaves no room for one step after another.
@@ -17,7 +17,7 @@ Read next: `coadjoint.prove.zero`.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -51,16 +51,16 @@ SCALES = (1, 1, 10, 100, 1000)
 SMALL = Fraction(1, 16)
 #: Parts of a default by which points near it differ from it.
 NEAR = (Fraction(0), Fraction(1, 3), Fraction(1, 30), Fraction(1, 300))
-#: Size of the last step of Newton's method, beside which a point counts as one of the zero set.
+#: Size of the last step of Newton's method, below which a point counts as one of the zero set.
 ARRIVED = mpmath.mpf(10) ** (15 - DIGITS)
-#: Size of a further step, with more digits and slopes of its own, beside which it is one.
+#: Size of a further step, with more digits and new slopes, below which it is one.
 STAYED = 1000 * ARRIVED
 #: Size below which a value counts as zero at points of a zero set found by iteration.
 ON_BRANCH = mpmath.mpf(10) ** -20
 #: How far a value must be from zero to have a sign, where functions occur.
 SIGNED = mpmath.mpf(10) ** -30
 
-#: What is added to slopes that may not be independent, beside the square of what is left.
+#: What is added to slopes that may not be independent, relative to the square of what is left.
 DAMPING = mpmath.mpf(10) ** -6
 
 Values = dict[str, Any]
@@ -84,6 +84,20 @@ class Branch:
     rest: tuple[Element, ...] = ()
     nonzero: tuple[Element, ...] = ()
     regular: tuple[Element, ...] = ()
+
+
+class Numbers(dict[str, Any]):
+    """A point in numbers of one kind.
+
+    Args:
+        values: Its coordinates.
+        number: Takes a rational number into this kind.
+    """
+
+    def __init__(self, values: Mapping[str, Any], number: Callable[[Any], Any]) -> None:
+        super().__init__(values)
+        self.number = number
+        self.factors: dict[int, Any] = {}  # of denominators, once they are evaluated
 
 
 class Points:
@@ -121,12 +135,12 @@ class Points:
 
     @cached_property
     def _conditions(self) -> tuple[Condition, ...]:
-        """What is assumed of the symbols beside their signs."""
+        """What is assumed of the symbols in addition to their signs."""
         return (*self.ring.region.conditions, *self.ring.region.bounds)
 
     @cached_property
     def definitions(self) -> dict[str, Element]:
-        """What the conditions name beside symbols, in an order in which it can be computed."""
+        """What the conditions name other than symbols, in an order in which it can be computed."""
         region, found = self.ring.region, dict[str, Element]()
         own = (
             self._reachable((*self.elements, *self._defined, *self._roots))
@@ -190,17 +204,21 @@ class Points:
             ZeroDivisionError: A pole.
             ValueError: A function is not defined there.
         """
-        values = dict(free)
+        numbers, found = self._numbers(free), Values()
         for name, element in (*self.branch.solved.items(), *self.definitions.items()):
-            values[name] = self.value(element, values)
-        return values
+            numbers[name] = found[name] = self.value(element, numbers)
+        return {**free, **found}
 
     def value(self, element: Element, values: Mapping[str, Any]) -> Any:
         """The value of an element: exact at exact points without functions, else a real number."""
+        at = values if isinstance(values, Numbers) else self._numbers(values)
+        return self.ring.evaluate(element, at, at.number, real_function, at.factors)
+
+    def _numbers(self, values: Mapping[str, Any]) -> Numbers:
+        """A point as `value` reads it, for many elements."""
         if self.plain and all(map(_is_rational, values.values())):
-            return self.ring.evaluate(element, values, Fraction, real_function)
-        numbers = {name: real(value) for name, value in values.items()}
-        return self.ring.evaluate(element, numbers, real, real_function)
+            return Numbers(values, Fraction)
+        return Numbers({name: real(value) for name, value in values.items()}, real)
 
     def _list_violated(self, free: Mapping[str, Any]) -> list[Element]:
         """What fails at a point; where functions are not defined, their arguments alone.
@@ -208,7 +226,7 @@ class Points:
         Raises:
             ZeroDivisionError: A pole.
         """
-        values, failed = self._as_far_as_defined(free), list[Element]()
+        values, failed = self._numbers(self._as_far_as_defined(free)), list[Element]()
         for element, strict in self._required:
             if not self.ring.reach(element) <= values.keys():
                 continue
@@ -258,7 +276,7 @@ class Points:
         """Whether all that is assumed holds, and no divisor and no determinant vanishes."""
         if self._list_violated(free):
             return False
-        values = self.complete(free)
+        values = self._numbers(self.complete(free))
         for each in self._defined:
             self.value(each, values)
         least = ON_BRANCH if self.branch.rest else 0
@@ -355,7 +373,7 @@ class Points:
         needed = self._reachable(each for each, _ in wanted)
 
         def values(at: Values) -> list[Any]:
-            whole = at if needed <= free.keys() else self.complete(at)
+            whole = self._numbers(at if needed <= free.keys() else self.complete(at))
             return [target - self.value(each, whole) for each, target in wanted]
 
         here = values(free)

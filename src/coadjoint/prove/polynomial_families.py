@@ -16,15 +16,15 @@ from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice, product
-from math import prod
-from operator import add, mul
+from operator import add
 
 from coadjoint.exact import Element
 from coadjoint.exact.ansatz import Exponents, Solution, monomials
 from coadjoint.exact.linear import Row, SpanModulo, whole_numbers
+from coadjoint.exact.packed import PackedSpan
 from coadjoint.exact.rationals import Written
 from coadjoint.exact.residues import residue
-from coadjoint.prove.densities import Measure
+from coadjoint.prove.densities import measure_of
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.samples import Point, Samples, Slopes, leading
 
@@ -39,16 +39,40 @@ Terms = dict[Exponents, int]
 Degrees = tuple[int, int]
 
 
+class MonomialsAtPoint(dict[Exponents, tuple[int, int]]):
+    """Values of monomials at a point and their rates, each made from one of lower degree.
+
+    Args:
+        values: Values of the generators.
+        rates: Their rates.
+        prime: The prime.
+
+    >>> MonomialsAtPoint([2, 3], [1, 0], 97)[(2, 1)]
+    (12, 12)
+    """
+
+    def __init__(self, values: Sequence[int], rates: Sequence[int], prime: int) -> None:
+        super().__init__({(0,) * len(values): (1, 0)})
+        self._generators, self._prime = list(zip(values, rates, strict=True)), prime
+
+    def __missing__(self, exponents: Exponents) -> tuple[int, int]:
+        place = next(n for n, exponent in enumerate(exponents) if exponent)
+        value, rate = self[(*exponents[:place], exponents[place] - 1, *exponents[place + 1 :])]
+        x, slope = self._generators[place]
+        self[exponents] = value * x % self._prime, (rate * x + value * slope) % self._prime
+        return self[exponents]
+
+
 class PolynomialFamily:
     """The polynomials in the velocities and positions of one motion.
 
     Args:
         motion: The motion.
-        others: Functions that will be evaluated beside it.
+        others: Other functions that will be evaluated.
         parameters: Numbers for the parameters; by default they are random.
 
     Attributes:
-        values_at: Values of the generators, and their rates, by point.
+        drawn: The points that were asked for.
     """
 
     def __init__(
@@ -60,8 +84,9 @@ class PolynomialFamily:
         self.motion, self.field = motion, motion.field
         self.samples = Samples(motion, parameters, others)
         self._source = self.samples.points()
-        self._points: list[Point] = []
-        self.values_at: list[tuple[list[int], list[int]]] = []
+        self.drawn: list[Point] = []
+        self._tables: list[MonomialsAtPoint] = []
+        self._places: dict[tuple[Exponents, ...], list[int]] = {}
 
     @cached_property
     def velocities(self) -> tuple[str, ...]:
@@ -100,25 +125,29 @@ class PolynomialFamily:
 
     def points(self, count: int) -> list[Point]:
         """The first points, more as they are asked for."""
-        for point in islice(self._source, max(count - len(self._points), 0)):
-            self._points.append(point)
-            x = [point.value(generator) for generator in self.generators]
-            self.values_at.append((x, [point.differentiate(slopes) for slopes in self._slopes]))
-        return self._points[:count]
+        self.drawn += islice(self._source, max(count - len(self.drawn), 0))
+        return self.drawn[:count]
 
     @cached_property
     def _slopes(self) -> list[Slopes]:
         return [self.samples.slopes(generator) for generator in self.generators]
 
-    def tables(self, members: Sequence[Exponents]) -> list[tuple[list[int], list[int]]]:
+    def tables(self, count: int) -> list[MonomialsAtPoint]:
         """Values of monomials, and their rates, at more points than there are monomials."""
-        count, prime = len(self.points(len(members) + SPARE)), self.samples.prime
-        return [_table(*values, members, prime) for values in self.values_at[:count]]
+        for point in self.points(count + SPARE)[len(self._tables) :]:
+            x = [point.value(generator) for generator in self.generators]
+            rates = [point.differentiate(slopes) for slopes in self._slopes]
+            self._tables.append(MonomialsAtPoint(x, rates, self.samples.prime))
+        return self._tables[: count + SPARE]
 
     def independent_places(self, members: Sequence[Exponents]) -> list[int]:
         """Places of monomials that are independent as functions; of all others, points say no."""
-        rows = (dict(enumerate(values)) for values, _ in self.tables(members))
-        return sorted(SpanModulo(self.samples.prime, rows).pivots)
+        key = tuple(members)
+        if key not in self._places:
+            rows = ([table[e][0] for e in members] for table in self.tables(len(members)))
+            span = PackedSpan(self.samples.prime, len(members), rows)
+            self._places[key] = sorted(span.pivots)
+        return self._places[key]
 
     def count_relations(self, members: Sequence[Exponents], degrees: Degrees) -> int:
         """How many independent relations between monomials are multiples of known ones."""
@@ -145,7 +174,7 @@ class PolynomialFamily:
     @property
     def _solved(self) -> list[Element]:
         """The kept constraints solved for velocities: what is a common factor of them is gone."""
-        allowed = Measure(self.motion).allowed.items()
+        allowed = measure_of(self.motion).allowed.items()
         return [self.field.normal(self.field[name] - root) for name, root in allowed]
 
     def _holds(self, relation: Element) -> bool:
@@ -201,16 +230,27 @@ class PolynomialFamily:
                 return None
         return _sums(found, len(self.velocities))
 
-    def gradient(self, point: Point, function: Solution[Exponents]) -> Row:
-        """Slopes by the state of a combination of monomials."""
-        x, used, numbers = self.values_at[0][0], [*function.numbers], function.numbers.values()
+    def gradient(self, function: Solution[Exponents]) -> Row:
+        """Slopes by the state of a combination of monomials, at the first point."""
         slopes = dict.fromkeys(self.samples.state, 0)
-        for place, outer in enumerate(self._slopes):
-            along = [int(n == place) for n in range(len(x))]
-            rate = sum(map(mul, numbers, _table(x, along, used, self.samples.prime)[1]))
+        for partials, outer in self._partials:
+            rate = sum(number * partials[e][1] for e, number in function.numbers.items())
             for name, inner in outer:
-                slopes[name] += rate * point.value(inner)
+                slopes[name] += rate * inner
         return dict(enumerate(slopes.values()))
+
+    @cached_property
+    def _partials(self) -> list[tuple[MonomialsAtPoint, list[tuple[str, int]]]]:
+        """Derivatives of monomials by each generator, and its slopes, at the first point."""
+        (point,), prime = self.points(1), self.samples.prime
+        x = [point.value(generator) for generator in self.generators]
+        return [
+            (
+                MonomialsAtPoint(x, [int(n == place) for n in range(len(x))], prime),
+                [(name, point.value(inner)) for name, inner in slopes],
+            )
+            for place, slopes in enumerate(self._slopes)
+        ]
 
     def write(self, numbers: Mapping[Exponents, Fraction]) -> Element:
         """A combination of monomials, scaled to whole coefficients without common factor."""
@@ -222,19 +262,3 @@ def _sums(terms: Iterable[Exponents], count: int) -> Degrees:
     """The largest degrees in the first generators and in the others."""
     sums = [(sum(e[:count]), sum(e[count:])) for e in terms] or [(0, 0)]
     return max(a for a, _ in sums), max(b for _, b in sums)
-
-
-def _table(
-    x: Sequence[int], rates: Sequence[int], monomials: Sequence[Exponents], prime: int
-) -> tuple[list[int], list[int]]:
-    """Values of monomials at a point, and their rates."""
-    values, moved = [], []
-    for exponents in monomials:
-        factors = [i for i, e in enumerate(exponents) for _ in range(e)]
-        values.append(prod(x[i] for i in factors) % prime)
-        parts = (
-            rates[i] * prod(x[j] for m, j in enumerate(factors) if m != n)
-            for n, i in enumerate(factors)
-        )
-        moved.append(sum(parts) % prime)
-    return values, moved

@@ -78,7 +78,7 @@ def _on_section(restriction: Restriction, functions: Sequence[Element]) -> list[
 
 
 def _section_defects(restriction: Restriction) -> list[Element]:
-    """``Ds . X - Y``, component by component; y keeps its name, and is put in at the end."""
+    """``Ds . X - Y``, component by component; y keeps its name, and is replaced at the end."""
     field, names, rates = restriction.setting.field, restriction.setting.state, restriction.rates
     moved = [
         field.sum(s * rates[x] for s, x in zip(field.gradient(value, names), names, strict=True))

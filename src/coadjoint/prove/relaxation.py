@@ -26,7 +26,7 @@ from coadjoint.exact.dense import apply, dot
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
-from coadjoint.prove.zero import Examined, claimed_by
+from coadjoint.prove.zero import Examined, mark_accepted
 
 
 def about_relaxation(first: Equations) -> Iterator[Examined]:
@@ -56,7 +56,7 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
     claims.append(
         (f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.list_added)
     )
-    yield from claimed_by(spec, (relaxation.table,), claims, first.setting.field)
+    yield from mark_accepted(spec, (relaxation.table,), claims, first.setting.field)
 
 
 def lost(first: Equations, energy: Element) -> Element:

@@ -1,4 +1,4 @@
-r"""Time reversal: whether the motion runs back when signs of the state are turned round.
+r"""Time reversal: whether the motion runs backwards when signs of the state change.
 
 The map :math:`(\eta, z) \mapsto (-\eta, z)` of velocities or momenta takes a motion to its reverse
 if and only if their rates are even and rates of positions odd in them, and constraints that are
@@ -19,8 +19,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from coadjoint.derive.mechanics.driving import turned_by_time
+from coadjoint.derive.mechanics.driving import list_time_reversed
 from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
@@ -63,17 +64,17 @@ def _map_text(motion: Motion, names: Sequence[str]) -> str:
     for each in motion.spec.state:
         turned = [name for name in each.components if name in names]
         shown += [each.name] if len(turned) == len(each.components) else turned
-    shown += turned_by_time(motion.setting)
+    shown += list_time_reversed(motion.setting)
     text = ", ".join(f"{name} -> -{name}" for name in shown)
     return text + " and inputs run backwards" * bool(motion.setting.inputs)
 
 
+@once
 def rate_defects(motion: Motion) -> dict[str, Element]:
     """What is zero if and only if the motion is reversible: of accelerations, not of forces."""
     field, back = motion.field, _back(motion)
     values = {}
-    for name in motion.rates:
-        rate = motion.rate(field[name])
+    for name, rate in motion.decidable_rates.items():
         turned = field.substitute(rate, back)
         parity = "even" if name in motion.fibre else "odd"
         defect = rate - turned if name in motion.fibre else rate + turned
@@ -84,6 +85,7 @@ def rate_defects(motion: Motion) -> dict[str, Element]:
     return values | _kept_defects(motion)
 
 
+@once
 def reversal_defects(motion: Motion) -> dict[str, Element]:
     """What is zero if the motion is reversible, by what it is."""
     if not isinstance(motion, ConstrainedRates):
@@ -118,8 +120,8 @@ def _kept_defects(motion: Motion) -> dict[str, Element]:
 
 
 def _back(motion: Motion) -> dict[str, Element]:
-    """The map: velocities or momenta turned round, and time."""
-    names = (*motion.fibre, *motion.solved_velocities, *turned_by_time(motion.setting))
+    """The map: the signs of velocities or momenta change, and that of time."""
+    names = (*motion.fibre, *motion.solved_velocities, *list_time_reversed(motion.setting))
     return {name: -motion.field[name] for name in names}
 
 
@@ -128,7 +130,7 @@ def _back(motion: Motion) -> dict[str, Element]:
 
 def _other_signs(motion: Motion) -> Examined | None:
     """Another change of signs that reverses a free motion; or that none does; else None."""
-    field, time = motion.field, {*turned_by_time(motion.setting)}
+    field, time = motion.field, {*list_time_reversed(motion.setting)}
     parities, is_complete = _parities(motion, time)
     signs = _solve_parities(parities, motion.setting.state)
     if signs is None:

@@ -19,12 +19,12 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice
 
-from coadjoint.exact import Element
+from coadjoint.derive.setting import once
+from coadjoint.exact import Element, Field
 from coadjoint.exact.linear import PRIME, echelon_modulo, primes
 from coadjoint.exact.residues import Residue, residue
 from coadjoint.prove.functions import Experiment, Functions, FunctionsAtPoint
@@ -49,25 +49,31 @@ TRIES = 2000
 Slopes = list[tuple[str, Element]]
 
 
-@dataclass
-class Point:
-    """One point with the motion there.
+class Point(dict[str, int]):
+    """One point with the motion there: residues of all symbols, and of functions once called.
 
-    Attributes:
+    Args:
         samples: Where it comes from.
-        values: Residues of parameters, state and all that the accelerations need.
+        values: Parameters, state and all that the accelerations need.
         call: Values of the elementary functions.
     """
 
-    samples: Samples
-    values: Values
-    call: FunctionsAtPoint
-    factors: dict[int, Residue] = field(default_factory=dict)
+    def __init__(self, samples: Samples, values: Values, call: FunctionsAtPoint) -> None:
+        super().__init__({name: x.value for name, x in values.items()})
+        self.samples, self.call = samples, call
+        self._inverses = dict[int, int]()
+
+    def __missing__(self, generator: str) -> int:
+        """The value of a function by its generator."""
+        known = self.samples.field.adjoined[generator]
+        argument = Residue(self.value(known.argument), self.samples.prime)
+        self[generator] = self.call(known.function, argument).value
+        return self[generator]
 
     def value(self, element: Element) -> int:
-        """The value of a function."""
-        ring, number = self.samples.field, self.call.number
-        return ring.evaluate(element, self.values, number, self.call, self.factors).value
+        """The value of a function of the symbols."""
+        samples = self.samples
+        return samples.field.evaluate_modulo(element, self, samples.prime, self._inverses)
 
     def differentiate(self, slopes: Slopes) -> int:
         """``dF/dt`` of a function of the state, from its slopes."""
@@ -88,7 +94,7 @@ class Samples:
     Args:
         motion: The motion.
         parameters: Values of the parameters; by default random ones, the same at all points.
-        others: Functions that will be evaluated beside the motion.
+        others: Other functions that will be evaluated at the points.
 
     Attributes:
         prime: The prime; another than `PRIME` where that has not the square roots of some numbers.
@@ -108,7 +114,7 @@ class Samples:
         self._parameters = Values()
 
     def points(self) -> Iterator[Point]:
-        """Points, as many as are asked for, but none beside an obstacle.
+        """Points, as many as are asked for; none where there is an obstacle.
 
         Poles, and points without the square roots, are passed over.
         """
@@ -123,6 +129,11 @@ class Samples:
             with suppress(ZeroDivisionError):
                 return self._point()
         return None
+
+    @cached_property
+    def first(self) -> Point | None:
+        """The first point; None where there is none."""
+        return next(self.points(), None)
 
     @cached_property
     def functions(self) -> Functions:
@@ -147,13 +158,13 @@ class Samples:
     @cached_property
     def _long_numbers(self) -> set[int]:
         """Numerators and denominators that a prime might divide."""
-        written = [q for e in self._evaluated for q in self.field.quotients(e)]
-        divisors = [d for quotient in written for d, _ in quotient.divisors]
-        written += [q for divisor in divisors for q in self.field.quotients(divisor)]
-        numbers = {m.number for quotient in written for m in quotient.monomials}
-        numbers |= {*(self._given or {}).values()}
-        parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
-        return {part for part in parts if part >= SMALL}
+        return _long_numbers(self.field, self._evaluated, (self._given or {}).values())
+
+    def serves(self, others: Iterable[Element]) -> bool:
+        """Whether the points serve functions that they were not made for."""
+        elements = list(others)
+        plain = all(map(self.field.is_function_free, elements))
+        return plain and not _long_numbers(self.field, elements)
 
     @cached_property
     def obstacle(self) -> str:
@@ -241,10 +252,11 @@ class Samples:
         call = FunctionsAtPoint(self._experiment)
         call.learn({name: x for name, x in values.items() if name not in velocities})
         point = Point(self, values, call)
-        values |= self._allow(point)
-        call.learn(values)
+        allowed = self._allow(point)
+        point.update({name: x.value for name, x in allowed.items()})
+        call.learn(values | allowed)
         for name, definition in self._needed:
-            values[name] = Residue(point.value(definition), self.prime)
+            point[name] = point.value(definition)
         return point
 
     def _on_sphere(self, variable: Variable) -> list[Residue]:
@@ -275,7 +287,7 @@ class Samples:
         found = {}
         for pivot, row in solved.items():
             others = (
-                value * (point.values[names[n]].value if n < len(names) else 1)
+                value * (point[names[n]] if n < len(names) else 1)
                 for n, value in row.items()
                 if n != pivot
             )
@@ -291,6 +303,24 @@ class Samples:
         """The definitions on which the rates rest, in order."""
         equations = self.motion.equations
         return equations.definitions_of(equations.exact.rates)
+
+
+def _long_numbers(
+    field: Field, elements: Iterable[Element], others: Iterable[Fraction] = ()
+) -> set[int]:
+    """Numerators and denominators in elements, and of other numbers, that a prime might divide."""
+    written = [q for element in elements for q in field.quotients(element)]
+    divisors = [d for quotient in written for d, _ in quotient.divisors]
+    written += [q for divisor in divisors for q in field.quotients(divisor)]
+    numbers = {m.number for quotient in written for m in quotient.monomials} | {*others}
+    parts = {abs(part) for x in numbers for part in (x.numerator, x.denominator)}
+    return {part for part in parts if part >= SMALL}
+
+
+@once
+def samples_of(motion: Motion) -> Samples:
+    """The points of a motion at random parameters, made for its equations alone."""
+    return Samples(motion)
 
 
 def leading(element: Element) -> Fraction:

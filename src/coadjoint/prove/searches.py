@@ -1,4 +1,4 @@
-"""Searches: what is found out beside the claims, each with a budget of its own.
+"""Searches: what is found in addition to the claims, each with its own budget.
 
 Integrals, measures, Casimirs and growth vectors are looked for without anyone having claimed them.
 Such a search may take very long, and must not keep a user from a proved kernel; so it ends after

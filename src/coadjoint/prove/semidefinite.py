@@ -20,7 +20,7 @@ from coadjoint.exact.dense import minor
 from coadjoint.exact.signs import sign
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.points import DIGITS, Points, real
-from coadjoint.prove.zero import ADVICE, Decision, UndecidedError, shown_point
+from coadjoint.prove.zero import ADVICE, Decision, UndecidedError, show_point
 
 Matrix = Sequence[Sequence[Element]]
 
@@ -36,7 +36,7 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
     """Whether a symmetric matrix has no negative eigenvalue, wherever it is defined.
 
     Args:
-        matrix: Symmetric, which is a claim of its own.
+        matrix: Symmetric, which another claim states.
         ring: Where its entries live.
 
     Raises:
@@ -55,7 +55,7 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
             seen += 1
             if least < -ROUNDING * max(map(abs, values)):
                 method = f"an eigenvalue of {DIGITS} digits"
-                shown = shown_point(points, point)
+                shown = show_point(points, point)
                 return Decision(Verdict.REFUTED, method, shown, mpmath.nstr(least, 15))
         if seen == POINTS:
             break

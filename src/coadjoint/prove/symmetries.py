@@ -16,7 +16,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Value, entries
-from coadjoint.derive.mechanics.driving import explicit, turned_by_time
+from coadjoint.derive.mechanics.driving import explicit, list_time_reversed
 from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
@@ -25,7 +25,7 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import drift
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.zero import Decision, Examined, claimed_by, decide_zero
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
 
 #: Entries of a cocycle that a statement shows.
@@ -41,14 +41,14 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
             of_map += _noether(first, symmetry, J, first.close(energy))
-        yield from claimed_by(spec, ("symmetries", symmetry.name), of_map, field)
+        yield from mark_accepted(spec, ("symmetries", symmetry.name), of_map, field)
     if energy is not None:
         yield from _about_integrals(first, known)
     for place, claim in enumerate(spec.brackets):
         text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
         statement = f"{text} = {claim.value.in_one_line}"
         claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
-        yield from claimed_by(spec, ("claims", "brackets", place), claimed, field)
+        yield from mark_accepted(spec, ("claims", "brackets", place), claimed, field)
 
 
 def about_transformations(motion: Motion) -> Iterator[Examined]:
@@ -133,7 +133,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[E
         )
         follows = [(statement, "symmetry", partial(_commutators, first, flows))]
         key = ("claims", "conserved", place)  # it follows from the claim there
-        yield from claimed_by(first.spec, key, follows, first.setting.field)
+        yield from mark_accepted(first.spec, key, follows, first.setting.field)
 
 
 def _flows(first: Equations, formula: Formula, known: Mapping[str, Value]) -> list[VectorField]:
@@ -205,12 +205,12 @@ def _about_transformation(motion: Motion, transformation: Transformation) -> Ite
     key, kind, field = ("transformations", name), "transformation", motion.field
     moved = partial(_motion_defects, motion, transformation)
     examined = [(f"{name} takes the motion to {goal}", kind, partial(_decide_on, motion, moved))]
-    yield from claimed_by(spec, key, examined, field)
+    yield from mark_accepted(spec, key, examined, field)
     for observable, formula in transformation.exchanges.items():
         exchanged = partial(_exchange_defects, motion, transformation, observable, formula)
         statement = f"{name} takes {observable} to {formula.in_one_line}"
         examined = [(statement, kind, partial(_decide_on, motion, exchanged))]
-        yield from claimed_by(spec, (*key, "exchanges", observable), examined, field)
+        yield from mark_accepted(spec, (*key, "exchanges", observable), examined, field)
 
 
 def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision:
@@ -219,11 +219,11 @@ def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision
 
 
 def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Element]:
-    """What becomes of each component of the state, and of time and rates of inputs."""
+    """The image of each component of the state, and of time and rates of inputs."""
     setting, field = motion.setting, motion.field
     found = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
-        found |= {name: -field[name] for name in turned_by_time(setting)}
+        found |= {name: -field[name] for name in list_time_reversed(setting)}
     return found | moved_components(setting, transformation.map)
 
 

@@ -111,7 +111,7 @@ def make_entry(
     )
 
 
-def claimed_by(
+def mark_accepted(
     spec: Spec, key: KeyPath, examined: Iterable[Examined], ring: Field
 ) -> Iterator[Examined]:
     """Statements that a spec makes, for which it may accept numerical support.
@@ -166,7 +166,7 @@ def decide_zero(
         plain = all(map(ring.is_function_free, defined))
         if not plain and next(iter(Points(ring, (), None, defined)), None) is None:
             raise UndecidedError(f"no point is found at which it has a value. {ADVICE}")
-        return proved_by_normal_form(ring)
+        return prove_by_normal_form(ring)
     found = _look(left, ring, Branch(), "", defined)
     if isinstance(found, Decision):
         return found
@@ -191,7 +191,7 @@ class UndecidedError(ClaimError):
     """Nothing is known of a claim: no point is found at which it could fail."""
 
 
-def proved_by_normal_form(ring: Field) -> Decision:
+def prove_by_normal_form(ring: Field) -> Decision:
     """That something is zero by its normal form, and in which field.
 
     What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
@@ -342,7 +342,7 @@ def _look(
                 written = (element, *branch.solved.values())
                 exact = not branch.rest and all(map(ring.is_function_free, written))
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
-                shown = shown_point(points, point)
+                shown = show_point(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)
             # without functions the element is not zero, and another point shows it
             seen += value is not None and (bool(branch.rest) or not ring.is_function_free(element))
@@ -383,7 +383,7 @@ def _certain_value(element: Element, ring: Field, point: Values) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class _Sized:
-    """A real value, and the size of the largest addend in it, beside which cancellation shows."""
+    """A real value, and the size of the largest addend in it, which shows cancellation."""
 
     value: Any
     size: Any
@@ -414,7 +414,7 @@ def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:
     return found.value, found.size
 
 
-def shown_point(points: Points, point: Values) -> dict[str, str]:
+def show_point(points: Points, point: Values) -> dict[str, str]:
     """A point as text: the symbols on which values rest, exact where they are."""
     ring, branch = points.ring, points.branch
     reached = frozenset[str]().union(*map(ring.reach, (*points.elements, *branch.rest)))

@@ -45,8 +45,8 @@ def compare_tree(fresh: Mapping[str, str], folder: Path, lines: int = 12) -> lis
         folder: The generated folder.
         lines: How many lines of each diff to keep.
     """
-    found = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*")}
-    present = {name: path for name, path in found.items() if _is_output(name, path)}
+    paths = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*")}
+    present = {name: path for name, path in paths.items() if _is_output(name, path)}
     differences = [Difference(name, "missing") for name in fresh.keys() - present.keys()]
     differences += [Difference(name, "extra") for name in present.keys() - fresh.keys()]
     for name in fresh.keys() & present.keys():
@@ -65,12 +65,12 @@ def is_intact(folder: Path, name: str) -> bool:
         name: The system.
     """
     entry = read_manifest(folder)["systems"].get(name, {"files": None})
-    found = {
+    hashes = {
         path.name: hashlib.sha256(_content(path) or b"").hexdigest()
         for path in (folder / name).glob("*")
         if path.name != "__pycache__"
     }
-    return bool(found == entry["files"])
+    return bool(hashes == entry["files"])
 
 
 def _content(path: Path) -> bytes | None:

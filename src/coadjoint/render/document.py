@@ -14,11 +14,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any, Final
 
-from jinja2 import FileSystemLoader, StrictUndefined
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 
-from coadjoint.resources import templates_folder
+from coadjoint.render.environment import make_environment
 
 FORMATS: Final = ("text", "latex", "html")
 #: Columns of the text format; longer formulas go on under their right-hand side.
@@ -71,19 +70,14 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         "comment_start_string": "<#",
         "comment_end_string": "#>",
     }
-    made = ImmutableSandboxedEnvironment(
-        loader=FileSystemLoader(templates_folder()),
-        undefined=StrictUndefined,
+    made = make_environment(
         autoescape=form == "html",
-        finalize=_unless_safe(latex_escaped if form == "latex" else printable),
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
+        finalize=_escape_unless_safe(escape_latex if form == "latex" else make_printable),
         **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
     )
     made.filters |= {
         "aligned": align,
-        "abreast": abreast,
+        "abreast": count_abreast,
         "described": describe,
         "tabulated": tabulate,
         "wrapped": wrap,
@@ -91,27 +85,27 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
     return made
 
 
-def _unless_safe(escape: Callable[[str], str]) -> Callable[[Any], Any]:
+def _escape_unless_safe(escape: Callable[[str], str]) -> Callable[[Any], Any]:
     """``escape`` for every printed value that no template has marked as safe."""
     return lambda value: value if isinstance(value, Markup) else escape(str(value))
 
 
-def printable(text: str) -> str:
+def make_printable(text: str) -> str:
     r"""Text without control characters, which a terminal would obey.
 
-    >>> printable("a\x1b[2Jb\nc")
+    >>> make_printable("a\x1b[2Jb\nc")
     'a [2Jb c'
     """
     return "".join(character if character.isprintable() else " " for character in text)
 
 
-def latex_escaped(text: str) -> str:
+def escape_latex(text: str) -> str:
     r"""Text in which LaTeX sees no command.
 
-    >>> latex_escaped(r"\write18{rm}")
+    >>> escape_latex(r"\write18{rm}")
     '\\textbackslash{}write18\\{rm\\}'
     """
-    return printable(text).translate(_LATEX_ESCAPES)
+    return make_printable(text).translate(_LATEX_ESCAPES)
 
 
 def wrap(text: str, indent: int = 0) -> list[str]:
@@ -138,7 +132,7 @@ def align(lines: Sequence[Mapping[str, str]]) -> list[str]:
     ['a    = 1', 'long = 2']
     """
     rows = _columns([line["text"].split(" = ", 1) for line in lines], " = ")
-    number = abreast(lines)
+    number = count_abreast(lines)
     if number == 1:
         return rows
     height = -(-len(rows) // number)
@@ -146,10 +140,10 @@ def align(lines: Sequence[Mapping[str, str]]) -> list[str]:
     return ["".join(row.ljust(cell) for row in rows[n::height]).rstrip() for n in range(height)]
 
 
-def abreast(lines: Sequence[Mapping[str, str]]) -> int:
-    """How many lines of a section stand beside each other: one, unless they are many and short.
+def count_abreast(lines: Sequence[Mapping[str, str]]) -> int:
+    """How many lines of a section stand side by side: one, unless they are many and short.
 
-    >>> abreast([{"text": "a = 1"}] * 9), abreast([{"text": "[E12, E13] = -E23"}] * 90)
+    >>> count_abreast([{"text": "a = 1"}] * 9), count_abreast([{"text": "[E12, E13] = -E23"}] * 90)
     (1, 4)
     """
     if len(lines) <= LONG:

@@ -26,17 +26,25 @@ from coadjoint.resources import templates_folder
 UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
 
 
-@cache
-def environment() -> ImmutableSandboxedEnvironment:
-    """The environment; the sandbox is a second wall, the first is that specs are not templates."""
-    made = ImmutableSandboxedEnvironment(
+def make_environment(**options: Any) -> ImmutableSandboxedEnvironment:
+    """An environment of our templates, in which an undefined name is an error.
+
+    The sandbox is a second wall; the first is that specs are not templates.
+    """
+    return ImmutableSandboxedEnvironment(
         loader=FileSystemLoader(templates_folder()),
         undefined=StrictUndefined,
-        autoescape=False,  # code, not HTML; `refuse_unsafe` guards each value
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        **options,
     )
+
+
+@cache
+def environment() -> ImmutableSandboxedEnvironment:
+    """The environment of kernels, with the filters of all targets."""
+    made = make_environment(autoescape=False)  # code, not HTML; `refuse_unsafe` guards each value
     made.filters["python_call"] = python_call
     for target in TARGETS.values():
         made.filters |= target.filters
@@ -52,10 +60,10 @@ def refuse_unsafe(value: object) -> None:
     >>> refuse_unsafe({"unit": "kg m^2/s"})
     """
     for text in _texts(value):
-        found = UNSAFE.search(text)
-        if found:
+        mark = UNSAFE.search(text)
+        if mark:
             raise SpecError(
-                f"{text[:80]!r} cannot stand in generated code: it holds {found[0]!r}; expected "
+                f"{text[:80]!r} cannot stand in generated code: it holds {mark[0]!r}; expected "
                 "plain ASCII text without comment marks. Check the units and names of the spec.",
                 found=text[:80],
                 expected="plain ASCII text without comment marks",

@@ -24,7 +24,7 @@ from coadjoint.render.ownership import (
     PACKAGE,
     is_manifest,
     is_marked,
-    leftovers,
+    list_leftovers,
     make_plan,
 )
 from coadjoint.spec.core.faults import list_names
@@ -77,14 +77,14 @@ def tree_problems(folder: Path, *, is_shipped: bool = False) -> Iterator[Problem
             yield Problem(f"{certificate} is missing or damaged", f"{_AGAIN} {name}")
     if not is_shipped:
         files = {name: list(entry["files"]) for name, entry in manifest["systems"].items()}
-        yield from _in_the_way(folder, files)
+        yield from _list_obstacles(folder, files)
     yield from _list_unlisted(folder, manifest["systems"])
-    for path in leftovers(folder):
+    for path in list_leftovers(folder):
         yield Problem(f"{path} was left behind by a killed run", "the next run removes it", True)
     yield from _lock(folder / LOCK)
 
 
-def _in_the_way(folder: Path, files: Mapping[str, Collection[str]]) -> Iterator[Problem]:
+def _list_obstacles(folder: Path, files: Mapping[str, Collection[str]]) -> Iterator[Problem]:
     """What a run would refuse, and a folder that cannot be written."""
     if not os.access(folder, os.W_OK | os.X_OK):
         yield Problem(f"{folder} cannot be written", "check its permissions")

@@ -126,8 +126,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "parameters": _rows(context.parameters),
             "driving": {
                 array: _rows(quantities)
-                for array, quantities in (("inputs", context.inputs), ("time", context.time))
-                if quantities
+                for array, quantities in _optional(context).items()
+                if array != "reconstructed"
             },
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
@@ -157,24 +157,21 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     """The arguments of the System that a generated package makes."""
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
     domain = ["DOMAIN"] * bool(context.domain)
-    others = ("RECONSTRUCTED", "INPUTS", "TIME")
-    present = [f"{name.lower()}={name}" for name in others if name in _tables(context)]
+    present = [f"{name}={name.upper()}" for name in _optional(context)]
     return [quote(context.name), *tables, quote(identity), *domain, *present]
 
 
 def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
     """The tables of quantities that a generated package declares."""
-    tables = {
-        "STATE": context.state,
-        "PARAMETERS": context.parameters,
-        "OBSERVABLES": context.observables,
-    }
-    others = {
-        "RECONSTRUCTED": context.reconstructed,
-        "INPUTS": context.inputs,
-        "TIME": context.time,
-    }
-    return tables | {name: quantities for name, quantities in others.items() if quantities}
+    tables = {"STATE": context.state, "PARAMETERS": context.parameters}
+    others = {name.upper(): quantities for name, quantities in _optional(context).items()}
+    return {**tables, "OBSERVABLES": context.observables, **others}
+
+
+def _optional(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
+    """The quantities that only some systems have, as far as this one has them."""
+    names = ("reconstructed", "inputs", "time")
+    return {name: getattr(context, name) for name in names if getattr(context, name)}
 
 
 def _licence(expression: str) -> str:
@@ -226,8 +223,8 @@ def _function(program: Program, summary: str) -> Function:
         python_inputs={
             array: _unpack(names, names_used, array) for array, names in program.arrays.items()
         },
-        of_parameters=program.at_level("parameters"),
-        of_member=program.at_level("member"),
+        of_parameters=program.statements_at("parameters"),
+        of_member=program.statements_at("member"),
         outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
         zeros=_zeros(row for row, output in rows if output.value == ZERO),
     )
@@ -260,7 +257,7 @@ def _summary(context: KernelContext, program: Program) -> str:
 def _costs(program: Program) -> list[str]:
     """What a call costs, so that a heavier kernel shows in the diff."""
     costs = [f"Operations per member: {_counts(program, 'member')}."]
-    if program.at_level("parameters"):
+    if program.statements_at("parameters"):
         costs += [f"Of the parameters alone: {_counts(program, 'parameters')}."]
     return _wrap(costs)
 

@@ -41,18 +41,18 @@ _BYTECODE: Final = "__pycache__"
 
 def read_manifest(folder: Path) -> dict[str, Any]:
     """The manifest of a generated tree; an empty one if it is missing or damaged."""
-    found = read_object(folder / MANIFEST)
-    return found if is_manifest(found) else {"schema": SCHEMA, "systems": {}, "templates": {}}
+    manifest = read_object(folder / MANIFEST)
+    return manifest if is_manifest(manifest) else {"schema": SCHEMA, "systems": {}, "templates": {}}
 
 
-def is_manifest(found: Mapping[str, Any]) -> bool:
+def is_manifest(manifest: Mapping[str, Any]) -> bool:
     """Whether a JSON object is a manifest that is whole: any damage is as good as none.
 
     Names in it are checked too, since files that it lists may be removed: none leads elsewhere.
     """
-    systems, templates = found.get("systems"), found.get("templates")
+    systems, templates = manifest.get("systems"), manifest.get("templates")
     return (
-        found.get("schema") == SCHEMA
+        manifest.get("schema") == SCHEMA
         and is_table_of_texts(templates)
         and isinstance(systems, dict)
         and all(_SYSTEM.fullmatch(name) and _is_entry(each) for name, each in systems.items())
@@ -71,7 +71,7 @@ def _is_entry(entry: Any) -> bool:
 
 @dataclass
 class Plan:
-    """What a run does beside writing its files.
+    """What a run does in addition to writing its files.
 
     Attributes:
         entries: The old manifest's entries of the systems that stay.
@@ -209,7 +209,7 @@ def _is_folder(path: Path) -> bool:
     return stat.S_ISDIR(path.lstat().st_mode)
 
 
-def leftovers(folder: Path) -> Iterator[Path]:
+def list_leftovers(folder: Path) -> Iterator[Path]:
     """Temporary files that killed runs left in a tree."""
     with suppress(OSError):
         for path in sorted(folder.iterdir()):

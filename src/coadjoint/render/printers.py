@@ -61,11 +61,15 @@ def _brief(value: Fraction) -> str:
 
 @dataclass(frozen=True)
 class Printer:
-    """Writes nodes in one language.
+    """Writes nodes in one language; assignments in Python.
 
     Attributes:
         function_prefix: What stands before the name of an elementary function.
         function_suffix: What stands behind it.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> Printer("np.").text(Add(Multiply(x, Add(x, y)), Negate(Call("sqrt", y))))
+    'x * (x + y) - np.sqrt(y)'
     """
 
     function_prefix: str
@@ -99,6 +103,22 @@ class Printer:
         text = self.text(node)
         return text if _binding(node) >= place else f"({text})"
 
+    def assignment(self, node: Node, to: str, column: int = 4, comment: str = "") -> str:
+        """``to = node``, broken as our formatter breaks it; the first line is not indented.
+
+        >>> Printer("np.").assignment(Symbol("Pi1"), "out[0]", 4, "dPi1/dt")
+        'out[0] = Pi1  # dPi1/dt'
+        """
+        note = f"  # {comment}" if comment else ""
+        line = f"{to} = {self.text(node)}"
+        if column + len(line) + len(note) <= WIDTH or isinstance(node, Symbol | Number):
+            return line + note
+        if not note and not _is_long_chain(node):
+            # The formatter would move these parentheses onto an operand; a comment holds them.
+            note = "  # in this order"
+        inner = self.break_lines(node, WIDTH - column - 4)
+        return indent([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
+
     def break_lines(self, node: Node, width: int) -> list[str]:
         """``node`` on lines of at most ``width`` columns where it can be, one operand to a line."""
         return self._break_operand(node, SUM, width, lead="")
@@ -130,23 +150,6 @@ class Printer:
         for sign, right in rest:
             lines += self._break_operand(right, place + 1, width, f"{sign} ")
         return lines
-
-
-def python_assignment(printer: Printer, node: Node, to: str, column: int, comment: str) -> str:
-    """``to = node`` in Python, broken as our formatter breaks it; the first line is not indented.
-
-    >>> python_assignment(Printer("np."), Symbol("Pi1"), "out[0]", 4, "dPi1/dt")
-    'out[0] = Pi1  # dPi1/dt'
-    """
-    note = f"  # {comment}" if comment else ""
-    line = f"{to} = {printer.text(node)}"
-    if column + len(line) + len(note) <= WIDTH or isinstance(node, Symbol | Number):
-        return line + note
-    if not note and not _is_long_chain(node):
-        # The formatter would move these parentheses onto an operand; a comment holds them.
-        note = "  # in this order"
-    inner = printer.break_lines(node, WIDTH - column - 4)
-    return indent([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
 
 
 def python_call(arguments: Sequence[str], to: str, column: int, end: str = "") -> str:

@@ -143,7 +143,7 @@ def arrange_function(program: Program, out: str) -> FunctionText:
         program: What to arrange.
         out: Name of the array of the result.
     """
-    lines = [Line(statement.name, statement.value) for statement in program.at_level("member")]
+    lines = [Line(statement.name, statement.value) for statement in program.statements_at("member")]
     lines += [Line(f"{out}[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
 

@@ -2,7 +2,7 @@
 
 Comes in: all texts of all systems, computed before anything is written. Goes out: a folder per
 system and ``manifest.json``, written last. A killed or failed run leaves whole files; where it
-leaves old ones beside new ones, their ids and the manifest tell, and the next run heals the tree.
+leaves old ones next to new ones, their ids and the manifest tell, and the next run heals the tree.
 What no run wrote is never touched: see `coadjoint.render.ownership`. Read next:
 `coadjoint.render.compare`.
 """
@@ -30,7 +30,7 @@ from coadjoint.render.ownership import (
     SCHEMA,
     TEMPORARY,
     Plan,
-    leftovers,
+    list_leftovers,
     make_plan,
     read_manifest,
     refuse_installed,
@@ -94,9 +94,9 @@ def identity_of(texts: Mapping[str, str]) -> str:
     >>> identity_of({"kernel.py": 'ID = "0123456789abcdef"'})
     '0123456789abcdef'
     """
-    found = re.search(r'^ID = "([0-9a-f]{16})"$', texts["kernel.py"], re.MULTILINE)
-    assert found, "every kernel.py is rendered with its id"
-    return found[1]
+    line = re.search(r'^ID = "([0-9a-f]{16})"$', texts["kernel.py"], re.MULTILINE)
+    assert line, "every kernel.py is rendered with its id"
+    return line[1]
 
 
 def tree_texts(systems: Mapping[str, GeneratedSystem], manifest: str) -> dict[str, str]:
@@ -162,7 +162,7 @@ def write_systems(
         entries = plan.entries | {name: system.record() for name, system in systems.items()}
         contents = {name: _kernel_first(system.texts) for name, system in systems.items()}
         last = {**PACKAGE, MANIFEST: manifest_text(entries, templates)}
-        for path in leftovers(folder):
+        for path in list_leftovers(folder):
             with _report_errors(path):
                 path.unlink()
         for path in plan.empty:

@@ -211,8 +211,11 @@ def pack_parameters(system: System, parameters: Any) -> Array:
         KernelArgumentError: As for `pack`, or a value that must be positive is not.
     """
     quantities = system.PARAMETERS
+    known: Array | None = quantities.packed
+    if parameters is None and known is not None:
+        return known
     if parameters is None or isinstance(parameters, Mapping):
-        packed = _assemble(_defaults(quantities), parameters or {}, quantities, "parameters")
+        packed = _assemble(quantities.defaults, parameters or {}, quantities, "parameters")
     else:
         packed = as_float64(parameters, "parameters")
         _check_rows(packed, quantities, "parameters", system.name)
@@ -226,7 +229,7 @@ def pack_parameters(system: System, parameters: Any) -> Array:
             found=value,
             component=component,
         )
-    return packed
+    return packed if parameters is not None else _keep(packed, quantities)
 
 
 def pack_inputs(system: System, inputs: Any) -> Array:
@@ -244,8 +247,13 @@ def pack_inputs(system: System, inputs: Any) -> Array:
             'Where target or out was meant, write target="c", out=out.',
             found=_short(inputs),
         )
-    if inputs is None or isinstance(inputs, Mapping):
-        return _assemble(_defaults(quantities), inputs or {}, quantities, "inputs")
+    known: Array | None = quantities.packed
+    if inputs is None and known is not None:
+        return known
+    if inputs is None:
+        return _keep(_assemble(quantities.defaults, {}, quantities, "inputs"), quantities)
+    if isinstance(inputs, Mapping):
+        return _assemble(quantities.defaults, inputs, quantities, "inputs")
     packed = as_float64(inputs, "inputs")
     _check_rows(packed, quantities, "inputs", system.name)
     return packed
@@ -286,14 +294,11 @@ def _short(value: Any) -> str:
     return f"an array of shape {value.shape}" if isinstance(value, np.ndarray) else repr(value)[:80]
 
 
-def _defaults(quantities: Quantities) -> dict[str, float]:
-    """The default of each component that has one."""
-    return {
-        component: value
-        for quantity in quantities.values()
-        if quantity.default is not None
-        for component, value in zip(quantity.components, quantity.default, strict=True)
-    }
+def _keep(packed: Array, quantities: Quantities) -> Array:
+    """Defaults that are packed once and for all, which nobody can write into."""
+    packed.flags.writeable = False
+    quantities.packed = packed
+    return packed
 
 
 def _assemble(
@@ -363,9 +368,9 @@ def _check_rows(array: Array, quantities: Quantities, name: str, system: str) ->
 def _check_out(out: Any, shape: tuple[int, ...]) -> Array:
     """A result array that can be written in place."""
     if not isinstance(out, np.ndarray) or out.dtype != np.float64 or not out.dtype.isnative:
-        found = str(out.dtype) if isinstance(out, np.ndarray) else type(out).__name__
+        kind = str(out.dtype) if isinstance(out, np.ndarray) else type(out).__name__
         raise KernelTypeError(
-            f"out has the type {found}; expected a float64 array.", found=found, expected="float64"
+            f"out has the type {kind}; expected a float64 array.", found=kind, expected="float64"
         )
     problem = (
         f"has the shape {out.shape}"

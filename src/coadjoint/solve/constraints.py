@@ -15,6 +15,7 @@ import numpy as np
 import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.driving import Following
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,20 +47,12 @@ class Constraints:
         self.system, self.parameters, self.target = system, parameters, target
         self.driving = driving
         self.any = "projection" in system.functions
-        self._state, self._nearest = np.empty((2, system.STATE.size))
         if self.any:
-            self._project = system.bind(
-                "projection",
-                self._state,
-                parameters,
-                out=self._nearest,
-                target=target,
-                **driving.now,
-            )
+            self._project = Following(system, "projection", parameters, target, driving)
 
     # -- along the way ------------------------------------------------------------------
 
-    def onto(self, time: Any, state: Array) -> Array:
+    def project(self, time: Any, state: Array) -> Array:
         """New states on the constraints, ``(n, ...)``, at a time or at one for each of them.
 
         What is reconstructed may follow, and stays.
@@ -69,32 +62,30 @@ class Constraints:
         """
         if not self.any:
             return state.copy()
-        moved, own = state.copy(), state[: self._state.size]
+        moved, own = state.copy(), state[: self.system.STATE.size]
         if state.ndim > 1:
             driving = self.driving.over(time)
             nearest = self.system.projection(own, self.parameters, target=self.target, **driving)
         else:  # at each step: without the checks, which take as long as five evaluations
-            self.driving.at(time)
-            self._state[:], nearest = own, self._nearest
-            self._project()
+            nearest = self._project(time, own)
         moved[: len(own)] = np.where(np.isfinite(nearest).all(axis=0), nearest, own)
         return moved
 
     def move_onto(self, solver: scipy.integrate.OdeSolver) -> Array:
         """The state after a step, on the constraints; a one-step method goes on from there."""
-        state = self.onto(solver.t, solver.y)
+        state = self.project(solver.t, solver.y)
         if self.any and isinstance(solver, ONE_STEP):
             solver.y, solver.f = state, solver.fun(solver.t, state)
         return state
 
-    def along(self, dense: Callable[[], Callable[[Any], Array]]) -> Callable[[Any], Array]:
+    def project_path(self, dense: Callable[[], Callable[[Any], Array]]) -> Callable[[Any], Array]:
         """The interpolant of a step, its states on the constraints."""
         path = dense()
-        return lambda t: self.onto(t, path(t))
+        return lambda t: self.project(t, path(t))
 
     # -- the start ----------------------------------------------------------------------
 
-    def beginning(self, time: float, state: Array, atol: float) -> Array:
+    def find_start(self, time: float, state: Array, atol: float) -> Array:
         """A start on the constraints, from one that is off them by roundings at the most.
 
         Args:
@@ -109,17 +100,17 @@ class Constraints:
             return state
         residuals = self._residuals(state)
         with np.errstate(invalid="ignore"):
-            off = np.abs(residuals) - self._roundings(state, residuals, atol)
+            off = np.abs(residuals) - self._estimate_roundings(state, residuals, atol)
         row = int(np.argmax(off))
         if off[row] > 0:
             raise self._refusal(time, state, row, float(residuals[row]))
-        return self.onto(time, state)
+        return self.project(time, state)
 
     def _residuals(self, states: Array) -> Array:
         now = self.driving.now
         return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
 
-    def _roundings(self, state: Array, residuals: Array, atol: float) -> Array:
+    def _estimate_roundings(self, state: Array, residuals: Array, atol: float) -> Array:
         """What residuals come to where each component is off by `TYPED` of those of its unit.
 
         A velocity that is 0 has no roundings of its own size; it has those of its fellows.
@@ -134,7 +125,7 @@ class Constraints:
 
     def _refusal(self, time: float, state: Array, row: int, residual: float) -> KernelArgumentError:
         """What is wrong with a start, and where it would be right."""
-        moved = zip(self.system.STATE.components, state, self.onto(time, state), strict=True)
+        moved = zip(self.system.STATE.components, state, self.project(time, state), strict=True)
         told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
         listed = list(self.system.certificate.get("constraints", {}).items())
         constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"

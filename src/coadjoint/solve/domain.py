@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.driving import Following
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,20 +62,15 @@ class Domain:
         self.bounds = system.DOMAIN
         # The least double that a row may be: whatever is above 0, or 0 itself.
         self._least = np.array([np.nextafter(0.0, 1.0) * bound.strict for bound in self.bounds])
-        self._state, self._rows = np.empty(system.STATE.size), np.empty(len(self.bounds))
         if self.bounds:
-            self._evaluate = system.bind(
-                "domain", self._state, parameters, out=self._rows, target=target, **driving.now
-            )
+            self._evaluate = Following(system, "domain", parameters, target, driving)
 
     def find_violated(self, time: float, state: Array) -> int | None:
         """The first row that is violated or not finite at a state; None inside the domain."""
         if not self.bounds:
             return None
-        self.driving.at(time)
-        self._state[:] = state[: self._state.size]  # what is reconstructed may follow
-        self._evaluate()
-        held = (self._rows >= self._least) & (self._rows < np.inf)  # neither holds for a NaN
+        rows = self._evaluate(time, state)
+        held = (rows >= self._least) & (rows < np.inf)  # neither holds for a NaN
         return None if held.all() else int(np.argmin(held))
 
     def check_start(self, time: float, state: Array) -> None:
@@ -86,7 +82,7 @@ class Domain:
         row = self.find_violated(time, state)
         if row is None:
             return
-        bound, value = self.bounds[row], float(self._rows[row])
+        bound, value = self.bounds[row], self._value(row)
         expected = "a finite value above 0" if bound.strict else "a finite value, 0 or more"
         raise KernelArgumentError(
             f"{self.system.name}: {self._problem(row)} at the given state: {self._meaning(row)} is "
@@ -96,7 +92,7 @@ class Domain:
             bound=bound.name,
         )
 
-    def leaves(
+    def find_exit(
         self,
         path: Callable[[], Callable[[float], Array]],
         before: tuple[float, Array],
@@ -137,33 +133,37 @@ class Domain:
             middle = (time + outside) / 2
             if not time < middle < outside:  # no double lies between
                 break
-            found = path(middle)
-            beyond = self.find_violated(middle, found)
+            between = path(middle)
+            beyond = self.find_violated(middle, between)
             if beyond is None:
-                time, state = middle, found
+                time, state = middle, between
             else:
                 outside, row = middle, beyond
         return Exit(time, state, row)
 
     # -- messages -----------------------------------------------------------------------
 
-    def reason(self, exit_: Exit) -> str:
+    def explain_exit(self, exit_: Exit) -> str:
         """Why a trajectory ends at an exit."""
         self.find_violated(exit_.time, exit_.state)
-        value = float(self._rows[exit_.row])
+        value = self._value(exit_.row)
         return (
             f"{self._problem(exit_.row)} after t = {exit_.time:.12g}, where "
             f"{self._meaning(exit_.row)} is still {value:.6g} and "
             f"{self._values(exit_.row, exit_.state)}"
         )
 
-    def remark(self, time: float, state: Array) -> str:
+    def describe_nearest(self, time: float, state: Array) -> str:
         """How close to a bound a state is, for trajectories that end inside; "" without bounds."""
         if self.find_violated(time, state) is not None or not self.bounds:
             return ""
-        row = int(np.argmin(self._rows))
-        value = float(self._rows[row])
+        row = int(np.argmin(self._evaluate.values))
+        value = self._value(row)
         return f"; there {self._meaning(row)} is {value:.6g} and {self._values(row, state)}"
+
+    def _value(self, row: int) -> float:
+        """The value of a row at the state that was looked at last."""
+        return float(self._evaluate.values[row])
 
     def _problem(self, row: int) -> str:
         """What is wrong where a row is violated."""
@@ -187,7 +187,7 @@ class Domain:
         system, now = self.system, [array.ravel() for array in self.driving.now.values()]
         tables = (system.STATE, system.PARAMETERS, system.INPUTS, system.TIME)
         names = [name for quantities in tables for name in quantities.components]
-        values = np.concatenate([state[: self._state.size], self.parameters, *now]).tolist()
+        values = np.concatenate([state[: system.STATE.size], self.parameters, *now]).tolist()
         known = dict(zip(names, values, strict=True))
         inputs = self.bounds[row].inputs
         told = [f"{name} = {known[name]:.6g}" for name in inputs[:SHOWN]]

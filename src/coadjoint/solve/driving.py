@@ -105,7 +105,7 @@ class Function(Signal):
         """
         where = f"of the function inputs at t = {time:.12g}"
         values = _pack(self.system, self.function(float(time)), where)
-        return _one(self.system, values, where)
+        return _check_one(self.system, values, where)
 
     def over(self, times: Array) -> Array:
         """What it returns at each time."""
@@ -132,7 +132,7 @@ class Driving:
 
     def __init__(self, system: System, given: Any, start: float, end: float) -> None:
         self.system, self.now = system, dict[str, Any]()
-        self._signal = _signal(system, given, start, end)
+        self._signal = _make_signal(system, given, start, end)
         if self._signal is not None:
             self.now["inputs"] = np.empty(system.INPUTS.size)
         if system.TIME:
@@ -160,14 +160,52 @@ class Driving:
 
     def over(self, times: Array) -> dict[str, Any]:
         """Inputs and time for functions at many times; a jump belongs to what follows it."""
-        found: dict[str, Any] = {"time": times} if "time" in self.now else {}
-        return found | ({"inputs": self._signal.over(times)} if self._signal is not None else {})
+        driven: dict[str, Any] = {"time": times} if "time" in self.now else {}
+        if self._signal is not None:
+            driven["inputs"] = self._signal.over(times)
+        return driven
+
+
+class Following:
+    """A function of a System along one trajectory: what can be checked is checked once, here.
+
+    Args:
+        system: The System.
+        function: Name of the function.
+        parameters: Packed parameters, ``(k,)``.
+        target: Kernel that computes it.
+        driving: Inputs and time.
+
+    Attributes:
+        state: What it reads.
+        values: What it has written last.
+    """
+
+    def __init__(
+        self, system: System, function: str, parameters: Array, target: Any, driving: Driving
+    ) -> None:
+        self.state = np.empty(system.rows(function).size)
+        self.values = np.empty(system.functions[function])
+        named = {"out": self.values, "target": target, **driving.now}
+        self._driving = driving
+        self._evaluate = system.bind(function, self.state, parameters, **named)
+
+    def __call__(self, time: float, state: Array) -> Array:
+        """The values at a time of this stretch and a state; the next call overwrites them."""
+        self._driving.at(time)
+        return self.at(state)
+
+    def at(self, state: Array) -> Array:
+        """The same at the time of the driving; rows below those that are read are left out."""
+        self.state[:] = state[: self.state.size]
+        self._evaluate()
+        return self.values
 
 
 # -- what was given -----------------------------------------------------------------------------
 
 
-def _signal(system: System, given: Any, start: float, end: float) -> Signal | None:
+def _make_signal(system: System, given: Any, start: float, end: float) -> Signal | None:
     """The inputs as a function of time; None where a system has none."""
     if not system.INPUTS:
         if given is not None:
@@ -177,7 +215,7 @@ def _signal(system: System, given: Any, start: float, end: float) -> Signal | No
         return Function(system, given)
     if isinstance(given, tuple) and any(np.ndim(part) for part in given):
         return _sample(system, given, start, end)
-    return Signal(_one(system, _pack(system, given, ""), ""))
+    return Signal(_check_one(system, _pack(system, given, ""), "").copy())
 
 
 def _sample(system: System, given: tuple[Any, ...], start: float, end: float) -> Signal:
@@ -237,7 +275,7 @@ def _pack(system: System, given: Any, where: str) -> Array:
         raise type(error)(f"values {where.strip()}: {error}", **error.parts) from error
 
 
-def _one(system: System, values: Array, where: str) -> Array:
+def _check_one(system: System, values: Array, where: str) -> Array:
     """One finite value for each component.
 
     Raises:

@@ -100,18 +100,8 @@ class Functions:
 
         def __getattr__(self, name: str) -> Method: ...
 
-    def _evaluate(
-        self,
-        function: str,
-        target: Target,
-        state: Values,
-        parameters: Values | None,
-        inputs: Values | None,
-        time: ArrayLike | None,
-        out: Array | None,
-    ) -> Array:
-        """A function at state, parameters, inputs and time, into a result."""
-        raise NotImplementedError
+        #: A function by name and target at state, parameters, inputs and time, into a result.
+        _evaluate: Callable[..., Array]
 
 
 def make_method(function: KernelFunction) -> Callable[..., Array]:

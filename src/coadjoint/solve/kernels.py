@@ -54,7 +54,7 @@ class Kernels:
     def bind(self, function: str, call: Call, target: str) -> Callable[[], None]:
         """The call as a function without arguments."""
         pieces = list(self._kernel(target).calls(function, call))
-        return pieces[0] if len(pieces) == 1 else partial(_each, pieces)
+        return pieces[0] if len(pieces) == 1 else partial(_call_each, pieces)
 
     # -- loading ----------------------------------------------------------------------------------
 
@@ -134,7 +134,7 @@ def _check_target(target: str) -> None:
         )
 
 
-def _each(pieces: list[Callable[[], None]]) -> None:
+def _call_each(pieces: list[Callable[[], None]]) -> None:
     """One call after the other; signals are heard between them."""
     for piece in pieces:
         piece()

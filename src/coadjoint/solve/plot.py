@@ -54,11 +54,7 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
     else:
         _draw_components(figure, grid[0], solution)
     _draw_drift(figure.add_subplot(grid[1]), solution)
-    figure.suptitle(solution.system.title, fontsize=13)
-    if path is None:
-        return figure
-    save(figure, Path(fspath(path)))
-    return None
+    return finish(figure, solution, path)
 
 
 def new_figure(*, headless: bool) -> Any:
@@ -78,8 +74,14 @@ def new_figure(*, headless: bool) -> Any:
         ) from error
 
 
-def save(figure: Any, path: Path) -> None:
-    """Write the picture beside its place and move it there."""
+def finish(figure: Any, solution: Solution, path: str | PathLike[str] | None) -> Any:
+    """The figure under the title of the system; or None, once it is written to a path."""
+    figure.suptitle(solution.system.title, fontsize=13)
+    return figure if path is None else _save(figure, Path(fspath(path)))
+
+
+def _save(figure: Any, path: Path) -> None:
+    """Write the picture next to its place and move it there."""
     temporary = path.with_name(f".{path.stem}.tmp{path.suffix}")
     try:
         figure.savefig(temporary)
@@ -184,8 +186,8 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         axes.set_ylabel(f"{_symbol(name)} {unit_label(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
         columns = -(-len(quantity.components) // LEGEND_ROWS)
-        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
-        axes.legend(fontsize=8 if columns == 1 else 6.5, frameon=False, **beside)
+        right = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
+        axes.legend(fontsize=8 if columns == 1 else 6.5, frameon=False, **right)
         _limit_time(axes, solution)
         axes.grid(alpha=0.3)
 

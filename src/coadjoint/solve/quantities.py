@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from html import escape
+from typing import Any
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError
@@ -21,6 +22,7 @@ class Quantities(Mapping[str, Quantity]):
         components: Names of all rows.
         size: Number of rows.
         positive: Rows whose values must be positive.
+        defaults: The default of each component that has one.
 
     >>> pair, scalar = Quantity("Pi", (2,), "1", ("Pi1", "Pi2")), Quantity("s", (), "1", ("s",))
     >>> state = Quantities(pair, scalar)
@@ -44,6 +46,14 @@ class Quantities(Mapping[str, Quantity]):
             positive += range(row, after) if quantity.positive else ()
             row = after
         self.positive = tuple(positive)
+        #: The defaults as a read-only array, once somebody has asked for them.
+        self.packed: Any = None
+        self.defaults = {
+            component: value
+            for quantity in quantities
+            if quantity.default is not None
+            for component, value in zip(quantity.components, quantity.default, strict=True)
+        }
 
     def __getitem__(self, name: str) -> Quantity:
         return self._by_name[name]

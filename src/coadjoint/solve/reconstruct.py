@@ -1,7 +1,7 @@
 """Where what is reconstructed begins: declared, asked for, or an attitude that stands upright.
 
 Comes in: a System, its initial state and what `System.simulate` was asked for. Goes out: the first
-values of ``RECONSTRUCTED``, which are integrated beside the state.
+values of ``RECONSTRUCTED``, which are integrated with the state.
 Read next: `coadjoint.solve.simulate`.
 """
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 QUATERNION = 4
 
 
-def beginning(system: System, state: Array, asked: Any) -> Array:
+def find_start(system: System, state: Array, asked: Any) -> Array:
     """The first values of what is reconstructed, ``(k,)``; none of them if nothing was asked for.
 
     Args:
@@ -77,7 +77,7 @@ def _defaults(system: System, state: Array) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for name, quantity in system.RECONSTRUCTED.items():
         if quantity.upright and quantity.default is None:
-            values[name] = upright(state[system.STATE.rows(quantity.upright)])
+            values[name] = turn_upright(state[system.STATE.rows(quantity.upright)])
         elif quantity.shape == (QUATERNION,):
             values[name] = quantity.default or (1.0, 0.0, 0.0, 0.0)
         else:
@@ -85,7 +85,7 @@ def _defaults(system: System, state: Array) -> dict[str, Any]:
     return values
 
 
-def upright(vector: Array) -> Array:
+def turn_upright(vector: Array) -> Array:
     """The unit quaternion of the shortest rotation that takes a vector of the body to e_z.
 
     Through the half-way vector: ``q = (1 + c, v x e_z) / |.|`` with ``c = v . e_z``; where v points
@@ -97,8 +97,8 @@ def upright(vector: Array) -> Array:
     Raises:
         KernelArgumentError: The vector is 0, which points nowhere.
 
-    >>> upright(np.array([0.0, 0.0, 2.0])).tolist(), upright(np.array([0.0, 0.0, -1.0])).tolist()
-    ([1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0])
+    >>> [turn_upright(np.array([0.0, 0.0, z])).tolist() for z in (2.0, -1.0)]
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]]
     """
     length = float(np.linalg.norm(vector))
     if not length > 0:

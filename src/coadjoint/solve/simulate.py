@@ -15,8 +15,8 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, pack, pack_parameters
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.domain import Domain, Exit
-from coadjoint.solve.driving import Driving
-from coadjoint.solve.reconstruct import beginning
+from coadjoint.solve.driving import Driving, Following
+from coadjoint.solve.reconstruct import find_start
 from coadjoint.solve.solution import Solution
 
 if TYPE_CHECKING:
@@ -49,26 +49,26 @@ def simulate(
     reconstruct: Any,
 ) -> Solution:
     """Integrate one trajectory; arguments as in `System.simulate`."""
-    initial = _initial(system, state)
-    packed = _share(system, parameters)
-    times = _times(t, samples)
-    name = _method(method)
+    initial = _check_initial(system, state)
+    packed = _pack_shared(system, parameters)
+    times = _list_times(t, samples)
+    name = _check_method(method)
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
     driving = Driving(system, inputs, float(times[0]), float(times[-1]))
     domain = Domain(system, packed, target, driving)
     domain.check_start(float(times[0]), initial)
     constraints = Constraints(system, packed, target, driving)
-    initial = constraints.beginning(float(times[0]), initial, atol)
-    followed = beginning(system, initial, reconstruct)
+    initial = constraints.find_start(float(times[0]), initial, atol)
+    followed = find_start(system, initial, reconstruct)
     initial = np.concatenate([initial, followed])
-    rates, latest = _rates(system, packed, target, driving, followed.size)
+    rates, latest = _make_rates(system, packed, target, driving, followed.size)
     rates(times[0], initial)
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
         reason = f"the rates are not finite at t = {times[0]:g}"
-        found = times[:1], initial[:, None], "NONFINITE", reason
-        return _solution(system, packed, driving, found)
+        run = times[:1], initial[:, None], "NONFINITE", reason
+        return _make_solution(system, packed, driving, run)
     with_slopes = name in IMPLICIT and not followed.size
-    options = {"jac": _slopes(system, packed, target, driving)} if with_slopes else {}
+    options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
 
     def begin(time: float, state: Array, end: float) -> scipy.integrate.OdeSolver:
         driving.enter(time)
@@ -77,17 +77,17 @@ def simulate(
 
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
     with np.errstate(all="ignore"):
-        found = _follow(stretches, initial, times, max_steps, latest, domain, constraints)
-    return _solution(system, packed, driving, found)
+        run = _follow(stretches, initial, times, max_steps, latest, domain, constraints)
+    return _make_solution(system, packed, driving, run)
 
 
 #: Times that were reached, states there, status and reason.
-_Found = tuple["Array", "Array", str, str]
+_Run = tuple["Array", "Array", str, str]
 
 
-def _solution(system: System, parameters: Array, driving: Driving, found: _Found) -> Solution:
-    """What was found, the state apart from what was reconstructed below it."""
-    times, states, status, reason = found
+def _make_solution(system: System, parameters: Array, driving: Driving, run: _Run) -> Solution:
+    """The Solution of a run, the state apart from what was reconstructed below it."""
+    times, states, status, reason = run
     n = system.STATE.size
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
@@ -123,7 +123,7 @@ def _follow(
     latest: Array,
     domain: Domain,
     constraints: Constraints,
-) -> _Found:
+) -> _Run:
     """The times that were reached, states there, status and reason.
 
     A loop of our own over SciPy's steps: its `solve_ivp` has no bound on their number, and keeps
@@ -141,20 +141,20 @@ def _follow(
             if reason or not np.isfinite(solver.y).all():
                 break
             before, here = here, (solver.t, constraints.move_onto(solver))
-            path = partial(constraints.along, solver.dense_output)
+            path = partial(constraints.project_path, solver.dense_output)
             after = int(np.searchsorted(times, solver.t, side="right"))
             if after > reached:
                 states[:, reached:after] = path()(times[reached:after])
             points = zip(times[reached:after].tolist(), states.T[reached:after], strict=True)
-            end = domain.leaves(path, before, [*points, here])
+            end = domain.find_exit(path, before, [*points, here])
             if end is not None:
-                return *_cut_at_exit(times, states, end), "DOMAIN", domain.reason(end)
+                return *_cut_at_exit(times, states, end), "DOMAIN", domain.explain_exit(end)
             reached, steps = after, steps + 1
             if after < times.size and solver.status != "running":
                 solver = stretches.next(here[1]) or solver
     except FloatingPointError:  # from the Jacobian
         latest[:] = np.nan
-    place = f"near t = {solver.t:.6g}{domain.remark(solver.t, solver.y)}"
+    place = f"near t = {solver.t:.6g}{domain.describe_nearest(solver.t, solver.y)}"
     came = (times[:reached], states[:, :reached])
     # An evaluation that is not finite spoils those after it in its step, the latest among them.
     if not (np.isfinite(solver.y).all() and np.isfinite(latest).all()):
@@ -172,11 +172,11 @@ def _cut_at_exit(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
     reached = int(np.searchsorted(times, end.time, side="right"))
     if times[reached - 1] == end.time:
         return times[:reached], states[:, :reached]
-    found = np.column_stack([states[:, :reached], end.state])
-    return np.append(times[:reached], end.time), found
+    samples = np.column_stack([states[:, :reached], end.state])
+    return np.append(times[:reached], end.time), samples
 
 
-def _rates(
+def _make_rates(
     system: System, parameters: Array, target: Any, driving: Driving, followed: int
 ) -> tuple[Rates, Array]:
     """Rates for SciPy, all checks made once, and the array of the latest ones.
@@ -188,32 +188,26 @@ def _rates(
         driving: Inputs and time.
         followed: How many components are reconstructed, below the state.
     """
-    n = system.STATE.size
-    whole, latest = np.empty(n + followed), np.empty(n + followed)
-    named = {"parameters": parameters, "target": target, **driving.now}
-    calls = [system.bind("rhs", whole[:n], out=latest[:n], **named)]
+    n, latest = system.STATE.size, np.empty(system.STATE.size + followed)
+    own = Following(system, "rhs", parameters, target, driving)
     if followed:
-        calls.append(system.bind("reconstruction", whole, out=latest[n:], **named))
+        others = Following(system, "reconstruction", parameters, target, driving)
 
     def rates(t: float, y: Array) -> Array:
-        driving.at(t)
-        whole[:] = y
-        for evaluate in calls:
-            evaluate()
+        latest[:n] = own(t, y)
+        if followed:
+            latest[n:] = others.at(y)
         return latest.copy()
 
     return rates, latest
 
 
-def _slopes(system: System, parameters: Array, target: Any, driving: Driving) -> Rates:
+def _make_slopes(system: System, parameters: Array, target: Any, driving: Driving) -> Rates:
     """The Jacobian for SciPy."""
-    state, slopes = np.empty(system.STATE.size), np.empty((system.STATE.size,) * 2)
-    evaluate = system.bind("jacobian", state, parameters, out=slopes, target=target, **driving.now)
+    evaluate = Following(system, "jacobian", parameters, target, driving)
 
     def jacobian(t: float, y: Array) -> Array:
-        driving.at(t)
-        state[:] = y
-        evaluate()
+        slopes = evaluate(t, y)
         if not np.isfinite(slopes).all():  # SciPy's solvers of linear systems do not take it
             raise FloatingPointError
         return slopes.copy()
@@ -221,7 +215,7 @@ def _slopes(system: System, parameters: Array, target: Any, driving: Driving) ->
     return jacobian
 
 
-def _initial(system: System, state: Any) -> Array:
+def _check_initial(system: System, state: Any) -> Array:
     """One finite state."""
     initial = pack(state, system.STATE, "state").copy()
     if initial.shape != (system.STATE.size,):
@@ -241,7 +235,7 @@ def _initial(system: System, state: Any) -> Array:
     return initial
 
 
-def _share(system: System, parameters: Any) -> Array:
+def _pack_shared(system: System, parameters: Any) -> Array:
     """One set of parameters."""
     packed = pack_parameters(system, parameters).copy()
     if packed.ndim != 1:
@@ -253,7 +247,7 @@ def _share(system: System, parameters: Any) -> Array:
     return packed
 
 
-def _method(method: str) -> str:
+def _check_method(method: str) -> str:
     """The name of SciPy's class."""
     name = "DOP853" if method == "auto" else method
     if name not in EXPLICIT + IMPLICIT:
@@ -274,7 +268,7 @@ def _check_positive(**numbers: float) -> None:
             )
 
 
-def _times(t: Any, samples: int) -> Array:
+def _list_times(t: Any, samples: int) -> Array:
     """Sample times from a pair or a sequence."""
     times = as_float64(t, "t")
     increasing = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) > 0).all())

@@ -69,8 +69,8 @@ class Solution:
         # A name of the state first: observables may repeat it, never contradict it.
         for quantities, values in self._tables:
             if name in quantities or name in quantities.components:
-                found: Array = values[quantities.rows(name)]
-                return found
+                rows: Array = values[quantities.rows(name)]
+                return rows
         names = [each for quantities, _ in self._tables for each in quantities]
         left = self.system.RECONSTRUCTED if self.reconstructed is None else ()
         hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""

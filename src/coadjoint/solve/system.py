@@ -117,16 +117,10 @@ class System(Functions):
         return self._evaluate(function, target, state, parameters, inputs, time, out)
 
     def _evaluate(
-        self,
-        function: str,
-        target: Target,
-        state: Values,
-        parameters: Values | None,
-        inputs: Values | None,
-        time: ArrayLike | None,
-        out: Array | None,
+        self, function: str, target: Target, state: Any, parameters: Any, inputs: Any, *rest: Any
     ) -> Array:
         """A function of a state that is ready, at once; or after all checks of the arguments."""
+        time, out = rest
         by_default = parameters is None and inputs is None and time is None and out is None
         if by_default and (ready := self._kernels.ready.get((function, target))):
             values: Array | None = ready(state)
@@ -154,8 +148,8 @@ class System(Functions):
     ) -> Callable[[], None]:
         """A call without arguments that evaluates ``state`` as it then is into ``out``.
 
-        All checks are made once, here. For loops of one's own: a call costs less than a microsecond
-        beyond the kernel.
+        All checks are made once, here. For loops of your own: a call costs a fraction of a
+        microsecond beyond the kernel.
 
         Args:
             function: Name of a function.
@@ -177,7 +171,8 @@ class System(Functions):
         """Parameters as one array ``(k,)`` or ``(k, *batch)``, defaults filled in."""
         from coadjoint.solve.arrays import pack_parameters
 
-        return pack_parameters(self, parameters)
+        packed = pack_parameters(self, parameters)
+        return packed.copy() if parameters is None else packed
 
     def simulate(
         self,
@@ -213,7 +208,7 @@ class System(Functions):
             samples: Number of evenly spaced samples when ``t`` is a pair.
             max_steps: After so many steps the trajectory ends with the status ``MAX_STEPS``.
             target: Kernel that computes the rates.
-            reconstruct: Whether to integrate ``RECONSTRUCTED`` beside the state, to the same
+            reconstruct: Whether to integrate ``RECONSTRUCTED`` with the state, to the same
                 tolerances: attitude and place of a body, for instance. A mapping says where some
                 of it begins, as ``{"x": 1.0}``. Otherwise the rest begins at its default, else at
                 zero; an attitude at the identity, that of a rolling body turned upright the
@@ -349,7 +344,7 @@ def load_texts(texts: Mapping[str, str]) -> Iterator[System]:
 
 
 def _execute(folder: Path, spec: ModuleSpec | None) -> Any:
-    """Run a generated ``__init__.py`` without leaving bytecode beside it."""
+    """Run a generated ``__init__.py`` without leaving bytecode next to it."""
     if spec is None or spec.loader is None or not (folder / "__init__.py").is_file():
         return None
     module = module_from_spec(spec)

@@ -6,14 +6,13 @@ figure, or a picture file.
 
 from __future__ import annotations
 
-from os import PathLike, fspath
-from pathlib import Path
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.plot import COLOURS, new_figure, save, unit_label
+from coadjoint.solve.plot import COLOURS, finish, new_figure, unit_label
 
 if TYPE_CHECKING:
     from coadjoint.solve.solution import Solution
@@ -53,11 +52,7 @@ def trace(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
         f"t = {solution.time[0]:g} .. {solution.time_reached:g} s",
         fontsize=10,
     )
-    figure.suptitle(solution.system.title, fontsize=13)
-    if path is None:
-        return figure
-    save(figure, Path(fspath(path)))
-    return None
+    return finish(figure, solution, path)
 
 
 def check_traced(system: System) -> None:

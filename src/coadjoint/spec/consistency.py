@@ -45,27 +45,19 @@ def check_tables(source: Source, file: Any) -> None:
         raise source.fault(
             (),
             "the table 'algebra' is missing",
-            found="algebra",
-            expected="a table [algebra], or [poisson] or coordinates with velocities for a system "
+            "algebra",
+            "a table [algebra], or [poisson] or coordinates with velocities for a system "
             "without an algebra",
-            hint='Write [algebra] and below it name = "so(3)".',
+            'Write [algebra] and below it name = "so(3)".',
         )
     if file.algebra is not None and file.poisson is not None:
-        raise source.fault(
-            ("poisson",),
-            "there are both [algebra] and [poisson]",
-            found="poisson",
-            expected="one of them",
-            hint="The bracket on the dual of an algebra follows from it: remove [poisson].",
-        )
+        problem, expected = "there are both [algebra] and [poisson]", "one of them"
+        hint = "The bracket on the dual of an algebra follows from it: remove [poisson]."
+        raise source.fault(("poisson",), problem, "poisson", expected, hint)
     if file.algebra is None and file.representations:
-        raise source.fault(
-            ("representations",),
-            "there is a table [representations] without [algebra]",
-            found="representations",
-            expected="[representations] only with [algebra]",
-            hint="Remove [representations].",
-        )
+        problem = "there is a table [representations] without [algebra]"
+        expected, hint = "[representations] only with [algebra]", "Remove [representations]."
+        raise source.fault(("representations",), problem, "representations", expected, hint)
 
 
 @dataclass(frozen=True)
@@ -95,15 +87,10 @@ def check_routes(reading: Reading) -> None:
         obstacles = list(_find_obstacles(file, route))
         if obstacles:
             others = _list_fitting(file)
-            raise reading.source.fault(
-                ("routes", place),
-                f"the route {route} {obstacles[0].problem}",
-                found=route,
-                expected=f"one of {list_names(others)}"
-                if others
-                else "a route that fits the tables",
-                hint=_advise(reading, obstacles, others),
-            )
+            problem = f"the route {route} {obstacles[0].problem}"
+            expected = f"one of {list_names(others)}" if others else "a route that fits the tables"
+            hint = _advise(reading, obstacles, others)
+            raise reading.fault(("routes", place), problem, route, expected, hint)
     _check_first(reading.source, file)
     _check_use(reading.source, file)
 
@@ -144,13 +131,10 @@ def _check_bare(reading: Reading) -> None:
     """Where a Lax pair alone moves the state, there are no velocities."""
     velocities = [each.name for each in VARIABLES.of(reading) if each.role == "velocity"]
     if _is_bare(reading.file) and velocities:
-        raise reading.at_key(
-            ("variables", velocities[0]),
-            f"the velocity {velocities[0]!r} has no energy to follow from",
-            velocities[0],
-            "a Lax pair of the state alone, or a table [hamiltonian] with it",
-            "Write M in variables of the state, or declare [hamiltonian].",
-        )
+        problem = f"the velocity {velocities[0]!r} has no energy to follow from"
+        expected = "a Lax pair of the state alone, or a table [hamiltonian] with it"
+        hint = "Write M in variables of the state, or declare [hamiltonian]."
+        raise reading.at_key(("variables", velocities[0]), problem, velocities[0], expected, hint)
 
 
 def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
@@ -183,7 +167,7 @@ def _advise(reading: Reading, obstacles: Sequence[_Obstacle], others: Sequence[s
 
 
 def _write_table(reading: Reading, table: str) -> str:
-    """How a missing table is written, with the names of the spec; "" if there is no telling."""
+    """How a missing table is written, with the names of the spec; "" without an example."""
     role = {"lagrangian": "velocity", "hamiltonian": "momentum"}.get(table)
     example = BY_KEY[table].example
     if role is not None:
@@ -206,13 +190,9 @@ def _check_first(source: Source, file: Any) -> None:
     problem = "cannot be the first: it is there to be proved equal to another"
     if ROUTES[first].emitted:
         problem = "moves momenta, and the state has velocities"
-    raise source.fault(
-        ("routes", 0),
-        f"the route {first} {problem}",
-        found=first,
-        expected=f"one of {list_names(fitting)} before it",
-        hint=f'Put "{fitting[0]}" first.' if fitting else "",
-    )
+    problem, expected = f"the route {first} {problem}", f"one of {list_names(fitting)} before it"
+    hint = f'Put "{fitting[0]}" first.' if fitting else ""
+    raise source.fault(("routes", 0), problem, first, expected, hint)
 
 
 def _check_use(source: Source, file: Any) -> None:
@@ -232,11 +212,9 @@ def _check_use(source: Source, file: Any) -> None:
             raise source.fault(
                 (key,),
                 f"no route uses the {key.title() if key in _ENERGIES else f'table [{key}]'}",
-                found=key,
-                expected=f"one of the routes {list_names(readers)}"
-                if readers
-                else f"no table [{key}] here",
-                hint=f"{add} [{key}].",
+                key,
+                f"one of the routes {list_names(readers)}" if readers else f"no table [{key}] here",
+                f"{add} [{key}].",
             )
 
 
@@ -253,14 +231,10 @@ def check_used(source: Source, spec: Spec) -> None:
         if not named & {each.name, *each.components}:
             key: KeyPath = ("time",) if each is spec.time else ("inputs", each.name)
             rest = "remove [time]" if each is spec.time else "remove it from [inputs]"
-            raise source.fault(
-                key,
-                f"{each.name!r} occurs in no formula",
-                found=each.name,
-                expected=f"a formula that names {list_names(each.components)}",
-                hint=f"Use it in the energy or a force, or {rest}.",
-                at=source.positions.key(key),
-            )
+            problem = f"{each.name!r} occurs in no formula"
+            expected = f"a formula that names {list_names(each.components)}"
+            hint = f"Use it in the energy or a force, or {rest}."
+            raise source.at_key(key, problem, each.name, expected, hint)
 
 
 _PLURALS = {"momentum": "momenta", "velocity": "velocities"}
@@ -344,13 +318,10 @@ def _check_partners(reading: Reading) -> None:
             role = wanted[-1] if lacking else "momentum"
             problem = " and no ".join(wanted) if lacking else "momentum, and others have"
             partner = reading.free_name("v" if role == "velocity" else "p", name)
-            raise reading.at_key(
-                ("variables", name),
-                f"the coordinate {name!r} has no {problem}",
-                name,
-                f"a {role} of each coordinate" if lacking else "momenta of all coordinates",
-                f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.',
-            )
+            problem = f"the coordinate {name!r} has no {problem}"
+            expected = f"a {role} of each coordinate" if lacking else "momenta of all coordinates"
+            hint = f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.'
+            raise reading.at_key(("variables", name), problem, name, expected, hint)
 
 
 def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebra) -> None:
@@ -360,10 +331,7 @@ def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebr
     if left:
         names = ", ".join(f'"{name}"' for name in left)
         block = f", block = [{names}]" if covered else ""
-        raise reading.source.fault(
-            ("variables",),
-            f"no {role} spans {list_names(left)}",
-            found=list_names(left),
-            expected=f"{_PLURALS[role]} over the whole of {algebra.name}",
-            hint=f'Write for instance {reading.free_name(example)} = {{ role = "{role}"{block} }}.',
-        )
+        problem = f"no {role} spans {list_names(left)}"
+        expected = f"{_PLURALS[role]} over the whole of {algebra.name}"
+        hint = f'Write for instance {reading.free_name(example)} = {{ role = "{role}"{block} }}.'
+        raise reading.fault(("variables",), problem, list_names(left), expected, hint)

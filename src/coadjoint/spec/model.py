@@ -37,7 +37,6 @@ from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
 from coadjoint.spec.sections.variables import Variable, state_of
-from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
 
 __all__ = [
     "FORMS",
@@ -60,7 +59,6 @@ __all__ = [
     "Rolling",
     "Section",
     "Shape",
-    "SpatialMomentum",
     "Spec",
     "Symmetry",
     "Time",
@@ -129,7 +127,7 @@ class Spec:
         sha256: Hash of the file's bytes.
         lax: The declared Lax pair, or None.
         newton: Declared forces, one for each coordinate; empty if none.
-        clebsch: How the algebra acts on a pair of its own of the route clebsch, or None.
+        clebsch: How the algebra acts on the further pair of the route clebsch, or None.
         definitions: Short names in declared order; formulas hold them no more.
         symmetries: Declared actions; their momentum maps are emitted after the observables.
         transformations: Maps that are claimed to keep the motion.
@@ -137,8 +135,8 @@ class Spec:
         galilean: Whether Newton's law is claimed to be that of every Galilean observer.
         reduction: The submanifold to which a motion is restricted, whose state this is, or None.
         constraints: Equations between velocities; empty for motions that are free.
-        forces: What acts beside the energy, by the name of the velocity that it works on, or of the
-            momentum or coordinate to whose rate it is added.
+        forces: What acts in addition to the energy, by the name of the velocity that it works on,
+            or of the momentum or coordinate to whose rate it is added.
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
         domain: Where the system is defined, as far as declared.
         relaxation: Dissipation by a symmetric bracket, or None.
@@ -198,7 +196,7 @@ class Spec:
 
     @property
     def state(self) -> tuple[Variable, ...]:
-        """The state of the kernels, in declared order: what is no velocity that another gives.
+        """The state of the kernels, in declared order: all but velocities that others give.
 
         Velocities follow from momenta; only where a coordinate has no momentum is its velocity
         part of the state. Under constraints, those velocities are that no constraint gives.
@@ -212,7 +210,7 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """The velocities that follow from the state, emitted beside the dynamics."""
+        """The velocities that follow from the state, emitted with the dynamics."""
         state = self.state
         return tuple(each for each in self.having_role("velocity") if each not in state)
 
@@ -228,11 +226,6 @@ class Spec:
         return next((v for v, action in advected if action and action.name in ATTITUDES), None)
 
     @property
-    def spatial(self) -> tuple[SpatialMomentum, ...]:
-        """The momenta seen from space; empty without an attitude that can be inverted."""
-        return spatial_momenta(self)
-
-    @property
     def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:
         """The momenta of the independent velocities; empty where momenta are the state."""
         moving = [each for each in self.state if each.role == "velocity"]
@@ -240,7 +233,7 @@ class Spec:
 
     @property
     def is_driven(self) -> bool:
-        """Whether anything acts beside the energy: forces or dissipation of any kind."""
+        """Whether anything acts in addition to the energy: forces or dissipation of any kind."""
         return self.is_forced or self.relaxation is not None
 
     @property
@@ -275,7 +268,8 @@ class Spec:
             )
             for variable in self.variables
         )
-        whole = replace(self, observables=(), conserved=(), reduction=None)
+        records = {key: each for key, each in self.records.items() if key != "charts"}
+        whole = replace(self, observables=(), conserved=(), reduction=None, records=records)
         return replace(
             self,
             algebra=None,

@@ -35,6 +35,7 @@ from coadjoint.spec.core.reading import Naming, Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.model import Spec
 from coadjoint.spec.sections.reduction import REDUCTION
+from coadjoint.spec.spatial import spatial_momenta
 from coadjoint.spec.tables import TABLES
 from coadjoint.spec.validate import validate
 
@@ -42,8 +43,8 @@ from coadjoint.spec.validate import validate
 def read_spec(path: str | os.PathLike[str]) -> Spec:
     """Read a spec from a file.
 
-    What the text may ask for is limited (docs/limits.md); the time that reading takes is not, and
-    nor is that of `coadjoint.derive` and `coadjoint.prove`. For a file of a stranger there are
+    What the text may ask for is limited (docs/limits.md). The time that reading takes is not
+    limited, nor that of `coadjoint.derive` and `coadjoint.prove`. For an untrusted file use
     `coadjoint.read_bounded`, `derive_bounded` and `prove_bounded`.
 
     Args:
@@ -64,11 +65,9 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
         return read_spec_text(data.decode("utf-8"), path)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
+        problem = f"the byte 0x{data[error.start]:02x} is not UTF-8"
         raise file_fault(
-            f"{os.fspath(path)}:{line}",
-            f"the byte 0x{data[error.start]:02x} is not UTF-8",
-            "a text in UTF-8",
-            found=data[error.start],
+            f"{os.fspath(path)}:{line}", problem, "a text in UTF-8", found=data[error.start]
         ) from None
 
 
@@ -109,7 +108,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         accepted=frozenset(_list_accepted(file)),
         **_read_tables(reading),
     )
-    following = [(each.momentum.name, each.name, each.components) for each in spec.spatial]
+    following = [(each.momentum.name, each.name, each.components) for each in spatial_momenta(spec)]
     following += [(each.velocity.name, each.name, each.components) for each in spec.reduced_momenta]
     for owner, momentum, components in following:
         reading.declare(Naming(("variables", owner), momentum, components))
@@ -183,8 +182,8 @@ def _explain_unopened(path: str, error: OSError | ValueError) -> CoadjointError:
         hint = f"Give the file that it points to: {target}."
         return file_fault(path, "this is a symbolic link", "a regular file", hint, found=target)
     if number == errno.ENOENT:
-        beside = [str(p) for p in Path(path).parent.glob("*.toml")]
-        hint = did_you_mean(path, beside)
+        near = [str(p) for p in Path(path).parent.glob("*.toml")]
+        hint = did_you_mean(path, near)
         return file_fault(path, "there is no such file", "a spec in TOML", hint, found=path)
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return file_fault(
@@ -209,13 +208,8 @@ def check_bytes(path: str, size: int) -> None:
         LimitError: It is.
     """
     if size > SPEC_BYTES:
-        raise file_fault(
-            path,
-            f"the file has {size} bytes",
-            f"at most {SPEC_BYTES} (SPEC_BYTES)",
-            found=size,
-            kind=LimitError,
-        )
+        expected = f"at most {SPEC_BYTES} (SPEC_BYTES)"
+        raise file_fault(path, f"the file has {size} bytes", expected, found=size, kind=LimitError)
 
 
 def file_fault(

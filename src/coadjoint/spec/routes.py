@@ -52,7 +52,7 @@ _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
 _ALGEBRA = ("algebra",)
 _SPACE = ("configuration", "poisson")
-#: What acts beside the energy, on routes where a rate of momenta is known.
+#: What acts in addition to the energy, on routes where a rate of momenta is known.
 _DRIVES = ("forces", "dissipation")
 #: The same, and what acts by the bracket of the state.
 _ACTS = (*_DRIVES, "double_bracket", "metriplectic")

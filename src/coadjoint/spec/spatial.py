@@ -7,13 +7,13 @@ Read next: `coadjoint.derive.mechanics.reconstruction`, which derives their comp
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.algebra.catalogue import inverse_by
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.tree import walk
+from coadjoint.spec.model import Spec
 from coadjoint.spec.sections.variables import Variable
 
 
@@ -41,7 +41,7 @@ class SpatialMomentum:
         return component_names(self.name, self.momentum.shape, self.momentum.form)
 
 
-def spatial_momenta(spec: Any) -> tuple[SpatialMomentum, ...]:
+def spatial_momenta(spec: Spec) -> tuple[SpatialMomentum, ...]:
     """The momenta seen from space; empty without an attitude that can be inverted.
 
     A quaternion turns the momenta of rotations, if these commute with the rest of the algebra.
@@ -65,7 +65,7 @@ def spatial_momenta(spec: Any) -> tuple[SpatialMomentum, ...]:
     )
 
 
-def _places_acted_on(spec: Any) -> set[int]:
+def _places_acted_on(spec: Spec) -> set[int]:
     """Places of the basis along which forces or friction act."""
     named = {*spec.forces, *_names_in(spec.dissipation)}
     acted = (each for each in spec.variables if named & {each.name, *each.components})

@@ -100,24 +100,15 @@ def _toml_fault(source: Source, error: tomllib.TOMLDecodeError) -> CoadjointErro
     if source.positions.doubled is not None:
         key, span = source.positions.doubled
         first = source.line(source.positions.key(key))
-        return source.fault(
-            key,
-            f"{show_value(key[-1])} is declared twice",
-            found=str(key[-1]),
-            expected="one declaration",
-            hint=f"The first is in line {first}.",
-            at=span,
-        )
+        problem, expected = f"{show_value(key[-1])} is declared twice", "one declaration"
+        hint = f"The first is in line {first}."
+        return source.fault(key, problem, str(key[-1]), expected, hint, at=span)
     place = _TOML_PLACE.search(str(error))
     span = _span(source, place)
     problem = _TOML_PLACE.sub("", str(error))
-    return source.fault(
-        (),
-        f"not TOML: {problem[:1].lower()}{problem[1:]}",
-        found=source.text[span[0] : span[1]],
-        hint="Text stands in quotes, a table in one line in { }.",
-        at=span,
-    )
+    problem = f"not TOML: {problem[:1].lower()}{problem[1:]}"
+    hint = "Text stands in quotes, a table in one line in { }."
+    return source.fault((), problem, source.text[span[0] : span[1]], hint=hint, at=span)
 
 
 def _span(source: Source, place: re.Match[str] | None) -> Span:
@@ -137,16 +128,10 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     path, kind = tuple(detail["loc"]), detail["type"]
     present = _find_present(path, document)
     if kind == "missing":
-        return source.fault(
-            present,
-            f"the key {path[-1]!r} is missing",
-            found=str(path[-1]),
-            expected=_keys(path)[str(path[-1])].description or "",
-            hint=_advise_routes(document)
-            if path == ("routes",)
-            else _HOW_TO_WRITE.get(path[-1], ""),
-            at=source.positions.key(present),
-        )
+        problem = f"the key {path[-1]!r} is missing"
+        expected = _keys(path)[str(path[-1])].description or ""
+        hint = _advise_routes(document) if path == ("routes",) else _HOW_TO_WRITE.get(path[-1], "")
+        return source.at_key(present, problem, str(path[-1]), expected, hint)
     if kind == "extra_forbidden":
         return _unknown_key(source, path)
     expected, given = _describe_expected(detail), detail["input"]
@@ -155,9 +140,9 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     return source.fault(
         present,
         f"found {show_value(given)}",
-        found=given,
-        expected=expected,
-        hint=did_you_mean(given, re.findall("'([^']+)'", expected)) if literal else "",
+        given,
+        expected,
+        did_you_mean(given, re.findall("'([^']+)'", expected)) if literal else "",
         kind=LimitError if limit else SpecError,
         limit=limit,
     )
@@ -179,7 +164,7 @@ def _advise_routes(document: Mapping[str, Any]) -> str:
 
 
 def _drop_echoes(details: list[ErrorDetails]) -> list[ErrorDetails]:
-    """Faults without the missing keys that a misspelt key beside them was meant to be."""
+    """Faults without the missing keys that a misspelt key next to them was meant to be."""
     meant = set()
     for detail in details:
         *table, key = detail["loc"]
@@ -208,14 +193,9 @@ def _plain_kind(annotation: Any) -> Any:
 
 def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
     known = _keys(path)
-    return source.fault(
-        path,
-        f"unknown key {show_value(path[-1])}",
-        found=str(path[-1]),
-        expected=f"one of {list_names(known, most=len(known))}",
-        hint=did_you_mean(str(path[-1]), known),
-        at=source.positions.key(path),
-    )
+    problem = f"unknown key {show_value(path[-1])}"
+    expected = f"one of {list_names(known, most=len(known))}"
+    return source.at_key(path, problem, str(path[-1]), expected, did_you_mean(str(path[-1]), known))
 
 
 def _find_present(path: KeyPath, document: Any) -> KeyPath:

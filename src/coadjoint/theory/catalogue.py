@@ -16,7 +16,7 @@ from coadjoint.algebra import LieAlgebra, algebra_by_name, from_matrices
 from coadjoint.algebra.matrices import size
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Field
-from coadjoint.exact.dense import Matrix, identity, weighted_sum
+from coadjoint.exact.dense import Matrix, diagonal, identity, weighted_sum
 from coadjoint.theory.group import MatrixGroup
 from coadjoint.theory.linear_part import InvertibleMatrices, Isometries, LinearPart
 
@@ -33,10 +33,6 @@ def _isometries(algebra: LieAlgebra, count: int, form: Matrix, **more: Any) -> P
 def _whole(algebra: LieAlgebra, form: Matrix, **more: Any) -> Parts:
     """A group of isometries and nothing else."""
     return _isometries(algebra, algebra.dimension, form, **more)
-
-
-def _diagonal(*entries: int) -> Matrix:
-    return weighted_sum(entries, [{(n, n): 1} for n in range(len(entries))], len(entries))
 
 
 def _symplectic(n: int, size: int) -> Matrix:
@@ -61,7 +57,7 @@ def _so(n: int) -> Parts:
 
 def _so_pq(p: int, q: int) -> Parts:
     algebra = algebra_by_name(f"so({p},{q})")  # first: it refuses sizes that would explode
-    return _whole(algebra, _diagonal(*[1] * p, *[-1] * q), special=True)
+    return _whole(algebra, diagonal([*[1] * p, *[-1] * q]), special=True)
 
 
 def _sp(n: int) -> Parts:
@@ -74,7 +70,7 @@ def _u(n: int) -> Parts:
 
 def _su(n: int) -> Parts:
     algebra = algebra_by_name(f"su({n})")
-    first = _diagonal(*[int(k % n == 0) for k in range(2 * n)])
+    first = diagonal([int(k % n == 0) for k in range(2 * n)])
     return _whole(
         algebra,
         identity(2 * n),

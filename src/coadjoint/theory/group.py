@@ -88,22 +88,18 @@ class MatrixGroup:
             AlgebraError: Their number is wrong, or the chart has no element there.
         """
         self._check_length(values, self.symbols, "coordinates of an element")
-        taken = len(self.linear.symbols)
+        count = len(self.linear.symbols)
         try:
-            g = self.linear.point(values[:taken])
+            g = self.linear.point(values[:count])
         except ZeroDivisionError:
             raise AlgebraError(
-                f"{self.name}: the chart has no element at {', '.join(map(str, values[:taken]))}; "
+                f"{self.name}: the chart has no element at {', '.join(map(str, values[:count]))}; "
                 "expected coordinates where its denominator is not 0. Move one of them.",
-                found=[str(value) for value in values[:taken]],
+                found=[str(value) for value in values[:count]],
             ) from None
-        for i, value in zip(self.nilpotent, values[taken:], strict=True):
+        for i, value in zip(self.nilpotent, values[count:], strict=True):
             step = weighted_sum([value], [self.algebra.matrices[i]], self.size)
             g = product(exponential(step), g)
-        return self._in_field(g)
-
-    def _in_field(self, g: Matrix) -> Matrix:
-        """Entries as field elements."""
         return tuple(self.field.vector(row) for row in g)
 
     # -- the group ------------------------------------------------------------------------

@@ -51,10 +51,10 @@ def hopf_map(a: Sequence[Complex]) -> Vector:
 
 def from_sphere(n: Sequence[Any]) -> Matrix:
     """``(n0 + n . sigma) / 2``, which is the coherence matrix where n is the Hopf map of a."""
-    total = tuple(scale(n[0], row) for row in identity(2))
+    total = scale(n[0], identity(2))
     for component, pauli in zip(n[1:], PAULI, strict=True):
         total = add(total, scale(component, pauli))
-    return tuple(scale(HALF, row) for row in total)
+    return scale(HALF, total)
 
 
 def canonical_bracket(field: Field, f: Element, h: Element) -> Element:

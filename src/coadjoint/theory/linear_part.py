@@ -49,7 +49,7 @@ class LinearPart(Protocol):
         """``g^-1`` of a matrix of this part."""
 
     def conditions(self, g: Matrix) -> Iterator[Condition]:
-        """Matrices that vanish just when `g` belongs to this part."""
+        """Matrices that vanish if and only if `g` belongs to this part."""
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,7 @@ def _check_inverse(X: VectorField, phi: Sequence[Element], psi: Sequence[Element
 def lie_series(X: VectorField, function: Element, time: Element, order: int) -> Element:
     """``exp(t X) f = sum of t^k X^k(f) / k!`` up to an order: f along the flow of X.
 
-    It ends by itself, and is then exact, where X^k(f) = 0 for some k.
+    Where X^k(f) = 0 for some k the series ends and is exact.
 
     >>> field = Field(["q", "p", "t"])
     >>> q, p, t = (field[name] for name in ("q", "p", "t"))
@@ -148,6 +148,6 @@ def vorticity_rate(u: VectorField) -> VectorField:
     """``d omega/dt = -L_u omega`` of an ideal incompressible fluid (section B.7.2).
 
     With ``div u = 0`` this is ``(omega . grad) u - (u . grad) omega`` for ``omega = curl u``: the
-    vorticity is carried along by the flow, and a flow is steady just where both commute.
+    vorticity is carried along by the flow, and a flow is steady if and only if both commute.
     """
     return -lie_derivative(u, curl(u))

@@ -37,13 +37,15 @@ def momenta_along(setting: Setting, fields: Sequence[Sequence[Element]]) -> Row:
     )
 
 
-def reduced_momenta(found: Distribution) -> list[tuple[str, Element]]:
+def reduced_momenta(distribution: Distribution) -> list[tuple[str, Element]]:
     """``Omega_momentum``, ...: the momenta along the columns of B, by name, in state order."""
-    columns = list(zip(*found.B, strict=True))
-    values = dict(zip(found.independent, momenta_along(found.setting, columns), strict=True))
+    columns = list(zip(*distribution.B, strict=True))
+    values = dict(
+        zip(distribution.independent, momenta_along(distribution.setting, columns), strict=True)
+    )
     return [
         (name, values[velocity])
-        for each in found.setting.spec.reduced_momenta
+        for each in distribution.setting.spec.reduced_momenta
         for name, velocity in zip(each.components, each.velocity.components, strict=True)
     ]
 
@@ -55,32 +57,32 @@ def almost_poisson(setting: Setting) -> Tensor | None:
     Constraints that are kept give the momenta no free rates, and affine ones make the energy
     another function than H.
     """
-    found = distribution(setting)
-    if found.kept or not found.is_linear:
+    allowed = distribution(setting)
+    if allowed.kept or not allowed.is_linear:
         return None
-    columns = zip(*found.B, strict=True)
-    return brackets(found, dict(zip(found.independent, columns, strict=True)), setting.state)
+    columns = zip(*allowed.B, strict=True)
+    return brackets(allowed, dict(zip(allowed.independent, columns, strict=True)), setting.state)
 
 
 def brackets(
-    found: Distribution,
+    distribution: Distribution,
     fields: Mapping[str, Sequence[Element]],
     names: Sequence[str],
 ) -> Tensor:
     """The matrix of the brackets of some positions and momenta.
 
     Args:
-        found: Where the fields live.
+        distribution: Where the fields live.
         fields: D_k by the name that stands for M_k.
         names: What rows and columns are: names of fields, or positions.
     """
-    field, frame = found.setting.field, found.frame
+    field, frame = distribution.setting.field, distribution.frame
     moved = {name: frame.rates(along) for name, along in fields.items()}
 
     def bracket(a: str, b: str) -> Element:
         if a in fields and b in fields:
             turned = frame.bracket(fields[a], fields[b])
-            return -momenta_along(found.setting, [turned])[0]
+            return -momenta_along(distribution.setting, [turned])[0]
         if a in fields:
             return -moved[a][b]
         return moved[b][a] if b in fields else field.zero

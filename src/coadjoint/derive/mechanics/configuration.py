@@ -93,14 +93,14 @@ class Mechanics:
         """
         names = self.frame.velocities
         for row, name in zip(self.mass, names, strict=True):
-            found = sorted(set().union(*map(self.setting.field.reach, row)) & set(names))
-            if found:
+            named = sorted(set().union(*map(self.setting.field.reach, row)) & set(names))
+            if named:
                 message = (
                     f"the Lagrangian is not quadratic in the velocities: its second derivative by "
-                    f"{name} depends on {', '.join(found)}; expected a kinetic energy quadratic in "
+                    f"{name} depends on {', '.join(named)}; expected a kinetic energy quadratic in "
                     f"the velocities. {hint}"
                 )
-                raise fault(self.setting, self._formula, message.rstrip(), found[0])
+                raise fault(self.setting, self._formula, message.rstrip(), named[0])
 
     @property
     def _formula(self) -> Formula:
@@ -133,7 +133,7 @@ def mechanics(setting: Setting) -> Mechanics:
 
 
 def declared_energy(setting: Setting) -> Element | None:
-    """The energy of coordinates and velocities that the spec knows; None if it knows none."""
+    """The energy of coordinates and velocities that the spec gives; None if it gives none."""
     if setting.spec.hamiltonian is not None:
         return setting.hamiltonian
     return mechanics(setting).energy if setting.spec.lagrangian is not None else None
@@ -166,7 +166,7 @@ def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
         matrix: Square.
         refuse: Makes the error to raise of what is wrong and the places that it concerns.
     """
-    found = [[field.zero] * len(matrix) for _ in matrix]
+    whole = [[field.zero] * len(matrix) for _ in matrix]
     for block in coupled_blocks(matrix):
         own = tuple(tuple(matrix[i][j] for j in block) for i in block)
         if len(block) > LARGEST_BLOCK:
@@ -180,8 +180,8 @@ def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
             raise refuse(SINGULAR if zero else UNKNOWN, block)
         for i, row in zip(block, inverse(own), strict=True):
             for j, entry in zip(block, row, strict=True):
-                found[i][j] = entry
-    return tuple(map(tuple, found))
+                whole[i][j] = entry
+    return tuple(map(tuple, whole))
 
 
 def conjugates(
@@ -206,10 +206,10 @@ def conjugates(
     slopes = field.gradient(function, names)
     hessian = tuple(field.gradient(slope, names) for slope in slopes)
     for place, row in enumerate(hessian):
-        found = sorted(set(names).intersection(*[set().union(*map(field.reach, row))]))
-        if found:
+        named = sorted(set(names).intersection(*[set().union(*map(field.reach, row))]))
+        if named:
             raise refuse(
-                f"depends on {', '.join(found)}: momenta and velocities are not linear in each "
+                f"depends on {', '.join(named)}: momenta and velocities are not linear in each "
                 "other; expected a function quadratic in them, which alone is solved exactly",
                 (place,),
             )

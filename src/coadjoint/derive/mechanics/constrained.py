@@ -1,4 +1,4 @@
-r"""Constrained motion: what the routes with constraints share beside the kinematics.
+r"""Constrained motion: what the routes with constraints share in addition to the kinematics.
 
 A route puts matrix and right side into :math:`\mathcal{M} \dot\eta = k`; constraints that are kept
 join them with their multipliers, the kernel solves, and the reactions follow. A force may be
@@ -10,29 +10,33 @@ proportional to reactions, as friction is: with :math:`k = k_0 + C \lambda` and
     \begin{pmatrix} \dot\eta \\ u \end{pmatrix}
         = \begin{pmatrix} k_0 \\ -\dot A \eta + \dot b \end{pmatrix}.
 
-Comes in: the Kinematics of a distribution. Goes out: the Exact part of Equations.
+Comes in: the Kinematics of a system, and what a route makes of it. Goes out: Equations.
 Read next: `coadjoint.derive.routes.nonholonomic`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.emitted import list_emitted
+from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
 from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
-from coadjoint.derive.mechanics.distribution import Equation, Row
+from coadjoint.derive.mechanics.decided import Decided
+from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
+from coadjoint.derive.mechanics.frames import Frame
 from coadjoint.derive.mechanics.kinematics import (
     Kinematics,
     Matrix,
-    kept_rows,
+    kinematics,
     multiplier_name,
     rate_name,
 )
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
-from coadjoint.derive.records import Exact
+from coadjoint.derive.records import Exact, Step, write_entries, write_step
+from coadjoint.derive.setting import Setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
@@ -41,8 +45,26 @@ from coadjoint.limits import COUPLED_VELOCITIES
 
 
 @dataclass(frozen=True)
-class ConstrainedMotion(Kinematics):
-    """Kinematics with accelerations: what the kernel solves for, and what rests on it."""
+class ConstrainedMotion:
+    """What a route makes of the kinematics: what the kernel solves for, and what rests on it.
+
+    Attributes:
+        kinematics: Of the system, shared by all routes.
+        decided: What is known exactly of the definitions of this route.
+    """
+
+    kinematics: Kinematics
+    decided: Decided
+
+    @property
+    def distribution(self) -> Distribution:
+        """What the constraints allow."""
+        return self.kinematics.distribution
+
+    @property
+    def frame(self) -> Frame:
+        """The velocities and their fields."""
+        return self.distribution.frame
 
     @cached_property
     def accelerations(self) -> Row:
@@ -52,13 +74,12 @@ class ConstrainedMotion(Kinematics):
 
     def of_kept(self) -> tuple[Matrix, Row]:
         """``A eta' = k`` of the constraints that are kept."""
-        field, found = self.frame.setting.field, self.distribution
-        eta = self.frame.setting.elements(found.independent)
-        matrix, known = [], []
-        for *row, rest in kept_rows(found):
-            matrix.append(tuple(map(self.name_of_entry, row)))
-            carried = [self.rate(a) * x for a, x in zip(row, eta, strict=True)]
-            known.append(-field.sum([*carried, self.rate(rest)]))
+        field, known, name = self.frame.setting.field, [], self.kinematics.name_of_entry
+        eta = self.frame.setting.elements(self.distribution.independent)
+        matrix = [tuple(map(name, row[:-1])) for row in self.distribution.kept_rows]
+        for *row, rest in self.distribution.kept_rows:
+            carried = [self.kinematics.rate(a) * x for a, x in zip(row, eta, strict=True)]
+            known.append(-field.sum([*carried, self.kinematics.rate(rest)]))
         return tuple(matrix), tuple(known)
 
     def solves(self, mass: Matrix, known: Sequence[Element]) -> tuple[Solve, ...]:
@@ -72,7 +93,7 @@ class ConstrainedMotion(Kinematics):
             mass: The reduced mass matrix.
             known: What it times the accelerations is, where reactions may be named.
         """
-        field, found, value = self.frame.setting.field, self.distribution, self.decided.value
+        field, of, value = self.frame.setting.field, self.distribution, self.decided.value
         rows, carried = self.of_kept()
         none = [field.zero] * len(rows)
         pulls = [field.gradient(k, self.pressing) for k in known]
@@ -85,7 +106,7 @@ class ConstrainedMotion(Kinematics):
         ]
         sides = [*map(value, map(self.without_reactions, known)), *map(value, carried)]
         names = [
-            *map(rate_name, found.independent),
+            *map(rate_name, of.independent),
             *map(multiplier_name, range(len(rows))),
         ]
         unlike = {i for i, row in enumerate(pulls) if any(row)}
@@ -119,16 +140,17 @@ class ConstrainedMotion(Kinematics):
             mass: ``d2l/dxi2`` in the frame.
             forces: ``F - M c - dp/dz dz/dt`` in the frame, as a route names them.
         """
-        field, found = self.frame.setting.field, self.distribution
+        field, of = self.frame.setting.field, self.distribution
+        known, names = self.kinematics, self.frame.velocities
         turned = [
-            field.sum(b * x for b, x in zip(row, self.accelerations, strict=True)) for row in self.B
+            field.sum(b * x for b, x in zip(row, self.accelerations, strict=True))
+            for row in known.B
         ]
-        rates = [(rate_name(self.frame.velocities[n]), turned[n] + self.c[n]) for n in self.solved]
+        rates = [(rate_name(names[n]), turned[n] + known.c[n]) for n in known.solved]
         values = {
-            equation.reaction: -field[multiplier_name(n)]
-            for n, (equation, _) in enumerate(found.kept)
+            equation.reaction: -field[multiplier_name(n)] for n, (equation, _) in enumerate(of.kept)
         }
-        rows = dict(zip((each.reaction for each in found.equations), found.A, strict=True))
+        rows = dict(zip((each.reaction for each in of.equations), of.A, strict=True))
         for place, equation in self._order_given():
             inertia = field.sum(m * t for m, t in zip(mass[place], turned, strict=True))
             others = field.sum(
@@ -143,10 +165,10 @@ class ConstrainedMotion(Kinematics):
 
         Along such a velocity ``p' - F = A^T lambda`` has but one multiplier that is not known yet.
         """
-        found, waiting = self.distribution, list(self.solved)
+        of, waiting = self.distribution, list(self.kinematics.solved)
         giving = {
             self.frame.velocities.index(each.solves): (each, row)
-            for each, row in zip(found.equations, found.A, strict=True)
+            for each, row in zip(of.equations, of.A, strict=True)
             if each.solves
         }
         while waiting:
@@ -155,48 +177,64 @@ class ConstrainedMotion(Kinematics):
             yield place, giving[place][0]
 
 
-def emission(
+def start_motion(setting: Setting) -> ConstrainedMotion:
+    """The motion of a system before a route has added to the kinematics."""
+    known = kinematics(setting)
+    assert known.definitions is not None, "they are decided first"
+    return ConstrainedMotion(known, known.decided.copy())
+
+
+def emit_motion(
     motion: ConstrainedMotion,
-    definitions: Sequence[Definition],
+    route: str,
     mass: Matrix,
     known: Sequence[Element],
-    reactions: Sequence[Definition],
-) -> Exact:
-    """The equations as a kernel computes them.
+    steps: Callable[[Exact], Iterable[Step]],
+    *,
+    named: Sequence[Definition] = (),
+    reactions: Sequence[Definition] = (),
+) -> Equations:
+    """The Equations as a kernel computes them.
 
     Args:
         motion: The kinematics.
-        definitions: What a route computes before the solve.
+        route: Name of the route.
         mass: The reduced mass matrix of eta.
         known: What it times ``d eta/dt`` is.
+        steps: The derivation; steps without lines are left out.
+        named: What the route computes before the solve, after the kinematics.
         reactions: What rests on the accelerations.
     """
-    setting = motion.frame.setting
-    field = setting.field
+    setting, of = motion.frame.setting, motion.distribution
+    field, definitions = setting.field, (*motion.kinematics.definitions, *named)
     _check_linear_in_reactions(motion, known)
     solves = motion.solves(mass, known)
     for solve in solves:
         _check_regular(motion, solve, definitions)
     solved = [line for solve in solves for line in solve_in_kernel(field, solve, motion.decided)]
-    moving = dict(zip(motion.distribution.independent, motion.accelerations, strict=True))
-    moving |= motion.position_rates
-    rates = tuple(moving[name] for name in setting.state)
+    moving = dict(zip(of.independent, motion.accelerations, strict=True))
+    moving |= motion.kinematics.position_rates
     energy = mechanics(setting).energy
-    closed = field.substitute(energy, motion.distribution.solved)
-    short = simplify_roots(
-        field, closed
-    )  # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    closed = field.substitute(energy, of.solved)
+    # sin^2 + cos^2 = 1, where velocities are along a turning frame
+    short = simplify_roots(field, closed)
     energy = short if len(field.terms(short)) < len(field.terms(closed)) else energy
-    residuals = tuple((e.name, e.residual) for e in motion.distribution.equations)
-    return Exact(
-        (*definitions, *solved, *motion.list_computed(reactions)),
-        rates,
-        energy,
-        list_emitted(setting, energy, reduced_momenta(motion.distribution)),
-        almost_poisson(setting),
-        solves,
-        residuals,
+    exact = Exact(
+        definitions=(*definitions, *solved, *motion.decided.list_computed(reactions)),
+        rates=tuple(moving[name] for name in setting.state),
+        energy=energy,
+        emitted=list_emitted(setting, energy, reduced_momenta(of)),
+        poisson_tensor=almost_poisson(setting),
+        solves=solves,
+        residuals=tuple((each.name, each.residual) for each in of.equations),
     )
+    shown = tuple(step for step in steps(exact) if step.lines)
+    return Equations(setting, route, exact, shown, distribution=of)
+
+
+def show_mass(mass: Matrix, text: str, latex: str) -> Step:
+    """The step that gives the reduced mass matrix."""
+    return write_step("Reduced mass matrix", text, latex, write_entries("M", mass))
 
 
 def _check_regular(

@@ -1,8 +1,8 @@
 r"""Values decided in the exact field before the kernel computes them.
 
 A value that is identically zero costs a kernel operations, and rounding turns it into ``1.9e-17``.
-Whether an intermediate vanishes shows only when the definitions on which it rests are put in:
-:math:`b_1 k_1 + b_2 k_2` with :math:`b = (r \cos\phi, r \sin\phi)`. To put everything in would be
+Whether an intermediate vanishes shows only when the definitions on which it rests are substituted:
+:math:`b_1 k_1 + b_2 k_2` with :math:`b = (r \cos\phi, r \sin\phi)`. To substitute all would be
 too much for six coupled velocities. So each value is first evaluated at two points modulo a prime,
 whose parameters agree: a value that is not zero there is not zero, and one that differs there
 depends on the state. The exact normal form is taken only of what is left, and it alone decides.
@@ -15,6 +15,7 @@ ask.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from copy import copy
 from math import prod
 
 from coadjoint.exact import Element, Field
@@ -65,6 +66,19 @@ class Decided:
         self._extend(name, value)
         return value
 
+    def list_computed(self, lines: Iterable[tuple[str, Element]]) -> list[tuple[str, Element]]:
+        """Definitions as the kernel computes them; intermediates that are zero are left out."""
+        noted = [(name, self.define(name, value)) for name, value in lines]
+        return [(name, value) for name, value in noted if value != 0 or not name.startswith("_")]
+
+    def copy(self) -> Decided:
+        """The same, to which further definitions may be added."""
+        twin = copy(self)
+        twin.numbers, twin._members = {**self.numbers}, {*self._members}
+        twin._definitions, twin._closed = {**self._definitions}, {**self._closed}
+        twin._points = None if self._points is None else [{**at} for at in self._points]
+        return twin
+
     def value(self, element: Element) -> Element:
         """The element, or what it is identically equal to: zero, or a value of parameters alone."""
         element = self.field.substitute(element, self.numbers)
@@ -80,11 +94,11 @@ class Decided:
         return closed if moves or closed == 0 else element
 
     def is_zero(self, element: Element) -> bool:
-        """Whether an element is zero once its definitions are put in."""
+        """Whether an element is zero once its definitions are substituted."""
         return bool(self.value(element) == 0)
 
     def close(self, element: Element) -> Element | None:
-        """The normal form of an element with all definitions put in; None where it is too long."""
+        """The normal form with all definitions substituted; None where it is too long."""
         inner = {}
         for name in self.field.reach(element) & self._definitions.keys():
             if name not in self._closed:
@@ -128,8 +142,8 @@ class Decided:
 
     def _extend(self, name: str, value: Element) -> None:
         """Give a definition its value at the points."""
-        for at, found in zip(self._points or (), self._values(value), strict=False):
-            at[name] = found
+        for at, residue_there in zip(self._points or (), self._values(value), strict=False):
+            at[name] = residue_there
 
     def _redraw(self) -> None:
         """Other points, with the values of the definitions; None where there were too many."""

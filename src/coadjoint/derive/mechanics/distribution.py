@@ -121,6 +121,14 @@ class Distribution:
         )
 
     @cached_property
+    def kept_rows(self) -> list[Row]:
+        """``(A, -b)`` of these constraints, in eta."""
+        field, names = self.setting.field, self.independent
+        rest = dict.fromkeys(names, field.zero)
+        residuals = [residual for _, residual in self.kept]
+        return [(*field.gradient(each, names), field.substitute(each, rest)) for each in residuals]
+
+    @cached_property
     def is_linear(self) -> bool:
         """Whether no constraint has an affine term: rest is allowed, and energy keeps its value."""
         field = self.setting.field
@@ -142,9 +150,9 @@ def distribution(setting: Setting) -> Distribution:
         for constraint in setting.spec.constraints
         for equation in _equations(setting, frame, constraint)
     ]
-    found = Distribution(frame, tuple(equations))
-    _check_rank(found)
-    return found
+    whole = Distribution(frame, tuple(equations))
+    _check_rank(whole)
+    return whole
 
 
 def _equations(setting: Setting, frame: Frame, constraint: Constraint) -> list[Equation]:
@@ -158,10 +166,10 @@ def _equations(setting: Setting, frame: Frame, constraint: Constraint) -> list[E
     variable = next((v for v in setting.spec.variables if v.name == constraint.solves), None)
     given = variable.components if variable is not None else ("",) * len(left)
     parts = zip(constraint.components, constraint.reactions, left, right, given, strict=True)
-    found = [Equation(name, reaction, a - b, solves) for name, reaction, a, b, solves in parts]
-    for equation in found:
+    equations = [Equation(name, reaction, a - b, solves) for name, reaction, a, b, solves in parts]
+    for equation in equations:
         _check_linear(setting, frame, constraint, equation)
-    return found
+    return equations
 
 
 def _check_linear(
@@ -194,25 +202,25 @@ def _check_linear(
         )
 
 
-def _check_rank(found: Distribution) -> None:
+def _check_rank(distribution: Distribution) -> None:
     """No constraint follows from those before it, or contradicts them."""
-    field = found.setting.field
-    rest = dict.fromkeys(found.frame.velocities, field.zero)
-    rows = [dict(enumerate(row)) for row in found.A]
-    last = len(found.frame.velocities)
+    field = distribution.setting.field
+    rest = dict.fromkeys(distribution.frame.velocities, field.zero)
+    rows = [dict(enumerate(row)) for row in distribution.A]
+    last = len(distribution.frame.velocities)
     whole = [
         row | {last: field.substitute(each.residual, rest)}
-        for row, each in zip(rows, found.equations, strict=True)
+        for row, each in zip(rows, distribution.equations, strict=True)
     ]
-    if _rank(found, rows) == len(rows):
+    if _rank(distribution, rows) == len(rows):
         return
     for count in range(1, len(rows) + 1):
-        if _rank(found, rows[:count]) == count:
+        if _rank(distribution, rows[:count]) == count:
             continue
-        equation = found.equations[count - 1]
-        inconsistent = _rank(found, whole[:count]) == count
-        constraint = _constraint_of(found, equation)
-        others = ", ".join(each.name for each in found.equations[: count - 1])
+        equation = distribution.equations[count - 1]
+        inconsistent = _rank(distribution, whole[:count]) == count
+        constraint = _constraint_of(distribution, equation)
+        others = ", ".join(each.name for each in distribution.equations[: count - 1])
         problem = (
             f"contradicts the constraints before it ({others}): it asks for another value of the "
             "same combination of velocities"
@@ -220,7 +228,7 @@ def _check_rank(found: Distribution) -> None:
             else f"follows from the constraints before it ({others})"
         )
         raise fault(
-            found.setting,
+            distribution.setting,
             constraint.left,
             f"the constraint {equation.name} {problem}; expected independent constraints. "
             f"Remove {equation.name}.",
@@ -228,11 +236,11 @@ def _check_rank(found: Distribution) -> None:
         )
 
 
-def _rank(found: Distribution, rows: Sequence[Mapping[int, Element]]) -> int:
+def _rank(distribution: Distribution, rows: Sequence[Mapping[int, Element]]) -> int:
     nonzero = [{k: entry for k, entry in row.items() if entry != 0} for row in rows]
-    return generic_rank(found.setting.field, nonzero)
+    return generic_rank(distribution.setting.field, nonzero)
 
 
-def _constraint_of(found: Distribution, equation: Equation) -> Constraint:
-    spec = found.setting.spec
+def _constraint_of(distribution: Distribution, equation: Equation) -> Constraint:
+    spec = distribution.setting.spec
     return next(each for each in spec.constraints if equation.name in each.components)

@@ -64,7 +64,7 @@ def names_inputs(setting: Setting, elements: Iterable[Element]) -> bool:
     )
 
 
-def turned_by_time(setting: Setting) -> list[str]:
+def list_time_reversed(setting: Setting) -> list[str]:
     """What changes its sign where a motion runs backwards: time, and rates of inputs.
 
     The rate of a rate keeps its value.

@@ -51,11 +51,11 @@ def symbols(spec: Spec) -> tuple[str, ...]:
 def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Element, ...]:
     """The declared force ``f - dR/dxi`` along each velocity."""
     field, spec = setting.field, setting.spec
-    found = dict.fromkeys(velocities, field.zero) | _declared_forces(setting, "velocity")
+    forces = dict.fromkeys(velocities, field.zero) | _declared_forces(setting, "velocity")
     if spec.dissipation is not None:
         lost = slopes(setting, spec.dissipation, velocities)
-        found = {name: found[name] - s for name, s in zip(velocities, lost, strict=True)}
-    return tuple(found[name] for name in velocities)
+        forces = {name: forces[name] - s for name, s in zip(velocities, lost, strict=True)}
+    return tuple(forces[name] for name in velocities)
 
 
 def _declared_forces(setting: Setting, *roles: str) -> dict[str, Element]:
@@ -115,21 +115,21 @@ def _name_rates(free: Equations) -> Equations:
 def added_rates(setting: Setting) -> list[Element]:
     """What the forces add to the rate of each component of the state."""
     field, velocities = setting.field, setting.velocities
-    found = _declared_forces(setting, "momentum", "coordinate")
+    added = _declared_forces(setting, "momentum", "coordinate")
     along = external_forces(setting, velocities)
     if setting.momenta and velocities:
         for name, force, weight in zip(setting.momenta, along, setting.weights, strict=True):
-            found[name] = found.get(name, field.zero) + force * weight
+            added[name] = added.get(name, field.zero) + force * weight
     elif any(along):
         moved = apply(mechanics(setting).inverse_mass, along)
-        found |= zip(velocities, moved, strict=True)
-    return [found.get(name, field.zero) for name in setting.state]
+        added |= zip(velocities, moved, strict=True)
+    return [added.get(name, field.zero) for name in setting.state]
 
 
 def metric(setting: Setting) -> Matrix:
     """G of the declared double or metriplectic bracket, with a row for each state component."""
     relaxation, field = setting.spec.relaxation, setting.field
-    assert relaxation is not None, "asked for only beside one"
+    assert relaxation is not None, "asked for only where a bracket dissipates"
     size, value = len(setting.state), setting.value(relaxation.G)
     if isinstance(value, tuple):
         return tuple(tuple(field.zero + x for x in entries(row)) for row in value)

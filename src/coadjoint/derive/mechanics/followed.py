@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.attitudes import quaternion, turning_places
 from coadjoint.derive.mechanics.distribution import Distribution
-from coadjoint.derive.mechanics.kinematics import Kinematics
+from coadjoint.derive.mechanics.kinematics import kinematics
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
@@ -28,12 +28,12 @@ from coadjoint.spec.model import Reconstructed
 from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT
 
 
-def rates_followed(setting: Setting, found: Distribution | None) -> tuple[tuple[str, Element], ...]:
+def rates_followed(setting: Setting, of: Distribution | None) -> tuple[tuple[str, Element], ...]:
     """Name and rate of every variable that is reconstructed, in order."""
     place: dict[str, Element] = {}
     if setting.spec.rolling is not None:
-        assert found is not None, "the reader asks for constraints beside [rolling]"
-        place = dict(zip(CONTACT, contact_rate(found), strict=False))  # without the height
+        assert of is not None, "the reader asks for constraints with [rolling]"
+        place = dict(zip(CONTACT, contact_rate(of), strict=False))  # without the height
     return tuple(
         pair
         for each in setting.spec.reconstruction
@@ -51,18 +51,18 @@ def _rate(setting: Setting, each: Reconstructed, place: dict[str, Element]) -> S
 def attitude_rate(setting: Setting, components: Sequence[str]) -> tuple[Element, ...]:
     """``dq/dt`` by the action of the rotations on unit quaternions."""
     places = turning_places(setting.algebra)
-    assert places is not None, "the reader asks for rotations beside an attitude"
+    assert places is not None, "the reader asks for rotations with an attitude"
     action = quaternion(algebra_by_name("so(3)"), setting.spec.invariance)
     turning = setting.elements([setting.velocities[n] for n in places])
     acted = action.act(turning, setting.elements(components))
     return tuple(setting.field.zero - setting.sign * x for x in acted)
 
 
-def contact_rate(found: Distribution) -> tuple[Element, ...]:
+def contact_rate(of: Distribution) -> tuple[Element, ...]:
     """``-O ds/dt``: the velocity of the point of contact in space, the height last."""
-    setting, motion = found.setting, Kinematics(found)
+    setting = of.setting
     q = Quaternion(*setting.elements(attitude_components(setting)))
-    carried = Quaternion.pure([motion.rate(x) for x in arm(setting)])
+    carried = Quaternion.pure([kinematics(setting).rate(x) for x in arm(setting)])
     return setting.field.vector((-(q * carried * q.conjugate)).vector)
 
 

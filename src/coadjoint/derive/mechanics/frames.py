@@ -16,13 +16,12 @@ Read next: `coadjoint.derive.mechanics.distribution`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.setting import Setting, list_components, once
 from coadjoint.exact import Element
-from coadjoint.spec import Variable
 
 #: Components along the velocities of a frame.
 Vector = tuple[Element, ...]
@@ -41,21 +40,16 @@ class Frame:
     @cached_property
     def velocities(self) -> tuple[str, ...]:
         """Names of all velocities: along the algebra, then of coordinates."""
-        setting = self.setting
+        setting, coordinates = self.setting, self.setting.spec.having_role("coordinate")
         if setting.spec.algebra is None:
             return setting.velocities
-        partners = (setting.spec.partner("velocity", q.name) for q in self._coordinates)
-        return (*setting.velocities, *(name for v in partners if v for name in v.components))
+        partners = (setting.spec.partner("velocity", q.name) for q in coordinates)
+        return (*setting.velocities, *list_components(filter(None, partners)))
 
     @cached_property
     def positions(self) -> tuple[str, ...]:
         """Names of what the velocities move."""
-        advected = (name for each in self.setting.advected for name in each.components)
-        return (*advected, *self.setting.positions)
-
-    @property
-    def _coordinates(self) -> tuple[Variable, ...]:
-        return self.setting.spec.having_role("coordinate")
+        return (*self.setting.advected_names, *self.setting.positions)
 
     @cached_property
     def _own(self) -> int:
@@ -88,12 +82,14 @@ class Frame:
 
     def structure(self, a: Sequence[Element], b: Sequence[Element]) -> Vector:
         """``a^i b^j [X_i, X_j]``: the bracket of vectors with constant components."""
-        setting = self.setting
-        zeros = [setting.field.zero] * (len(self.velocities) - self._own)
-        if not self._own:
-            return tuple(zeros)
-        found = setting.algebra.bracket(a[: self._own], b[: self._own])
-        return (*(setting.field.zero + setting.sign * x for x in found), *zeros)
+        own = self._own
+        return self._extend(self.setting.algebra.bracket(a[:own], b[:own]) if own else ())
+
+    def _extend(self, along: Sequence[Element | int]) -> Vector:
+        """Components along the algebra, of the sign of its side; zeros along coordinates."""
+        zero, sign = self.setting.field.zero, self.setting.sign
+        rest = [zero] * (len(self.velocities) - self._own)
+        return (*(zero + sign * x for x in along), *rest)
 
     def bracket(self, a: Sequence[Element], b: Sequence[Element]) -> Vector:
         """``[a, b]`` of vector fields whose components are functions of the positions."""
@@ -102,12 +98,10 @@ class Frame:
 
     def inertial(self, momenta: Sequence[Element], vector: Sequence[Element]) -> Vector:
         """``<p, [xi, X_k]>`` for every k."""
-        setting = self.setting
-        zeros = [setting.field.zero] * (len(self.velocities) - self._own)
-        if not self._own:
-            return tuple(zeros)
-        found = setting.algebra.ad_star(vector[: self._own], momenta[: self._own])
-        return (*(setting.field.zero + setting.sign * x for x in found), *zeros)
+        own = self._own
+        return self._extend(
+            self.setting.algebra.ad_star(vector[:own], momenta[:own]) if own else ()
+        )
 
     def slopes(self, function: Element) -> Vector:
         """``X_k f`` for every k."""
@@ -118,8 +112,3 @@ class Frame:
 def frame_of(setting: Setting) -> Frame:
     """The frame of a system."""
     return Frame(setting)
-
-
-def frame_rates(frame: Frame) -> Mapping[str, Element]:
-    """``dz/dt`` of every position in the velocities themselves."""
-    return frame.rates(frame.setting.elements(frame.velocities))

@@ -25,14 +25,14 @@ from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 def part_names(spec: Spec) -> dict[str, tuple[str, ...]]:
     """Names of the components of each part, by the definition that it is; empty without a frame."""
-    found: dict[str, tuple[str, ...]] = {}
+    names: dict[str, tuple[str, ...]] = {}
     count = 0
     for part in _parts(spec):
         assert part.shape is not None, "a part takes no arguments"
         size = len(component_names(part.name, part.shape))
-        found[part.name] = tuple(f"_a{count + n + 1}" for n in range(size))
+        names[part.name] = tuple(f"_a{count + n + 1}" for n in range(size))
         count += size
-    return found
+    return names
 
 
 @once
@@ -42,7 +42,7 @@ def parts(setting: Setting) -> tuple[tuple[str, Element], ...]:
     Raises:
         DerivationError: Division by zero or a singular inverse inside one.
     """
-    spec, found = setting.spec, list[tuple[str, Element]]()
+    spec, values = setting.spec, list[tuple[str, Element]]()
     named = part_names(spec)
     for part in _parts(spec):
         try:
@@ -51,8 +51,8 @@ def parts(setting: Setting) -> tuple[tuple[str, Element], ...]:
             key = f"definitions.{part.name}"
             message = f"{spec.path}: {key}: {error}"
             raise DerivationError(message, path=str(spec.path), key=key, found=part.text) from error
-        found += zip(named[part.name], entries(value), strict=True)
-    return tuple(found)
+        values += zip(named[part.name], entries(value), strict=True)
+    return tuple(values)
 
 
 def slopes(setting: Setting, function: Formula, velocities: Sequence[str]) -> tuple[Element, ...]:
@@ -90,7 +90,7 @@ def _values(setting: Setting) -> dict[str, Value]:
 
 
 def _tree(spec: Spec, text: str) -> Node:
-    """A formula with the definitions put in that are no parts."""
+    """A formula with the definitions substituted that are not parts."""
     known = {each.name: each for each in spec.definitions}
     shown = {name: each for name, each in known.items() if not _is_part(spec, each)}
     inner: dict[str, Definition] = {}
@@ -115,12 +115,12 @@ def _parts(spec: Spec) -> list[Definition]:
         return []
     acting = [*spec.forces.values(), *([spec.dissipation] if spec.dissipation else [])]
     used = set[str]().union(*(_names(_tree(spec, each.text)) for each in acting))
-    found = []
+    used_parts = []
     for each in reversed(spec.definitions):
         if each.name in used and _is_part(spec, each):
             used |= _names(_tree(spec, each.text))
-            found.append(each)
-    return found[::-1]
+            used_parts.append(each)
+    return used_parts[::-1]
 
 
 def _names(tree: Node) -> set[str]:

@@ -116,18 +116,18 @@ def body_of(setting: Setting) -> Body:
 
 def _planes(setting: Setting) -> list[tuple[Plane, Element]]:
     """The plane and the factor of each basis vector ``c (e_i e_j^T - e_j e_i^T)``, i < j."""
-    found: list[tuple[Plane, Element]] = []
+    planes: list[tuple[Plane, Element]] = []
     n = size(setting.algebra.matrices)
     for name, matrix in zip(setting.algebra.basis, setting.algebra.matrices, strict=False):
         entries = sorted(matrix.items())
         (place, c) = entries[0]
         if len(entries) != 2 or entries[1] != (place[::-1], -c):
             raise _no_so_n(setting, f"the matrix of {name} spans no plane", name)
-        found.append((place, setting.field.zero + c))
-    if not found or len(found) != n * (n - 1) // 2:
+        planes.append((place, setting.field.zero + c))
+    if not planes or len(planes) != n * (n - 1) // 2:
         problem = f"{setting.algebra.name} is not all of so(n) by its matrices"
         raise _no_so_n(setting, problem, setting.algebra.name)
-    return found
+    return planes
 
 
 def _no_so_n(setting: Setting, problem: str, found: str) -> DerivationError:
@@ -156,14 +156,14 @@ def _inertia(setting: Setting, planes: Sequence[tuple[Plane, Element]]) -> dict[
         moving = {each for entry in row for each in field.reach(entry)} - {*setting.parameters}
         coupled = [names[j] for j, entry in enumerate(row) if j != place and entry != 0]
         if first != 0 or moving or coupled or row[place] == 0:
-            found = list_names(coupled or sorted(moving) or [name])
+            guilty = list_names(coupled or sorted(moving) or [name])
             raise refusal(
                 setting,
                 ROUTE,
-                f"the kinetic energy of {name} depends on {found}"
+                f"the kinetic energy of {name} depends on {guilty}"
                 if coupled or moving
                 else f"the kinetic energy is no square of {name}",
-                found,
+                guilty,
                 "a sum over the planes of a square times a function of parameters",
                 "Choose axes that decouple the planes, or declare a pair under [lax].",
             )
@@ -290,13 +290,13 @@ def _share(setting: Setting, body: Body, a: Sequence[Element]) -> Element:
 
 def _texts(setting: Setting) -> tuple[str, str]:
     """The matrices M and Omega as a spec would write them."""
-    found = []
+    texts = []
     for role, otherwise in (("momentum", "M"), ("velocity", "Omega")):
         declared = setting.spec.having_role(role)
         name = declared[0].name if len(declared) == 1 else otherwise
         vector = len(declared) == 1 and not declared[0].form
-        found.append(f"hat({name})" if vector and setting.algebra.name == "so(3)" else name)
-    return found[0], found[1]
+        texts.append(f"hat({name})" if vector and setting.algebra.name == "so(3)" else name)
+    return texts[0], texts[1]
 
 
 def _diagonal_text(setting: Setting, values: Sequence[Element]) -> str:

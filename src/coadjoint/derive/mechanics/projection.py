@@ -22,8 +22,7 @@ from __future__ import annotations
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.kinematics import (
-    Kinematics,
-    kept_rows,
+    kinematics,
     multiplier_name,
     rate_name,
     shift_name,
@@ -34,16 +33,16 @@ from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 
 
-def nearest_state(setting: Setting, found: Distribution | None, exact: Exact) -> Exact | None:
+def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Exact | None:
     """The nearest state on the constraints, in place of the rates; None where none is kept.
 
     Definitions are those of the equations on which matrix and residuals rest, then the solve.
     """
-    if found is None or not found.kept:
+    if of is None or not of.kept:
         return None
     field = setting.field
-    shifts = {rate_name(v): shift_name(n) for n, v in enumerate(found.independent)}
-    sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(found))}
+    shifts = {rate_name(v): shift_name(n) for n, v in enumerate(of.independent)}
+    sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(of))}
     solves = tuple(
         Solve(
             solve.mirrored,  # without what forces add that are proportional to reactions
@@ -56,7 +55,7 @@ def nearest_state(setting: Setting, found: Distribution | None, exact: Exact) ->
     )
     moved = {name for solve in solves for name in solve.names}
     changes = {
-        v: field[shifts[rate_name(v)]] for v in found.independent if shifts[rate_name(v)] in moved
+        v: field[shifts[rate_name(v)]] for v in of.independent if shifts[rate_name(v)] in moved
     }
     needed = [e for solve in solves for row in (*solve.matrix, solve.known) for e in row]
     needed += [residual for _, residual in exact.residuals]
@@ -69,16 +68,9 @@ def nearest_state(setting: Setting, found: Distribution | None, exact: Exact) ->
     return Exact(tuple(definitions), state, None, (), None, solves, exact.residuals)
 
 
-def _residuals(found: Distribution) -> list[Element]:
+def _residuals(of: Distribution) -> list[Element]:
     """What vanishes on the constraints that are kept, in eta, with entries by their names."""
-    field, motion = found.setting.field, Kinematics(found)
-    eta = found.setting.elements(found.independent)
-    return [
-        field.sum(
-            [
-                *(motion.name_of_entry(a) * x for a, x in zip(row, eta, strict=True)),
-                motion.name_of_entry(b),
-            ]
-        )
-        for *row, b in kept_rows(found)
-    ]
+    field, eta = of.setting.field, of.setting.elements(of.independent)
+    name = kinematics(of.setting).name_of_entry
+    named = [[name(entry) for entry in row] for row in of.kept_rows]
+    return [field.sum([*(a * x for a, x in zip(row, eta, strict=True)), b]) for *row, b in named]

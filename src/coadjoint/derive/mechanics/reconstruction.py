@@ -42,12 +42,12 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
         turned = _turn(setting, Quaternion(*g), [mu[place] for place in places])
         along = dict(zip(places, turned, strict=True))
         return tuple(along.get(place, m) for place, m in enumerate(mu))
-    matrix = _whole(setting, g)
+    matrix = _complete(setting, g)
     outer, inner = inverse_of(setting.algebra, matrix), matrix
     if setting.sign == -1:
         outer, inner = inner, outer
     coordinates = _coordinates(setting.algebra)
-    found = []
+    components = []
     for X in setting.algebra.matrices:
         dense = tuple(
             tuple(setting.field.zero + X.get((i, j), 0) for j in range(len(matrix)))
@@ -57,8 +57,8 @@ def spatial_momentum(setting: Setting) -> tuple[Element, ...]:
         parts = [
             m * w * seen[i][j] for m, row in zip(mu, coordinates, strict=True) for i, j, w in row
         ]
-        found.append(setting.field.sum(parts))
-    return tuple(found)
+        components.append(setting.field.sum(parts))
+    return tuple(components)
 
 
 def _turn(setting: Setting, q: Quaternion, mu: Sequence[Element]) -> tuple[Element, ...]:
@@ -67,7 +67,7 @@ def _turn(setting: Setting, q: Quaternion, mu: Sequence[Element]) -> tuple[Eleme
     return setting.field.vector((outer * Quaternion.pure(mu) * inner).vector)
 
 
-def _whole(setting: Setting, entries: Sequence[Element]) -> Matrix:
+def _complete(setting: Setting, entries: Sequence[Element]) -> Matrix:
     """The attitude as a square matrix, its last row (0, ..., 0, 1) where that is fixed."""
     algebra, field = setting.algebra, setting.field
     n = size(algebra.matrices)
@@ -108,9 +108,9 @@ def _coordinates(algebra: LieAlgebra) -> list[list[tuple[int, int, object]]]:
             by_place.setdefault(place, {})[k] = value
     places = sorted(by_place)
     span = Span(by_place[place] for place in places)
-    found = []
+    rows = []
     for k in range(algebra.dimension):
         weights = span.coordinates({k: 1})
         assert weights is not None, "the matrices are a basis"
-        found.append([(*places[n], weight) for n, weight in weights.items()])
-    return found
+        rows.append([(*places[n], weight) for n, weight in weights.items()])
+    return rows

@@ -6,7 +6,7 @@ entry of L, D, y and z becomes a definition with a leading underscore, which no 
 it is never expanded, since the closed form of a sixth velocity would fill a book. The columns of
 W = L D are computed before they are divided, and a pivot that divides several has one reciprocal.
 A matrix that is not symmetric, as where friction is proportional to a reaction, is :math:`A = W U`
-with ones on the diagonal of U, whose rows are computed beside the columns of W; then ``W z = b``
+with ones on the diagonal of U, whose rows are computed with the columns of W; then ``W z = b``
 and ``U x = z``. For a symmetric one U is the transpose of L. Pivots are the same quotients of
 leading minors. What is identically zero in W, y, z or x is left out, and x is then 0.
 Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
@@ -197,8 +197,8 @@ class _Elimination:
 
     def _cancel(self, y: Element, place: int) -> Element | None:
         """``y/d`` where that leaves no quotient, as of a mass that forces are multiples of."""
-        found = y / dict(self.lines)[pivot_name(place)]
-        return None if any(each.divisors for each in self.field.quotients(found)) else found
+        quotient = y / dict(self.lines)[pivot_name(place)]
+        return None if any(each.divisors for each in self.field.quotients(quotient)) else quotient
 
     def _entry(self, name: str, value: Element) -> Element:
         """An entry of W, L or U by its name, or by that of an entry it is up to its sign."""
@@ -230,33 +230,33 @@ def definitions_under(
 ) -> list[Definition]:
     """The definitions on which elements rest, in their order."""
     wanted = frozenset[str]().union(*map(field.reach, elements))
-    found = []
+    needed = []
     for name, value in reversed(definitions):
         if name in wanted:
             wanted |= field.reach(value)
-            found.append((name, value))
-    return found[::-1]
+            needed.append((name, value))
+    return needed[::-1]
 
 
 def factors(
     field: Field, solve: Solve, definitions: Mapping[str, Element]
 ) -> dict[tuple[int, int], Element]:
     """L below the diagonal, U above it, one over D on it, by their names; zeros are left out."""
-    found = {}
+    entries = {}
     for i, row in enumerate(solve.block):
         pivot, one = definitions[pivot_name(row)], reciprocal_name(row)
-        found[i, i] = field[one] if one in definitions else 1 / pivot
+        entries[i, i] = field[one] if one in definitions else 1 / pivot
         for k, column in enumerate(solve.block[:i]):
             name = factor_name(row, column)
             if name in definitions:
                 value = definitions[name]
-                found[i, k] = value if _is_leaf(field, value) else field[name]
-                found[k, i] = found[i, k]
+                entries[i, k] = value if _is_leaf(field, value) else field[name]
+                entries[k, i] = entries[i, k]
             if not solve.symmetric and (own := column_name(row, column)) in definitions:
-                found[i, k] = field[own] * found[k, k]
+                entries[i, k] = field[own] * entries[k, k]
             if not solve.symmetric and (own := upper_name(column, row)) in definitions:
-                found[k, i] = field[own]
-    return found
+                entries[k, i] = field[own]
+    return entries
 
 
 def _is_leaf(field: Field, value: Element) -> bool:
@@ -279,15 +279,15 @@ def solution_defects(
     """Entries of ``W - L D``, ``W U - A``, ``W z - b``, ``D z - y``, ``U x - z``.
 
     All are 0 for a solution; U is the transpose of L where A is symmetric, and else there is no L.
-    In each entry the name that is defined last is replaced by its
-    definition, and reciprocals of pivots are: that is enough for a proof, and no closed form is
-    written out. Only where something was left out as identically zero, all definitions are put in.
+    In each entry the name that is defined last is replaced by its definition, and reciprocals of
+    pivots are: that is enough for a proof, and no closed form is written out. Only where something
+    was left out as identically zero, all definitions are substituted.
     """
     return _Defects(field, solve, definitions).entries()
 
 
 class _Defects:
-    """The equations of `solution_defects`, with the definitions put in as far as is needed."""
+    """The equations of `solution_defects`, with the definitions substituted as far as is needed."""
 
     def __init__(self, field: Field, solve: Solve, definitions: Mapping[str, Element]) -> None:
         self.field, self.solve, self.definitions = field, solve, definitions
@@ -329,27 +329,27 @@ class _Defects:
         field, block, size = self.field, self.solve.block, self._size
         z = [self._value(scaled_name(place)) for place in block]
         x = [field[name] for name in self.solve.names]
-        found = []
+        defects = []
         for i in size:
             for j in size[:i] if self.solve.symmetric else ():
                 own = factor_name(block[i], block[j])
-                found.append((own, self._w(i, j) - self._l(i, j) * self._d[j]))
+                defects.append((own, self._w(i, j) - self._l(i, j) * self._d[j]))
             for j in size[: i + 1] if self.solve.symmetric else size:
                 last = min(i, j)
                 total = field.sum(self._w(i, k) * self._u(k, j) for k in size[: last + 1])
                 own = pivot_name(block[i]) if i == j else column_name(block[i], block[j])
                 own = upper_name(block[i], block[j]) if i < j else own
-                found.append((own, total - self.solve.matrix[i][j]))
+                defects.append((own, total - self.solve.matrix[i][j]))
             y, own = self._d[i] * z[i], scaled_name(block[i])
             if forward_name(block[i]) in self.definitions:
                 y = field[forward_name(block[i])]
-                found.append((own, self._d[i] * z[i] - y))
+                defects.append((own, self._d[i] * z[i] - y))
                 own = forward_name(block[i])
             before = field.sum(self._w(i, k) * z[k] for k in size[:i])
-            found.append((own, before + y - self.solve.known[i]))
+            defects.append((own, before + y - self.solve.known[i]))
             total = field.sum(self._u(i, k) * x[k] for k in size[i:])
-            found.append((self.solve.names[i], total - z[i]))
-        return [self._decide(last, defect) for last, defect in found]
+            defects.append((self.solve.names[i], total - z[i]))
+        return [self._decide(last, defect) for last, defect in defects]
 
     def _reduce(self, last: str, element: Element) -> Element:
         """An element with one name and the reciprocals replaced by their definitions."""

@@ -25,7 +25,7 @@ from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import leave_route
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec import Spec
@@ -50,15 +50,15 @@ def derive(setting: Setting) -> Equations:
     q = Quaternion(alpha, *chi)
     rates = zip((*setting.positions, *own), (*v, *(source - q * q).components), strict=True)
     relation = Relation("chi . r = 0", dot(chi, r))
-    found = in_chart(
+    motion = in_chart(
         setting, ROUTE, dict(rates), moved, "v = alpha r + chi x r", relations=[relation]
     )
-    return replace(found, steps=_steps(found, v, source))
+    return replace(motion, steps=_steps(motion, v, source))
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """``alpha`` and the three components of ``chi``."""
-    return fresh(spec, ("alpha", "chi1", "chi2", "chi3"))
+    return choose_names(spec, ("alpha", "chi1", "chi2", "chi3"))
 
 
 def _check_particle(setting: Setting) -> None:
@@ -76,7 +76,7 @@ def _check_particle(setting: Setting) -> None:
         )
 
 
-def _steps(found: Equations, v: Vector, source: Quaternion) -> tuple[Step, ...]:
+def _steps(motion: Equations, v: Vector, source: Quaternion) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     return (
         write_step(
@@ -95,6 +95,6 @@ def _steps(found: Equations, v: Vector, source: Quaternion) -> tuple[Step, ...]:
             "Riccati equation of quaternions",
             "dr/dt = v,  d[alpha, chi]/dt = [beta, psi] - [alpha, chi]^2",
             r"\dot r = v, \quad \frac{d}{dt}[\alpha, \chi] = [\beta, \psi] - [\alpha, \chi]^2",
-            write_rates(found.variables, found.exact.rates),
+            write_rates(motion.variables, motion.exact.rates),
         ),
     )

@@ -8,10 +8,10 @@ Lagrangian turns its equations into
 
 where B is zero unless the spec declares magnetic terms :math:`\{p_i, p_j\} = B_{ij}(q)` (exercise
 3.1.39). Where the state has velocities and no momenta, the route moves momenta of its own,
-:math:`p = \partial l / \partial v`. An entry of symmetric matrices beside the diagonal is paired
+:math:`p = \partial l / \partial v`. An entry of symmetric matrices off the diagonal is paired
 twice by :math:`\mathrm{tr}(P\,dS/dt)`, so its two equations have a factor 1/2.
 Comes in: a Setting with a Hamiltonian or a Lagrangian. Goes out: Equations.
-Read next: `coadjoint.derive.routes.newton`, which knows no energy.
+Read next: `coadjoint.derive.routes.newton`, which needs no energy.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -74,7 +74,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     if spec.poisson is not None or spec.having_role("momentum"):
         return ()
     coordinates = spec.having_role("coordinate")
-    return fresh(spec, [f"p_{name}" for q in coordinates for name in q.components])
+    return choose_names(spec, [f"p_{name}" for q in coordinates for name in q.components])
 
 
 def _pairs(setting: Setting) -> list[Pair]:
@@ -89,11 +89,11 @@ def _pairs(setting: Setting) -> list[Pair]:
 def _magnetic(setting: Setting) -> Magnetic:
     """The declared magnetic terms."""
     bracket, names = setting.spec.poisson, setting.state
-    found: dict[tuple[str, str], Element] = {}
+    terms: dict[tuple[str, str], Element] = {}
     for i, j, formula in bracket.entries if bracket is not None else ():
         value = setting.formula(formula)
-        found |= {(names[i], names[j]): value, (names[j], names[i]): -value}
-    return found
+        terms |= {(names[i], names[j]): value, (names[j], names[i]): -value}
+    return terms
 
 
 def _hamilton(
@@ -145,14 +145,14 @@ def _in_own_momenta(setting: Setting) -> Equations:
     for name, force in zip(own, external_forces(setting, setting.velocities), strict=True):
         named[name] += field.substitute(force, solved)
     rates = {x: named[x] for x in variables}
-    found = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
+    motion = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
     transform = write_step(
         "Legendre transform",
         "v solved from p = dl/dv",
         r"p = \partial l / \partial v",
         solved,
     )
-    return replace(found, steps=(transform, *_steps(variables, h, slopes, found.exact.rates)))
+    return replace(motion, steps=(transform, *_steps(variables, h, slopes, motion.exact.rates)))
 
 
 def _steps(

@@ -38,7 +38,7 @@ from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec import Spec
@@ -53,7 +53,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     if _declared_quaternion(spec) is not None:
         return ()
     fixed = [f"{v.name}_space{n + 1}" for v in spec.having_role("advected") for n in range(3)]
-    return fresh(spec, ["q0", "q1", "q2", "q3", *fixed])
+    return choose_names(spec, ["q0", "q1", "q2", "q3", *fixed])
 
 
 def _declared_quaternion(spec: Spec) -> Variable | None:
@@ -173,7 +173,7 @@ def _slopes(body: _Body, lagrangian: Element) -> Quaternion:
     slopes = field.gradient(lagrangian, names)
     dl_da = dict(zip(names, (field.substitute(s, image) for s in slopes), strict=True))
     pi = setting.elements(setting.momenta)
-    found = []
+    slopes_along = []
     for h in Quaternion.units():  # e = q h, so these are the components of q* dL/dq
         turn = body.product(h, body.omega)
         total = [-mu * x for mu, x in zip(pi, turn.vector, strict=True)]
@@ -183,15 +183,17 @@ def _slopes(body: _Body, lagrangian: Element) -> Quaternion:
                 change = (body.product(a, h) - body.product(h, a)).vector
                 pairs = zip(variable.components, change, strict=True)
                 total += [dl_da[name] * x for name, x in pairs]
-        found.append(field.sum(field.zero + x for x in total))
+        slopes_along.append(field.sum(field.zero + x for x in total))
     declared = _declared_quaternion(setting.spec)
     if declared is not None:  # l may know the attitude itself
         own = Quaternion(*field.gradient(lagrangian, declared.components))
-        found = [
+        slopes_along = [
             f + x
-            for f, x in zip(found, body.product(body.q.conjugate, own).components, strict=True)
+            for f, x in zip(
+                slopes_along, body.product(body.q.conjugate, own).components, strict=True
+            )
         ]
-    return Quaternion(*found)
+    return Quaternion(*slopes_along)
 
 
 def _momentum_rate(body: _Body, slopes: Quaternion) -> tuple[Element, ...]:
@@ -209,7 +211,7 @@ def _momentum_rate(body: _Body, slopes: Quaternion) -> tuple[Element, ...]:
 def _advection(body: _Body) -> dict[str, tuple[Element, ...]]:
     """``dq/dt`` and ``da/dt = (a Omega - Omega a)/2`` in the declared state."""
     field = body.setting.field
-    found = {
+    rates = {
         name: field.vector(
             (HALF * (body.product(a, body.omega) - body.product(body.omega, a))).vector
         )
@@ -217,7 +219,7 @@ def _advection(body: _Body) -> dict[str, tuple[Element, ...]]:
     }
     declared = _declared_quaternion(body.setting.spec)
     assert declared is not None, "the chart has no advected quantities"
-    return found | {declared.name: field.vector(body.q_rate.components)}
+    return rates | {declared.name: field.vector(body.q_rate.components)}
 
 
 def _in_chart(body: _Body, momentum_rate: tuple[Element, ...]) -> Equations:

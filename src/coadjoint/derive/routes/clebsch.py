@@ -34,7 +34,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 from coadjoint.spec.model import component_names
@@ -46,9 +46,9 @@ _Pair = tuple[tuple[str, ...], tuple[str, ...], Representation]
 def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the momenta, ``p_Gamma1``, and of a pair of its own, ``Q1`` and ``P1``."""
     advected = [name for each in spec.having_role("advected") for name in each.components]
-    own = _own(spec)
+    own = _find_own_action(spec)
     pair = () if own is None else _pair_names(spec, (own.dimension,))
-    return (*fresh(spec, [f"p_{name}" for name in advected]), *pair)
+    return (*choose_names(spec, [f"p_{name}" for name in advected]), *pair)
 
 
 def _pair_names(spec: Spec, shape: tuple[int]) -> tuple[str, ...]:
@@ -57,11 +57,11 @@ def _pair_names(spec: Spec, shape: tuple[int]) -> tuple[str, ...]:
         [name for letter in letters for name in component_names(letter, shape)]
         for letters in ("QP", "qp")
     )
-    return tuple(large) if fresh(spec, large) == tuple(large) else fresh(spec, small)
+    return tuple(large) if choose_names(spec, large) == tuple(large) else choose_names(spec, small)
 
 
-def _own(spec: Spec) -> Representation | None:
-    """The representation of the pair beside the advected quantities, if there is one."""
+def _find_own_action(spec: Spec) -> Representation | None:
+    """The representation of the pair next to the advected quantities, if there is one."""
     assert spec.algebra is not None, "the reader asks for an algebra on this route"
     if spec.clebsch is None and not spec.having_role("advected"):
         return adjoint(spec.algebra)
@@ -74,7 +74,7 @@ def _pairs(setting: Setting) -> list[_Pair]:
     for variable in setting.advected:
         q = variable.components
         pairs.append((q, tuple(islice(names, len(q))), setting.actions[variable.name]))
-    own = _own(setting.spec)
+    own = _find_own_action(setting.spec)
     if own is not None:
         q, p = (tuple(islice(names, own.dimension)) for _ in "QP")
         pairs.append((q, p, own.over(setting.take_constant, setting.algebra)))
@@ -91,7 +91,7 @@ def derive(setting: Setting) -> Equations:
     q = tuple(name for each, _, _ in pairs for name in each)
     p = tuple(name for _, each, _ in pairs for name in each)
     pairing = _pairing(setting, pairs)
-    action = lagrangian + pairing  # what stands beside <p, dq/dt>
+    action = lagrangian + pairing  # what is added to <p, dq/dt>
     rates = dict(zip(q, (-slope for slope in field.gradient(action, p)), strict=True))
     rates |= zip(p, field.gradient(action, q), strict=True)
     momentum = tuple(-slope for slope in field.gradient(pairing, setting.velocities))
@@ -99,8 +99,8 @@ def derive(setting: Setting) -> Equations:
     transform = legendre(setting)
     velocities = tuple((name, field.substitute(x, image)) for name, x in transform.definitions)
     through = _through(setting, pairs)
-    found = in_chart(setting, "clebsch", rates, image, through, definitions=velocities)
-    return replace(found, steps=_steps(found, action, image))
+    motion = in_chart(setting, "clebsch", rates, image, through, definitions=velocities)
+    return replace(motion, steps=_steps(motion, action, image))
 
 
 def _pairing(setting: Setting, pairs: list[_Pair]) -> Element:
@@ -122,7 +122,7 @@ def _through(setting: Setting, pairs: list[_Pair]) -> str:
     sign = "" if setting.sign == 1 else "-"
     terms = []
     for q, p, _ in pairs:
-        q_name, p_name = (_whole(names) for names in (q, p))
+        q_name, p_name = (_find_stem(names) for names in (q, p))
         if crossed:
             terms.append(" x ".join((p_name, q_name) if setting.sign == 1 else (q_name, p_name)))
         else:
@@ -130,7 +130,7 @@ def _through(setting: Setting, pairs: list[_Pair]) -> str:
     return f"{mu} = {' + '.join(terms)}"
 
 
-def _whole(names: tuple[str, ...]) -> str:
+def _find_stem(names: tuple[str, ...]) -> str:
     """The name of a quantity from those of its components."""
     first = names[0]
     stem = first.rstrip("0123456789_")
@@ -144,12 +144,12 @@ def _turns_vectors(setting: Setting, action: Representation) -> bool:
     return plain and tuple(map(dict, action.matrices)) == tuple(map(dict, rotations))
 
 
-def _steps(found: Equations, action: Element, image: Mapping[str, Element]) -> tuple[Step, ...]:
+def _steps(motion: Equations, action: Element, image: Mapping[str, Element]) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    setting, exact, n = found.setting, found.exact, len(found.variables) // 2
+    setting, exact, n = motion.setting, motion.exact, len(motion.variables) // 2
     sign = "+" if setting.sign == 1 else "-"
     turn, back = ("", "-") if setting.sign == 1 else ("-", "")
-    lines = tuple(write_rates(found.variables, exact.rates))
+    lines = tuple(write_rates(motion.variables, exact.rates))
     return (
         write_step(
             "Clebsch action",

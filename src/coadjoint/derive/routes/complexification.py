@@ -92,8 +92,8 @@ def real_algebra(setting: Setting) -> LieAlgebra:
 def _at_real(setting: Setting, h: Element, real: LieAlgebra) -> Element:
     """The Hamiltonian of the real system: h at y = 0."""
     still = dict.fromkeys(setting.momenta[real.dimension :], setting.field.zero)
-    found = setting.field.substitute(h, still)
-    if not setting.field.is_function_free(found):
+    real_part = setting.field.substitute(h, still)
+    if not setting.field.is_function_free(real_part):
         raise refusal(
             setting,
             ROUTE,
@@ -101,7 +101,7 @@ def _at_real(setting: Setting, h: Element, real: LieAlgebra) -> Element:
             str(setting.spec.hamiltonian and setting.spec.hamiltonian.text),
             "a rational function of the momenta",
         )
-    return found
+    return real_part
 
 
 def _momenta(setting: Setting, real: LieAlgebra) -> tuple[Complex, ...]:

@@ -14,7 +14,7 @@ which for a kinetic energy alone is the geodesic equation :math:`\dot v^c = -\Ga
 (section 2.2.4). Where l depends on time explicitly, :math:`-\partial^2 l/\partial v\,\partial t`
 stands on the right side, too.
 Comes in: a Setting with a Lagrangian and no algebra. Goes out: Equations.
-Read next: `coadjoint.derive.routes.canonical`, the other road.
+Read next: `coadjoint.derive.routes.canonical`, the same motion from a Hamiltonian.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ a left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
 and a right-invariant one the same with the opposite sign of the right-hand sides.
 Comes in: a Setting with a Lagrangian. Goes out: Equations in the momenta :math:`\mu = \partial
 l/\partial\xi`, with the velocities as definitions. Read next:
-`coadjoint.derive.routes.lie_poisson`, the other road to the same motion.
+`coadjoint.derive.routes.lie_poisson`, the same motion from a Hamiltonian.
 """
 
 from __future__ import annotations

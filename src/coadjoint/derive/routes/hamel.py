@@ -1,7 +1,7 @@
 r"""Hamel's route: the constrained Lagrangian with the gyroscopic force that it misses.
 
 Theorem (Hamel 1904; Holm 2011, section 12.3.3): let :math:`l_c(\eta, z) = l(B\eta + \beta, z)` be
-the Lagrangian with the constraints put in. The motion is not that of :math:`l_c`: with
+the Lagrangian with the constraints substituted. The motion is not that of :math:`l_c`: with
 :math:`D_k = B_k^l X_l` the fields of the distribution,
 
 .. math::
@@ -12,23 +12,26 @@ where :math:`[\xi, D_k]` gains :math:`\partial D_k/\partial t` if the constraint
 the brackets of the fields leave the distribution unless the constraints are integrable, so
 that the momentum on the right is that of the whole Lagrangian.
 Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
-Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
+Read next: `coadjoint.derive.routes.nonholonomic`, which projects the forces.
 """
 
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
-from coadjoint.derive.mechanics.distribution import Row, distribution
+from coadjoint.derive.mechanics.constrained import (
+    ConstrainedMotion,
+    emit_motion,
+    show_mass,
+    start_motion,
+)
+from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.external import external_forces
-from coadjoint.derive.mechanics.kinematics import Matrix, symbols
-from coadjoint.derive.records import Step, component, partial, symbol
+from coadjoint.derive.mechanics.kinematics import Matrix
+from coadjoint.derive.records import Step, component, write_slopes, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-
-__all__ = ["derive", "symbols"]
 
 
 def derive(setting: Setting) -> Equations:
@@ -37,32 +40,31 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: As on the route nonholonomic.
     """
-    found = distribution(setting)
-    motion = ConstrainedMotion(found)
-    constrained = setting.field.substitute(setting.lagrangian, found.solved)
-    momenta = setting.field.gradient(constrained, found.independent)
-    mass = tuple(setting.field.gradient(p, found.independent) for p in momenta)
+    motion = start_motion(setting)
+    names = motion.distribution.independent
+    constrained = setting.field.substitute(setting.lagrangian, motion.distribution.solved)
+    momenta = setting.field.gradient(constrained, names)
+    mass = tuple(setting.field.gradient(p, names) for p in momenta)
     known = _right_side(motion, constrained, momenta)
-    exact = emission(motion, motion.kinematics, mass, known, ())
     steps = _steps(motion, constrained, momenta, mass, known)
-    return Equations(setting, "hamel", exact, steps, distribution=found)
+    return emit_motion(motion, "hamel", mass, known, lambda _: steps)
 
 
 def _right_side(motion: ConstrainedMotion, constrained: Element, momenta: Row) -> Row:
     """``D_k l_c + <p, [xi, D_k]> + B_k f - dp_c/dz dz/dt``."""
-    found, frame = motion.distribution, motion.frame
+    of, frame = motion.distribution, motion.frame
     field = frame.setting.field
-    p = [field.substitute(slope, found.solved) for slope in mechanics(frame.setting).momenta]
+    p = [field.substitute(slope, of.solved) for slope in mechanics(frame.setting).momenta]
     acting = external_forces(frame.setting, frame.velocities)
-    forces = [field.substitute(force, found.solved) for force in acting]
+    forces = [field.substitute(force, of.solved) for force in acting]
     known = []
     for k, momentum in enumerate(momenta):
-        D = [row[k] for row in found.B]
+        D = [row[k] for row in of.B]
         own = (explicit_rate(frame.setting, d, "a constraint") for d in D)
-        turned = [a + b for a, b in zip(frame.bracket(found.xi, D), own, strict=True)]
+        turned = [a + b for a, b in zip(frame.bracket(of.xi, D), own, strict=True)]
         gyroscopic = field.sum(a * b for a, b in zip(p, turned, strict=True) if a and b)
         driven = field.sum(b * f for b, f in zip(D, forces, strict=True) if b and f)
-        carried = frame.along(found.xi, momentum)
+        carried = frame.along(of.xi, momentum)
         carried += explicit_rate(frame.setting, momentum, "a momentum")
         known.append(frame.along(D, constrained) + gyroscopic + driven - carried)
     return tuple(known)
@@ -72,38 +74,25 @@ def _steps(
     motion: ConstrainedMotion, constrained: Element, momenta: Row, mass: Matrix, known: Row
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    names = motion.distribution.independent
     return (
-        Step(
+        write_step(
             "Constrained Lagrangian",
             "l_c(eta, z) = l(B eta + beta, z)",
             r"l_c(\eta, z) = l(B\eta + \beta, z)",
-            ((symbol("l_c"), constrained),),
+            {"l_c": constrained},
         ),
-        Step(
+        write_step(
             "Its momenta",
             "dl_c/deta",
             r"\partial l_c / \partial \eta",
-            tuple(zip((partial("l_c", name) for name in names), momenta, strict=True)),
+            write_slopes("l_c", motion.distribution.independent, momenta),
         ),
-        Step(
-            "Reduced mass matrix",
-            "d2l_c/deta2",
-            r"\partial^2 l_c / \partial \eta^2",
-            tuple(
-                (symbol(f"M_{i + 1}{j + 1}"), entry)
-                for i, row in enumerate(mass)
-                for j, entry in enumerate(row)
-                if j >= i and entry != 0
-            ),
-        ),
-        Step(
+        show_mass(mass, "d2l_c/deta2", r"\partial^2 l_c / \partial \eta^2"),
+        write_step(
             "Hamel's equations, solved for the accelerations in the kernel",
             "d/dt dl_c/deta_k = D_k l_c + <p, [xi, D_k]> + B_k f",
             r"\frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} = D_k l_c + \langle p, [\xi, D_k] "
             r"\rangle + B_k f",
-            tuple(
-                (component("M eta'", r"M \dot\eta", n), value) for n, value in enumerate(known, 1)
-            ),
+            ((component("M eta'", r"M \dot\eta", n), value) for n, value in enumerate(known, 1)),
         ),
     )

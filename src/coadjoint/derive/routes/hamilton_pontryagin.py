@@ -30,7 +30,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emit_in_momenta, show_momenta, show_velocities
 from coadjoint.derive.records import Step, write_rates, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -39,7 +39,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     """Exponential coordinates of the group and their rates: ``eps1``, ``deps1``."""
     assert spec.algebra is not None, "the reader asks for an algebra on this route"
     numbers = range(1, spec.algebra.dimension + 1)
-    return fresh(spec, [f"{letter}{n}" for letter in ("eps", "deps") for n in numbers])
+    return choose_names(spec, [f"{letter}{n}" for letter in ("eps", "deps") for n in numbers])
 
 
 def derive(setting: Setting) -> Equations:
@@ -113,25 +113,25 @@ def momentum_equation(setting: Setting, action: Action) -> tuple[Element, ...]:
     """
     field = setting.field
     forces = field.gradient(action.integrand, action.coordinates)
-    found = []
+    rates = []
     for name, force in zip(action.rates, forces, strict=True):
         slopes = field.gradient(field.derivative(action.integrand, name), action.coordinates)
         carried = (s * field[xi] for s, xi in zip(slopes, action.rates, strict=True))
-        found.append(_at_the_motion(setting, action, force - field.sum(carried)))
-    return tuple(found)
+        rates.append(_at_the_motion(setting, action, force - field.sum(carried)))
+    return tuple(rates)
 
 
 def advection(setting: Setting, action: Action) -> dict[str, list[Element]]:
     """``da/dt`` along ``g0 exp(eps)`` with eps' = xi, per advected quantity."""
     field = setting.field
 
-    def carried(name: str) -> Element:
+    def advect(name: str) -> Element:
         slopes = field.gradient(action.moved[name], action.coordinates)
         pairs = zip(slopes, setting.elements(setting.velocities), strict=True)
         total = field.sum(slope * xi for slope, xi in pairs if slope)
         return _at_the_motion(setting, action, total)
 
-    return {each.name: [carried(name) for name in each.components] for each in setting.advected}
+    return {each.name: [advect(name) for name in each.components] for each in setting.advected}
 
 
 def _steps(setting: Setting, action: Action, rates: tuple[Element, ...]) -> tuple[Step, ...]:

@@ -1,6 +1,6 @@
 r"""The Kaluza-Klein route: a potential linear in an advected quantity as geodesic motion.
 
-Theorem (Holm 2011, section 8.5): with cyclic coordinates q beside the group, the Lagrangian
+Theorem (Holm 2011, section 8.5): with cyclic coordinates q next to the group, the Lagrangian
 
 .. math::
     l_{KK}(\xi, a, \dot q) = T(\xi) + \tfrac12 |\dot q + a|^2
@@ -38,7 +38,7 @@ from coadjoint.derive.records import (
 )
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.symbols import fresh
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import Vector, add, dot, scale, subtract
 from coadjoint.spec import Spec
@@ -51,7 +51,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the velocities of the cyclic coordinates, then of their momenta."""
     count = sum(len(variable.components) for variable in spec.having_role("advected"))
     wanted = [name for letter in ("qdot", "p") for name in component_names(letter, (count,))]
-    return fresh(spec, wanted)
+    return choose_names(spec, wanted)
 
 
 def derive(setting: Setting) -> Equations:
@@ -61,7 +61,7 @@ def derive(setting: Setting) -> Equations:
         DerivationError: Nothing is advected, or the Lagrangian is not linear in it, with slopes
             that are the same at all times.
     """
-    lagrangian, names = setting.lagrangian, _advected_names(setting)
+    lagrangian, names = setting.lagrangian, setting.advected_names
     level = _level(setting, lagrangian, names)
     field, a = setting.field, setting.elements(names)
     velocities, momenta = _cyclic(setting)
@@ -82,7 +82,7 @@ def derive(setting: Setting) -> Equations:
         Relation(f"{name} = {element_text(field, value)}", field[name] - value)
         for name, value in zip(momenta, level, strict=True)
     ]
-    found = in_chart(
+    motion = in_chart(
         setting,
         ROUTE,
         rates,
@@ -92,12 +92,7 @@ def derive(setting: Setting) -> Equations:
         definitions=transform.definitions,
         energy=energy,
     )
-    return replace(found, steps=_steps(found, whole, solved, level))
-
-
-def _advected_names(setting: Setting) -> tuple[str, ...]:
-    """Names of all that is advected, component by component."""
-    return tuple(name for variable in setting.advected for name in variable.components)
+    return replace(motion, steps=_steps(motion, whole, solved, level))
 
 
 def _cyclic(setting: Setting) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -114,7 +109,7 @@ def _level(setting: Setting, lagrangian: Element, names: tuple[str, ...]) -> Vec
             ROUTE,
             "nothing is advected",
             setting.spec.name,
-            "an advected quantity, beside which a cyclic coordinate turns the potential into "
+            "an advected quantity, with which a cyclic coordinate turns the potential into "
             "kinetic energy; without a potential the motion is geodesic already",
         )
     slopes = setting.field.gradient(lagrangian, names)
@@ -160,10 +155,10 @@ def _rates(setting: Setting, forces: list[Element]) -> tuple[Element, ...]:
 
 
 def _steps(
-    found: Equations, whole: Element, solved: dict[str, Element], level: Vector
+    motion: Equations, whole: Element, solved: dict[str, Element], level: Vector
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    setting, energy = found.setting, found.exact.energy
+    setting, energy = motion.setting, motion.exact.energy
     assert energy is not None, "this route has one"
     back = "-" if setting.sign == 1 else ""
     work = sign_text(setting.sign, "<mu, [xi, eta]> - p . rho(eta) a")
@@ -193,7 +188,7 @@ def _steps(
             f"<dmu/dt, eta> = {work},  da/dt = {back}rho(xi) a,  dp/dt = 0",
             rf"\langle\dot\mu, \eta\rangle = {work_latex}, \quad "
             rf"\dot a = {back}\rho(\xi) a, \quad \dot p = 0",
-            write_rates(found.variables, found.exact.rates),
+            write_rates(motion.variables, motion.exact.rates),
         ),
         write_step(
             "Level set of the conserved momentum",

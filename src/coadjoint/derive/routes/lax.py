@@ -94,17 +94,17 @@ def _entries(pair: LaxPair) -> dict[str, Element]:
 
 def _integrals(setting: Setting) -> Step:
     """The integrals that are emitted."""
-    found = lax_integrals(setting)
-    assert found is not None, "there is a pair"
+    integrals = lax_integrals(setting)
+    assert integrals is not None, "there is a pair"
     words = ", ".join(
-        f"integral{n} from tr L^{each.trace} at {found.pair.spectral}^{each.power}"
-        for n, each in enumerate(found.emitted, 1)
+        f"integral{n} from tr L^{each.trace} at {integrals.pair.spectral}^{each.power}"
+        for n, each in enumerate(integrals.emitted, 1)
     )
     known = ["the energy"] * setting.has_energy
     known += ["the claimed Casimirs"] * bool(known or setting.spec.casimirs)
     return write_step(
-        f"Integrals{' beside ' * bool(known)}{' and '.join(known)}",
+        f"Integrals{' in addition to ' * bool(known)}{' and '.join(known)}",
         f"coefficients of tr L^k: {words or 'none'}",
         r"\mathrm{tr}\, L^k = \mathrm{const}",
-        found.named,
+        integrals.named,
     )

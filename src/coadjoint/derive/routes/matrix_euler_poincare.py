@@ -159,7 +159,7 @@ def _as_matrix(setting: Setting, variable: Variable, values: Sequence[Element]) 
 
 
 def _slope_matrix(setting: Setting, variable: Variable, slopes: Sequence[Element]) -> Matrix:
-    """``b`` with ``dl = tr(b^T da)``: entries beside a diagonal of symmetric ones count twice."""
+    """``b`` with ``dl = tr(b^T da)``: entries off the diagonal of symmetric ones count twice."""
     b = _as_matrix(setting, variable, slopes)
     if setting.actions[variable.name].name != "symmetric":
         return b

@@ -13,8 +13,8 @@ On the dual of an algebra of three dimensions c is found. Its gradient is :math:
 algebras, :math:`c = x \cdot b/2`. Elsewhere a Casimir C is looked for, and :math:`b = m \nabla C`
 with a multiplier m.
 Comes in: a Setting with a Hamiltonian and such functions, or with an algebra. Goes out: Equations
-whose rates are these determinants, without the bracket; `coadjoint.derive.routes.poisson` takes the
-other road.
+whose rates are these determinants, without the bracket; `coadjoint.derive.routes.poisson` uses the
+bracket.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ def derive(setting: Setting) -> Equations:
     spec, names = setting.spec, setting.state
     if spec.poisson is None:
         h, _ = hamiltonian(setting)
-        found = distinguished_function(setting)
-        functions, multiplier = [found.function], found.multiplier
+        distinguished = distinguished_function(setting)
+        functions, multiplier = [distinguished.function], distinguished.multiplier
     else:
         h, multiplier = setting.hamiltonian, setting.field.one
         functions = [setting.formula(c) for c in spec.poisson.functions]
@@ -65,7 +65,7 @@ def derive(setting: Setting) -> Equations:
 
 
 def _velocities(setting: Setting) -> list[tuple[str, str]]:
-    """Momenta and the velocities ``dh/dmu`` that the spec names beside them."""
+    """Momenta and the velocities ``dh/dmu`` that the spec names next to them."""
     given = setting.velocities if setting.momenta else ()
     return list(zip(setting.momenta, given, strict=bool(given)))
 
@@ -94,7 +94,7 @@ def distinguished_function(setting: Setting) -> Distinguished:
             "nambu",
             f"the dual of {momentum_algebra(setting).name} has {structure.dimension} dimensions",
             str(structure.dimension),
-            "three, for one distinguished function c beside h",
+            "three, for one distinguished function c in addition to h",
             "Declare the functions: [poisson] nambu = [...].",
         )
     x, tensor = setting.elements(structure.names), structure.tensor
@@ -109,11 +109,11 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
     """A rational Casimir, and the multiplier that its gradient lacks."""
     algebra, field = momentum_algebra(setting), setting.field
     try:
-        found = casimirs(algebra)
-        reason = found.missing
+        search = casimirs(algebra)
+        reason = search.missing
     except CoadjointError as error:
         reason = str(error)
-    if reason or not found.generators:
+    if reason or not search.generators:
         raise refusal(
             setting,
             "nambu",
@@ -122,9 +122,8 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
             algebra.name,
             "a unimodular algebra, or a rational Casimir",
         )
-    advected = [name for variable in setting.advected for name in variable.components]
-    names = dict(zip(algebra.basis, (*setting.momenta, *advected), strict=True))
-    c = field.adopt(found.generators[0], names)
+    names = dict(zip(algebra.basis, (*setting.momenta, *setting.advected_names), strict=True))
+    c = field.adopt(search.generators[0], names)
     slopes = field.gradient(c, setting.state)
     place = next(n for n, slope in enumerate(slopes) if slope)
     return Distinguished(c, b[place] / slopes[place])

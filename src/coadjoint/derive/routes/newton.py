@@ -5,7 +5,7 @@ Law (Holm 2011, sections 1.1 and 2.1): mass times acceleration is the force,
 .. math:: \dot q = v, \qquad M \dot v = F(q, v),
 
 with a mass for each coordinate, or a matrix of masses that multiplies its acceleration: one row per
-particle. The law knows no energy and no bracket; where the spec declares a Lagrangian or a
+particle. The law contains no energy and no bracket; where the spec declares a Lagrangian or a
 Hamiltonian, these are taken from there, and the certificate says whether they fit the motion.
 Comes in: a Setting with [newton]. Goes out: Equations.
 Read next: `coadjoint.prove.galilean`.

@@ -13,8 +13,8 @@ moment :math:`\sum m X` and their second moments :math:`S = \sum m X X^T = (\mat
 alone, which are read off the kinetic energy; force and torque are the work of a potential along
 small shifts and turns of the body. No bracket and no :math:`\mathrm{ad}^*` occurs.
 Comes in: a Setting on so(3), for a body about a fixed point or its centre of mass, or on se(3).
-Goes out: Equations in the momenta. Read next: `coadjoint.derive.routes.euler_poincare`, the other
-road.
+Goes out: Equations in the momenta. Read next: `coadjoint.derive.routes.euler_poincare`, which
+needs no mass points.
 """
 
 from __future__ import annotations
@@ -126,9 +126,8 @@ def mass_points(setting: Setting, lagrangian: Element) -> MassPoints:
 def _check_points(setting: Setting, lagrangian: Element, points: MassPoints) -> None:
     """The points have the kinetic energy of the Lagrangian, and are fixed in the body."""
     field = setting.field
-    advected = {name for variable in setting.advected for name in variable.components}
     rest = lagrangian - _at_rest(setting, lagrangian) - _kinetic_energy(setting, points)
-    moving = set(setting.velocities) | advected
+    moving = {*setting.velocities, *setting.advected_names}
     moments = [points.mass, *points.first, *(x for row in points.second for x in row)]
     problems = [(rest, "is left over")] if rest != 0 else []
     problems += [(x, "is not constant") for x in moments if field.reach(field.zero + x) & moving]

@@ -19,7 +19,7 @@ hamilton-pontryagin. Where a constraint gives a velocity, the second equation is
 rate, and the first one along that velocity for its multiplier; no basis of the distribution, no
 bracket and no frame occurs.
 Comes in: a Setting with a Lagrangian and constraints. Goes out: Equations in velocities.
-Read next: `coadjoint.derive.routes.nonholonomic`, the road by projection.
+Read next: `coadjoint.derive.routes.nonholonomic`, which projects the forces.
 """
 
 from __future__ import annotations
@@ -27,14 +27,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics import kinematics
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.constrained import ConstrainedMotion, emission
-from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
+from coadjoint.derive.mechanics.constrained import emit_motion, start_motion
+from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
-from coadjoint.derive.records import Step, partial, rate, symbol
+from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.routes import hamilton_pontryagin
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
@@ -44,11 +43,6 @@ ROUTE = "nonholonomic-hamilton-pontryagin"
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
-    """Coordinates about the moving point, and the names that the kernel solves for."""
-    return (*_coordinates(spec), *kinematics.symbols(spec))
-
-
-def _coordinates(spec: Spec) -> tuple[str, ...]:
     """Coordinates about the moving point, and their rates."""
     return hamilton_pontryagin.symbols(spec) if spec.algebra is not None else ()
 
@@ -60,25 +54,25 @@ def derive(setting: Setting) -> Equations:
         DerivationError: As on the route nonholonomic.
     """
     mechanics(setting).check_quadratic()
-    found = distribution(setting)
+    motion = start_motion(setting)
+    distribution = motion.distribution
     forces, moved = _vary(setting)
-    momentum = _momentum_equations(found, forces, moved)
-    constraint = [_rate(found, each.residual, moved) for each in found.equations]
-    given, left = _eliminate(found, momentum, constraint)
+    momentum = _momentum_equations(distribution, forces, moved)
+    constraint = [_rate(distribution, each.residual, moved) for each in distribution.equations]
+    given, left = _eliminate(distribution, momentum, constraint)
     field = setting.field
-    names = [rate_name(name) for name in found.independent]
+    names = [rate_name(name) for name in distribution.independent]
     mass = tuple(field.gradient(line, names) for line in left)
-    rest = dict.fromkeys([*names, *map(multiplier_name, range(len(found.kept)))], field.zero)
+    rest = dict.fromkeys([*names, *map(multiplier_name, range(len(distribution.kept)))], field.zero)
     known = [-field.substitute(line, rest) for line in left]
-    motion = ConstrainedMotion(found)
-    exact = emission(motion, motion.kinematics, mass, known, list(given.items()))
-    steps = _steps(found, forces, momentum, constraint, given)
-    return Equations(setting, ROUTE, exact, steps, distribution=found)
+    steps = _steps(distribution, forces, momentum, constraint, given)
+    reactions = list(given.items())
+    return emit_motion(motion, ROUTE, mass, known, lambda _: steps, reactions=reactions)
 
 
 def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
     """F along each velocity by the variation of the motion, and ``dz/dt`` by that of momenta."""
-    known, own = mechanics(setting), len(_coordinates(setting.spec)) // 2
+    known, own = mechanics(setting), len(symbols(setting.spec)) // 2
     velocities = setting.elements(known.frame.velocities)
     forces: Row = ()
     moved = dict(zip(setting.positions, velocities[own:], strict=True))
@@ -91,10 +85,10 @@ def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
     return (*forces, *setting.field.gradient(known.lagrangian, setting.positions)), moved
 
 
-def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) -> Element:
+def _rate(distribution: Distribution, function: Element, moved: Mapping[str, Element]) -> Element:
     """The time derivative of a function of velocities, positions and time, in accelerations."""
-    setting, field = found.setting, found.setting.field
-    accelerations = {v: field[rate_name(v)] for v in found.frame.velocities}
+    setting, field = distribution.setting, distribution.setting.field
+    accelerations = {v: field[rate_name(v)] for v in distribution.frame.velocities}
     rates = {**moved, **accelerations}
     slopes = zip(field.gradient(function, list(rates)), rates.values(), strict=True)
     own = explicit_rate(setting, function, "a constraint or a momentum")
@@ -102,57 +96,65 @@ def _rate(found: Distribution, function: Element, moved: Mapping[str, Element]) 
 
 
 def _momentum_equations(
-    found: Distribution, forces: Row, moved: Mapping[str, Element]
+    distribution: Distribution, forces: Row, moved: Mapping[str, Element]
 ) -> dict[str, Element]:
     """``dmu/dt - F - f - A^T lambda`` along each velocity, in accelerations and multipliers.
 
     Multipliers of constraints that are kept have names of their own, with the other sign: so they
     are told from the reactions that forces name.
     """
-    setting, field, names = found.setting, found.setting.field, found.frame.velocities
-    kept = _kept_reactions(found)
-    multipliers = [kept.get(e.reaction, field[e.reaction]) for e in found.equations]
+    setting, field, names = (
+        distribution.setting,
+        distribution.setting.field,
+        distribution.frame.velocities,
+    )
+    kept = _kept_reactions(distribution)
+    multipliers = [kept.get(e.reaction, field[e.reaction]) for e in distribution.equations]
     lines = {}
     for name, momentum, force, outer, column in zip(
         names,
         mechanics(setting).momenta,
         forces,
         external_forces(setting, names),
-        zip(*found.A, strict=True) if found.A else [()] * len(names),
+        zip(*distribution.A, strict=True) if distribution.A else [()] * len(names),
         strict=True,
     ):
         reaction = field.sum(a * x for a, x in zip(column, multipliers, strict=True))
-        lines[name] = _rate(found, momentum, moved) - force - outer - reaction
+        lines[name] = _rate(distribution, momentum, moved) - force - outer - reaction
     return lines
 
 
 def _eliminate(
-    found: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
+    distribution: Distribution, momentum: Mapping[str, Element], constraint: Sequence[Element]
 ) -> tuple[dict[str, Element], list[Element]]:
     """Rates and multipliers that follow, and the momentum equations that are left.
 
     The velocity that a constraint gives has its rate from that constraint, and the constraint its
     multiplier from the momentum equation along that velocity.
     """
-    field = found.setting.field
-    giving = [each for each in zip(found.equations, constraint, strict=True) if each[0].solves]
+    field = distribution.setting.field
+    giving = [
+        each for each in zip(distribution.equations, constraint, strict=True) if each[0].solves
+    ]
     lines = {rate_name(equation.solves): line for equation, line in giving}
-    rates = _solve_affine(found, lines)
+    rates = _solve_affine(distribution, lines)
     left = {name: field.substitute(line, rates) for name, line in momentum.items()}
-    multipliers = _solve_affine(found, {each.reaction: left[each.solves] for each, _ in giving})
-    rows = [field.substitute(left[name], multipliers) for name in found.independent]
-    return {**rates, **_kept_reactions(found), **multipliers}, rows
+    multipliers = _solve_affine(
+        distribution, {each.reaction: left[each.solves] for each, _ in giving}
+    )
+    rows = [field.substitute(left[name], multipliers) for name in distribution.independent]
+    return {**rates, **_kept_reactions(distribution), **multipliers}, rows
 
 
-def _kept_reactions(found: Distribution) -> dict[str, Element]:
+def _kept_reactions(distribution: Distribution) -> dict[str, Element]:
     """The reactions of the constraints that are kept, by the names that the kernel solves for."""
-    field = found.setting.field
-    return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(found.kept)}
+    field = distribution.setting.field
+    return {e.reaction: -field[multiplier_name(n)] for n, (e, _) in enumerate(distribution.kept)}
 
 
-def _solve_affine(found: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
+def _solve_affine(distribution: Distribution, lines: Mapping[str, Element]) -> dict[str, Element]:
     """The unknowns of affine equations, one of which belongs to each of them."""
-    field, known = found.setting.field, dict[str, Element]()
+    field, known = distribution.setting.field, dict[str, Element]()
     for name, whole in lines.items():
         line = field.substitute(whole, known)
         value = field[name] - line / field.derivative(line, name)
@@ -162,48 +164,45 @@ def _solve_affine(found: Distribution, lines: Mapping[str, Element]) -> dict[str
 
 
 def _steps(
-    found: Distribution,
+    distribution: Distribution,
     forces: Row,
     momentum: Mapping[str, Element],
     constraint: Sequence[Element],
     given: Mapping[str, Element],
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
-    names, momenta = found.frame.velocities, mechanics(found.setting).momenta
-    steps = (
-        Step(
+    names, momenta = distribution.frame.velocities, mechanics(distribution.setting).momenta
+    equations = [each.name for each in distribution.equations]
+    return (
+        write_step(
             "Variation of the velocities: the Legendre relation",
             "mu = dl/dxi",
             r"\mu = \partial l / \partial \xi",
-            tuple(zip((partial("l", name) for name in names), momenta, strict=True)),
+            write_slopes("l", names, momenta),
         ),
-        Step(
+        write_step(
             "Variation of the motion without constraints",
             "F_k from d/dt dL/d(deps/dt) = dL/deps at eps = 0, dl/dq of coordinates",
             r"F_k: \quad \frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
             r"= \frac{\partial L}{\partial \epsilon}",
-            tuple((symbol(f"F_{name}"), value) for name, value in zip(names, forces, strict=True)),
+            zip((f"F_{name}" for name in names), forces, strict=True),
         ),
-        Step(
+        write_step(
             "Variation of the motion within the constraints",
             "dmu/dt - F - f - A^T lambda = 0",
             r"\dot\mu - F - f - A^T \lambda = 0",
-            tuple((symbol(f"E_{name}"), value) for name, value in momentum.items()),
+            ((f"E_{name}", value) for name, value in momentum.items()),
         ),
-        Step(
+        write_step(
             "Constraints, imposed after the variation, and their rates",
             "d/dt (left - right) = 0",
             r"\frac{d}{dt}(A \xi - b) = 0",
-            tuple(
-                (rate(each.name), value)
-                for each, value in zip(found.equations, constraint, strict=True)
-            ),
+            write_rates(equations, constraint),
         ),
-        Step(
+        write_step(
             "Rates and multipliers that these equations give",
             "dxi/dt = B deta/dt + c,  lambda",
             r"\dot\xi = B \dot\eta + c, \quad \lambda",
-            tuple((symbol(name), value) for name, value in given.items()),
+            given,
         ),
     )
-    return tuple(step for step in steps if step.lines)

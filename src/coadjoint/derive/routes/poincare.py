@@ -57,12 +57,12 @@ def _vector_fields(setting: Setting) -> _Fields:
 def _inertial(setting: Setting, slopes: tuple[Element, ...]) -> list[Element]:
     """``sum c_ks^i eta_k dT/deta_i`` for every s, each constant used for both of its orders."""
     eta = setting.elements(setting.velocities)
-    found = [setting.field.zero for _ in slopes]
+    inertial = [setting.field.zero for _ in slopes]
     for (k, s), row in setting.algebra.constants.items():
         for i, c in row.items():
-            found[s] += setting.sign * c * eta[k] * slopes[i]
-            found[k] -= setting.sign * c * eta[s] * slopes[i]
-    return found
+            inertial[s] += setting.sign * c * eta[k] * slopes[i]
+            inertial[k] -= setting.sign * c * eta[s] * slopes[i]
+    return inertial
 
 
 def _along(setting: Setting, fields: _Fields, function: Element) -> list[Element]:
@@ -77,10 +77,10 @@ def _advection(setting: Setting, fields: _Fields) -> dict[str, list[Element]]:
     """``da/dt = eta_s X_s a``."""
     field, eta = setting.field, setting.elements(setting.velocities)
 
-    def carried(name: str) -> Element:
+    def advect(name: str) -> Element:
         return field.sum(n * X[name] for n, X in zip(eta, fields, strict=True) if name in X)
 
-    return {each.name: [carried(name) for name in each.components] for each in setting.advected}
+    return {each.name: [advect(name) for name in each.components] for each in setting.advected}
 
 
 def _steps(setting: Setting, forces: list[Element], rates: tuple[Element, ...]) -> tuple[Step, ...]:

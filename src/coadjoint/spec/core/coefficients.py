@@ -18,7 +18,7 @@ from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.core.components import Shape, unpack
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.formulas import ROLES, Quantity
+from coadjoint.spec.core.formulas import ROLES, HasComponents
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
@@ -39,7 +39,7 @@ _COMBINATION = (
 _POLYNOMIAL = "a polynomial of parameters", "numbers and parameters with + - * and powers"
 
 
-class Constant(Quantity, Protocol):
+class Constant(HasComponents, Protocol):
     """A parameter, as far as coefficients know it."""
 
     @property
@@ -60,7 +60,7 @@ class Scalars:
     """
 
     def __init__(
-        self, parameters: Sequence[Constant] = (), driving: Sequence[Quantity] = ()
+        self, parameters: Sequence[Constant] = (), driving: Sequence[HasComponents] = ()
     ) -> None:
         self._driving = {
             name: each.role for each in driving for name in (each.name, *each.components)
@@ -79,30 +79,27 @@ class Scalars:
             self._positive += parameter.components if parameter.positive else ()
 
     def value(self, name: str, indices: tuple[int, ...] = ()) -> Coefficient | None:
-        """The parameter of a name, as ``I1`` or ``I[1]``; None for what is no scalar."""
+        """The parameter of a name, as ``I1`` or ``I[1]``; None for other names."""
         component, sign = self._components.get((name, indices), ("", 0))
         if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
             return Fraction(0) if component else None
         return sign * self._field[component]
 
     def check_names(self, tree: Node) -> None:
-        """Refuse what is no constant of the system.
+        """Refuse inputs and the time, which are not constants.
 
         Raises:
             ExpressionError: An input or the time is named.
         """
         for node in walk(tree):
             if isinstance(node, Name | Index) and node.name in self._driving:
-                raise fault_at(
-                    node,
-                    f"{node.name!r} is {ROLES[self._driving[node.name]]}",
-                    found=node.name,
-                    expected="constants of the algebra in terms of numbers and parameters",
-                    hint="Put a parameter in its place.",
-                )
+                problem = f"{node.name!r} is {ROLES[self._driving[node.name]]}"
+                expected = "constants of the algebra in terms of numbers and parameters"
+                hint = "Put a parameter in its place."
+                raise fault_at(node, problem, node.name, expected, hint)
 
     def check_terms(self, tree: Node, terms: int) -> None:
-        """Count the terms of a coefficient with parameters: elimination among many takes for ever.
+        """Count the terms of a coefficient with parameters: elimination among many does not end.
 
         Raises:
             ExpressionError: There are too many in the spec.
@@ -111,13 +108,10 @@ class Scalars:
             return
         self._terms += terms
         if self._terms > PARAMETRIC_TERMS:
+            problem = f"with this one, coefficients have {self._terms} terms that hold parameters"
+            hint = "Put numbers for some of the parameters."
             raise ExpressionError(
-                f"with this one, coefficients have {self._terms} terms that hold parameters",
-                tree.start,
-                tree.end,
-                found=str(self._terms),
-                hint="Put numbers for some of the parameters.",
-                limit="PARAMETRIC_TERMS",
+                problem, tree.start, tree.end, str(self._terms), hint=hint, limit="PARAMETRIC_TERMS"
             )
 
     @cached_property
@@ -217,14 +211,9 @@ class _Reading:
     def _single(self, node: Node, name: str) -> str:
         """The name of a basis vector that is not also that of a parameter."""
         if name in self.scalars.shapes:
-            raise ExpressionError(
-                f"{name!r} is both a parameter and in the basis",
-                node.start,
-                node.end,
-                found=name,
-                expected="names that differ",
-                hint="Rename the parameter.",
-            )
+            problem = f"{name!r} is both a parameter and in the basis"
+            hint = "Rename the parameter."
+            raise ExpressionError(problem, node.start, node.end, name, "names that differ", hint)
         return name
 
     def _scalar(self, node: Node, name: str, indices: tuple[int, ...] = ()) -> _Linear:

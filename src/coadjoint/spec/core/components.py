@@ -7,6 +7,8 @@ from the entries that a form keeps. Read next: `coadjoint.spec.model`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, product
 from math import isqrt
 from typing import Any
@@ -112,3 +114,22 @@ class Components:
     def value_shape(self) -> Shape:
         """Shape in formulas: that of the whole matrix where there is a form."""
         return self.shape if self.matrix_size is None else (self.matrix_size,) * 2
+
+
+@dataclass(frozen=True)
+class Argument(Components):
+    """An argument that a user gives to every kernel: a parameter or an input.
+
+    Attributes:
+        name: As declared, e.g. ``chi``.
+        shape: ``()``, ``(n,)`` or ``(n, m)``; with a form ``(n,)`` for the n entries that it keeps.
+        default: One exact value per component, row by row; None if the user must give it.
+        unit: Unit text, ``"1"`` if dimensionless.
+        doc: Free text for documents.
+    """
+
+    name: str
+    shape: Shape
+    default: tuple[Fraction, ...] | None = None
+    unit: str = "1"
+    doc: str = ""

@@ -103,7 +103,7 @@ def expand(
 
 def _too_large(node: Node, definition: Definition, limit: str, what: str) -> ExpressionError:
     problem = f"with {definition.name} expanded, {what} too many parts"
-    return ExpressionError(problem, node.start, node.end, found=definition.name, limit=limit)
+    return ExpressionError(problem, node.start, node.end, definition.name, limit=limit)
 
 
 def _name_called(node: Node) -> str:
@@ -119,13 +119,8 @@ def _expand_call(
 ) -> tuple[Node, int]:
     """The expression of a definition in the place of its call, and the number of its parts."""
     if len(given) != len(definition.arguments):
-        raise ExpressionError(
-            f"{definition.name} is given {len(given)} argument{'s' * (len(given) != 1)}",
-            node.start,
-            node.end,
-            found=str(len(given)),
-            expected=definition.signature,
-        )
+        problem = f"{definition.name} is given {len(given)} argument{'s' * (len(given) != 1)}"
+        raise ExpressionError(problem, node.start, node.end, str(len(given)), definition.signature)
     values = dict(zip(definition.arguments, given, strict=True))
     count = 0
 
@@ -180,7 +175,7 @@ def define(
     Args:
         source: The text of the spec.
         texts: Expressions by the keys of [definitions].
-        shapes: Shapes of all that they may name beside each other.
+        shapes: Shapes of all that they may name, apart from each other.
 
     Raises:
         SpecError: An expression is none, or a name in it is unknown.
@@ -217,7 +212,7 @@ def _check_arguments(
         else:
             continue
         at = source.positions.key(key)
-        raise source.fault(key, problem, found=argument, expected=expected, hint=hint, at=at)
+        raise source.fault(key, problem, argument, expected, hint, at=at)
 
 
 def _shape(
@@ -227,14 +222,10 @@ def _shape(
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name not in (*shapes, *arguments):
             later = node.name in defined
-            raise ExpressionError(
-                f"{node.name!r} is {'defined no earlier' if later else 'not declared'}",
-                node.start,
-                node.end,
-                found=node.name,
-                expected="variables, parameters, arguments and earlier definitions",
-                hint="" if later else did_you_mean(node.name, (*shapes, *arguments, *defined)),
-            )
+            problem = f"{node.name!r} is {'defined no earlier' if later else 'not declared'}"
+            expected = "variables, parameters, arguments and earlier definitions"
+            hint = "" if later else did_you_mean(node.name, (*shapes, *arguments, *defined))
+            raise ExpressionError(problem, node.start, node.end, node.name, expected, hint)
     if arguments:
         return None
     check_size(tree, shapes)

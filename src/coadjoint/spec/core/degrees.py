@@ -53,10 +53,7 @@ def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> in
     if divided and not below[1]:
         return below[0]
     if any(known) and (not same or divided or (isinstance(node, (Power, Call)) and not plain)):
-        raise fault_at(
-            node,
-            f"this is not linear in {names[0]!r}",
-            found=names[0],
-            expected=f"sums of terms that are linear in {names[0]}",
-        )
+        problem = f"this is not linear in {names[0]!r}"
+        expected = f"sums of terms that are linear in {names[0]}"
+        raise fault_at(node, problem, names[0], expected)
     return known[0] if known else None if plain else 0

@@ -1,8 +1,8 @@
 """Expressions: text to a plain tree, by a small reader of our own.
 
 Comes in: the text of one formula, at most ASCII. Goes out: a tree of `coadjoint.spec.core.tree`, or
-an `ExpressionError` that points at the guilty characters and guesses what was meant. Nothing of the
-text is ever executed, evaluated or handed on: numbers become fractions, names stay names.
+an `ExpressionError` that points at the characters at fault and guesses what was meant. No part of
+the text is ever executed, evaluated or passed on: numbers become fractions, names stay names.
 
     sum      = term {("+" | "-") term}
     term     = unary {("*" | "/") unary}
@@ -66,7 +66,7 @@ def read_expression(text: str, defined: Collection[str] = ()) -> Node:
 
     Args:
         text: What stands in the spec.
-        defined: Functions that it may call beside those of the language.
+        defined: Functions that it may call in addition to those of the language.
 
     Raises:
         ExpressionError: A syntax error, with what was probably meant, or a limit passed.
@@ -147,17 +147,11 @@ class _Reader:
         self._take()
         exponent = self._exponent()
         if self.next.kind in _POWERS:
-            raise ExpressionError(
-                "a power of a power is ambiguous",
-                base.start,
-                self.next.end,
-                found=self.text[base.start : self.next.end],
-                expected="parentheses",
-                hint="Write (a^b)^c, or multiply the exponents out.",
-            )
-        return self._count(
-            Power(base, exponent, start=base.start, end=self.tokens[self.at - 1].end)
-        )
+            problem = "a power of a power is ambiguous"
+            hint = "Write (a^b)^c, or multiply the exponents out."
+            raise self._fault(problem, base.start, self.next.end, "parentheses", hint)
+        end = self.tokens[self.at - 1].end
+        return self._count(Power(base, exponent, start=base.start, end=end))
 
     def _exponent(self) -> int:
         """A literal integer, perhaps with a minus, perhaps in parentheses."""
@@ -169,14 +163,9 @@ class _Reader:
         number = self._take() if self.next.kind == "number" else None
         complete = closing is None or self.next.kind == ")"
         if number is None or "." in number.text or not complete:
-            raise ExpressionError(
-                "the exponent is not a literal integer",
-                first.start,
-                max(first.end, self.next.end),
-                found=self.text[first.start : max(first.end, self.next.end)],
-                expected="an integer such as 2 or (-1)",
-                hint="Roots and other powers are sqrt(x) and exp(y*log(x)).",
-            )
+            problem, end = "the exponent is not a literal integer", max(first.end, self.next.end)
+            hint = "Roots and other powers are sqrt(x) and exp(y*log(x))."
+            raise self._fault(problem, first.start, end, "an integer such as 2 or (-1)", hint)
         if closing is not None:
             self._take()
         if len(number.text) > 9 or int(number.text) > limits.EXPONENT:
@@ -214,31 +203,19 @@ class _Reader:
         if self.next.kind == "(":
             return self._call(name)
         if name.text in self.functions:
-            raise ExpressionError(
-                f"the function {name.text!r} has no argument",
-                name.start,
-                name.end,
-                found=name.text,
-                expected=f"{name.text}(...)",
-            )
+            problem, expected = f"the function {name.text!r} has no argument", f"{name.text}(...)"
+            raise self._fault(problem, name.start, name.end, expected)
         if self.next.kind == "[":
             return self._index(name)
         return self._count(Name(name.text, start=name.start, end=name.end))
 
     def _call(self, name: _Token) -> Node:
         if name.text not in self.functions:
-            raise ExpressionError(
-                f"{name.text!r} is not a function",
-                name.start,
-                name.end,
-                found=name.text,
-                expected=f"one of {', '.join(sorted(self.functions))}",
-                hint=did_you_mean(
-                    name.text,
-                    self.functions,
-                    f"Write {name.text}[1] for a component, {name.text}*(...) for a product.",
-                ),
-            )
+            expected = f"one of {', '.join(sorted(self.functions))}"
+            plain = f"Write {name.text}[1] for a component, {name.text}*(...) for a product."
+            hint = did_you_mean(name.text, self.functions, plain)
+            problem = f"{name.text!r} is not a function"
+            raise self._fault(problem, name.start, name.end, expected, hint)
         opening = self._take()
         with self._nest(opening):
             arguments = [self._climb(0)]
@@ -256,13 +233,8 @@ class _Reader:
             indices.append(self._subscript(opening))
         closing = self._close(opening, "]")
         if self.next.kind == "[":
-            raise ExpressionError(
-                "two subscripts in a row",
-                self.next.start,
-                self.next.end,
-                found=self.text[name.start : self.next.end],
-                expected=f"{name.text}[1, 2]",
-            )
+            start, end = self.next.start, self.next.end
+            raise self._fault("two subscripts in a row", start, end, f"{name.text}[1, 2]")
         return self._count(Index(name.text, tuple(indices), start=name.start, end=closing.end))
 
     def _subscript(self, opening: _Token) -> int:
@@ -272,8 +244,8 @@ class _Reader:
                 f"the subscript {token.text[:40]!r} is not a literal integer",
                 min(token.start, len(self.text)),
                 max(token.end, opening.end),
-                found=token.text,
-                expected="an integer counted from 1",
+                token.text,
+                "an integer counted from 1",
             )
         self._take()
         return int(token.text)
@@ -284,12 +256,8 @@ class _Reader:
         """``node``, counted."""
         self.nodes += 1
         if self.nodes > limits.EXPRESSION_NODES:
-            raise _limit(
-                "EXPRESSION_NODES",
-                f"the expression has more than {limits.EXPRESSION_NODES} parts",
-                node.start,
-                node.end,
-            )
+            problem = f"the expression has more than {limits.EXPRESSION_NODES} parts"
+            raise _limit("EXPRESSION_NODES", problem, node.start, node.end)
         return node
 
     @contextmanager
@@ -297,12 +265,8 @@ class _Reader:
         """One level of nesting; so the reader cannot run out of stack."""
         self.depth += 1
         if self.depth > limits.EXPRESSION_NESTING:
-            raise _limit(
-                "EXPRESSION_NESTING",
-                f"the expression nests deeper than {limits.EXPRESSION_NESTING} levels",
-                token.start,
-                token.end,
-            )
+            problem = f"the expression nests deeper than {limits.EXPRESSION_NESTING} levels"
+            raise _limit("EXPRESSION_NESTING", problem, token.start, token.end)
         yield
         self.depth -= 1
 
@@ -310,13 +274,8 @@ class _Reader:
         if self.next.kind == mark:
             return self._take()
         if self.next.kind == "":
-            raise ExpressionError(
-                f"{opening.text!r} is never closed",
-                opening.start,
-                opening.end,
-                found=opening.text,
-                expected=f"a {mark!r} after it",
-            )
+            problem, expected = f"{opening.text!r} is never closed", f"a {mark!r} after it"
+            raise self._fault(problem, opening.start, opening.end, expected)
         raise self._unexpected()
 
     def _unexpected(self) -> ExpressionError:
@@ -324,20 +283,27 @@ class _Reader:
         token = self.next
         before = self.tokens[self.at - 1] if self.at else _Token("", "", 0, 0)
         ends = before.kind in ("number", "name", ")", "]")
-        where = token.start, token.end, token.text
+        where = token.start, token.end
         if ends and token.kind in ("number", "name", "("):
             simple = before.kind in ("number", "name") and token.kind == "name"
             hint = f"Write {before.text}*{token.text}." if simple else "Write * for a product."
-            return _fault(f"no operator before {token.text!r}", *where, "an operator", hint)
+            return self._fault(f"no operator before {token.text!r}", *where, "an operator", hint)
         if token.kind == ")" and ends:
-            return _fault("')' closes nothing", *where, "a '(' before it", "")
+            return self._fault("')' closes nothing", *where, "a '(' before it")
         if ends:
             hint = "Only names have subscripts." if token.kind == "[" else ""
-            return _fault(f"{token.text!r} is misplaced", *where, "an operator or the end", hint)
+            problem = f"{token.text!r} is misplaced"
+            return self._fault(problem, *where, "an operator or the end", hint)
         problem = f"{token.text!r} is misplaced" if token.kind else "the expression ends too early"
         if not token.kind:
-            where = before.start, before.end, before.text
-        return _fault(problem, *where, "a number, a name or '('", "")
+            where = before.start, before.end
+        return self._fault(problem, *where, "a number, a name or '('")
+
+    def _fault(
+        self, problem: str, start: int, end: int, expected: str, hint: str = ""
+    ) -> ExpressionError:
+        """A fault of what stands between two places."""
+        return ExpressionError(problem, start, end, self.text[start:end], expected, hint)
 
 
 def _tokens(text: str) -> Iterator[_Token]:
@@ -368,7 +334,7 @@ def _check_number(text: str, at: int) -> None:
         value = Fraction(match[0]) if abs(int(re.split("[eE]", match[0])[1])) <= 20 else None
         shown = f"Write {_decimal(value)}." if value is not None else "Write the digits out."
         problem = f"{match[0]!r} has an exponent"
-        raise _fault(problem, at, match.end(), match[0], "a decimal number", shown)
+        raise ExpressionError(problem, at, match.end(), match[0], "a decimal number", shown)
 
 
 def _decimal(value: Fraction) -> str:
@@ -387,12 +353,16 @@ def _unknown_character(text: str, at: int) -> ExpressionError:
         start = at - len(text[:at]) + len(text[:at].rstrip(_WORD))
         end = at + len(text[at:]) - len(text[at:].lstrip(_WORD))
         word = text[start:end]
-        return _fault(f"{word[:40]!r} is not a name", start, end, word, "a name", _MEANT["_"])
+        return ExpressionError(
+            f"{word[:40]!r} is not a name", start, end, word, "a name", _MEANT["_"]
+        )
     hint, problem = _MEANT.get(letter, ""), f"{letter!r} is not part of the language"
     if not letter.isascii():
         problem = f"{letter!r} ({_character_name(letter)}) is not ASCII"
         hint = hint or _plain_letter(letter)
-    return _fault(problem, at, at + 1, letter, "letters, digits and + - * / ^ ( ) [ ] , .", hint)
+    return ExpressionError(
+        problem, at, at + 1, letter, "letters, digits and + - * / ^ ( ) [ ] , .", hint
+    )
 
 
 _WORD = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"
@@ -413,12 +383,6 @@ def _plain_letter(letter: str) -> str:
     return ""
 
 
-def _fault(
-    problem: str, start: int, end: int, found: str, expected: str, hint: str
-) -> ExpressionError:
-    return ExpressionError(problem, start, end, found=found, expected=expected, hint=hint)
-
-
 def _limit(limit: str, problem: str, start: int, end: int) -> ExpressionError:
     """A refusal that names its limit."""
-    return ExpressionError(problem, start, end, found=problem, limit=limit)
+    return ExpressionError(problem, start, end, problem, limit=limit)

@@ -1,4 +1,4 @@
-"""A fault at a place of an expression, before anybody knows in which file the expression stands.
+"""A fault at a place of an expression, before it is known in which file the expression stands.
 
 Comes in: nothing. Goes out: the exception that the steps on expressions raise, which
 `coadjoint.spec.core.source` turns into a `SpecError` with file, line, column and a caret.
@@ -18,9 +18,9 @@ class ExpressionError(Exception):
 
     Attributes:
         problem: What was found, as a clause: ``'Omgea' is not declared``.
-        start: Offset of the guilty characters in the expression.
+        start: Offset of the characters at fault in the expression.
         end: Offset after them.
-        found: The guilty text.
+        found: The text at fault.
         expected: What would have been accepted; with a limit, its value.
         hint: The likely fix, as a sentence.
         limit: Name of the constant in `coadjoint.limits` that was passed, or "".
@@ -31,7 +31,6 @@ class ExpressionError(Exception):
         problem: str,
         start: int,
         end: int,
-        *,
         found: str = "",
         expected: str = "",
         hint: str = "",
@@ -43,9 +42,12 @@ class ExpressionError(Exception):
         self.expected = f"at most {getattr(limits, limit)} ({limit})" if limit else expected
 
 
-def fault_at(node: Node, problem: str, **parts: str) -> ExpressionError:
+def fault_at(
+    node: Node, problem: str, found: str = "", expected: str = "", hint: str = "", limit: str = ""
+) -> ExpressionError:
     """A fault at a node; where a definition was expanded, it is the definition that has it."""
     where = f"in the definition of {node.within}: " if node.within else ""
+    parts = {"found": found, "expected": expected, "hint": hint, "limit": limit}
     return ExpressionError(where + problem, node.start, node.end, **parts)
 
 

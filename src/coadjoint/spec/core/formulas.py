@@ -22,7 +22,7 @@ from coadjoint.spec.core.source import Source, write_key
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
-class Quantity(Protocol):
+class HasComponents(Protocol):
     """What has components: a variable, a parameter, an input or the time."""
 
     @property
@@ -67,7 +67,7 @@ class Formula:
 
 
 #: What a spec declares and a formula may use.
-Declared = Quantity | Definition
+Declared = HasComponents | Definition
 #: What the variables of each role are called together.
 PLURALS = {
     "velocity": "velocities",
@@ -174,9 +174,7 @@ def read_formula(
         if shape != () and not any_shape:
             hint = "Write dot(a, a) for the square of a vector." if len(shape) == 1 else ""
             problem = f"the value is {words(shape)}"
-            raise ExpressionError(
-                problem, 0, len(text), found=words(shape), expected="a scalar", hint=hint
-            )
+            raise ExpressionError(problem, 0, len(text), words(shape), "a scalar", hint)
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
@@ -187,13 +185,10 @@ def _check_roles(tree: Node, scope: Scope) -> None:
     """Refuse a declared name that this kind of formula may not use, saying why."""
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
-            raise fault_at(
-                node,
-                f"{node.name!r} is {ROLES[scope.outside[node.name]]}",
-                found=node.name,
-                expected=f"{scope.kind} in terms of {scope.takes}",
-                hint=did_you_mean(node.name, scope.shapes),
-            )
+            problem = f"{node.name!r} is {ROLES[scope.outside[node.name]]}"
+            expected = f"{scope.kind} in terms of {scope.takes}"
+            hint = did_you_mean(node.name, scope.shapes)
+            raise fault_at(node, problem, node.name, expected, hint)
 
 
 def read_fitting(
@@ -215,4 +210,4 @@ def misfit(
 ) -> CoadjointError:
     """A formula whose value has another shape than it may have."""
     value = words(formula.shape)
-    return source.fault(key, f"the value is {value}", found=value, expected=expected, hint=hint)
+    return source.fault(key, f"the value is {value}", value, expected, hint)

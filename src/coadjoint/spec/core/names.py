@@ -1,7 +1,7 @@
 """Names: which ones a spec may declare, and what to call a thing instead.
 
-Comes in: declared names. Goes out: nothing, or why a name is refused and what would do. A name
-keeps its spelling in every target, because generated code is read beside the book; so a name that
+Comes in: declared names. Goes out: nothing, or why a name is refused and which one to use. A name
+keeps its spelling in every target, because generated code is read next to the book; so a name that
 any target reserves is refused here, and a test holds the lists against the compilers. Names that
 begin with an underscore belong to generated code and cannot be declared at all.
 Read next: `coadjoint.spec.reader`.
@@ -71,7 +71,7 @@ def suggest_name(name: str) -> str:
 
 
 def _tidy(name: str) -> str:
-    """A hint for a string that is no name."""
+    """A hint for a string that is not a name."""
     near = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     fits = NAME.fullmatch(near) and len(near) <= NAME_CHARACTERS and refusal(near) is None
     return f"Call it {near!r}." if fits else ""

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from coadjoint.spec.core.values import NAME_PATTERN
+from coadjoint.spec.core.values import NAME_PATTERN, Length, Numbers, Prose, Unit
 
 
 def no_titles(schema: dict[str, Any]) -> None:
@@ -50,6 +50,19 @@ class TextPart(Part):
     @classmethod
     def _from_value(cls, value: object) -> object:
         return {cls.alone: value} if isinstance(value, cls.alone_kind) else value
+
+
+class ArgumentPart(Part):
+    """What a user gives to the kernels by components."""
+
+    shape: Annotated[list[Length], Field(max_length=2)] = Field(
+        [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix"
+    )
+    default: Numbers | None = Field(
+        None, description="exact default: a number for all components, or nested lists of them"
+    )
+    unit: Unit = Field("1", description="unit, such as 'kg m^2'; '1' if dimensionless")
+    doc: Prose = Field("", description="what it is, for documents")
 
 
 #: What is enough for a claim, if not a proof.

@@ -18,12 +18,11 @@ from pydantic import Field
 from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import (
     DRIVING,
     Declared,
     Formula,
-    Quantity,
+    HasComponents,
     Scope,
     make_scope,
     read_formula,
@@ -82,7 +81,8 @@ class Table(Generic[Record]):
         least: How many entries it has at least, if it is there.
         pattern: What the names of its entries look like.
         field: The annotation and the pydantic field of its key, where they are not the usual ones.
-        absent: The record of a table that is left out.
+        absent: The record of a table that is left out; of named entries, of none.
+        always: Whether it is read even where it has no entries.
         attribute: The attribute of a `Spec` that is the record; by default the key. With None, the
             fields of the record are attributes themselves.
         quantities: Whether formulas of other tables may name the record, or the records in it.
@@ -102,12 +102,17 @@ class Table(Generic[Record]):
     pattern: str = NAME_PATTERN
     field: tuple[Any, Any] | None = None
     absent: Any = None
+    always: bool = False
     attribute: str | None = ""
     quantities: bool = False
     names: Callable[[str, Record], Iterable[Naming]] = name_none
     routed: bool = False
     acts: bool = False
     example: str = ""
+
+    def __post_init__(self) -> None:
+        if self.many and self.absent is None:
+            object.__setattr__(self, "absent", ())
 
     def of(self, reading: Reading) -> Record:
         """The record of this table."""
@@ -153,6 +158,7 @@ class Reading:
 
     def __init__(self, source: Source, file: Any, name: str, tables: Sequence[Table[Any]]) -> None:
         self.source, self.file, self.name, self.tables = source, file, name, tables
+        self.fault, self.at_key, self.unknown = source.fault, source.at_key, source.unknown
         self.owners: dict[str, Naming] = {}
         self._records: dict[str, Any] = {}
         self._open: list[str] = []
@@ -163,7 +169,8 @@ class Reading:
             assert table.key not in self._open, (*self._open, table.key)
             self._open.append(table.key)
             part = getattr(self.file, table.key)
-            record = table.absent if part is None else table.read(self, part)
+            is_absent = part is None or (table.many and not part and not table.always)
+            record = table.absent if is_absent else table.read(self, part)
             self._records[table.key] = record
             self._open.pop()
             for naming in table.names(table.key, record):
@@ -228,28 +235,8 @@ class Reading:
 
     # -- faults -------------------------------------------------------------------------
 
-    def at_key(
-        self, key: KeyPath, problem: str, found: Any, expected: str, hint: str = ""
-    ) -> CoadjointError:
-        """An error that points at a key and not at its value."""
-        at = self.source.positions.key(key)
-        return self.source.fault(key, problem, found=found, expected=expected, hint=hint, at=at)
-
-    def unknown(
-        self, key: KeyPath, what: str, name: str, known: Iterable[str], otherwise: str
-    ) -> CoadjointError:
-        """An error for a name at a key that nothing has."""
-        names = list(known)
-        return self.at_key(
-            key,
-            f"there is no {what} {name!a}",
-            name,
-            f"one of {list_names(names)}" if names else otherwise,
-            did_you_mean(name, names),
-        )
-
     def check_count(
-        self, what: str, table: str, quantities: Iterable[Quantity], limit: str
+        self, what: str, table: str, quantities: Iterable[HasComponents], limit: str
     ) -> None:
         """Refuse too many components.
 

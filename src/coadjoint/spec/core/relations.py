@@ -48,12 +48,10 @@ def read_relation(
         for side, other in ((left, right), (right, left))
     )
     if left.shape != right.shape:
+        problem = f"the left side is {words(left.shape)} and the right side {words(right.shape)}"
+        expected = "two sides of one shape, or 0 on one of them"
         raise source.fault(
-            key,
-            f"the left side is {words(left.shape)} and the right side {words(right.shape)}",
-            found=text,
-            expected="two sides of one shape, or 0 on one of them",
-            at=source.within(key, sign.start(), sign.end()),
+            key, problem, text, expected, at=source.within(key, sign.start(), sign.end())
         )
     return left, sign.group(), right
 
@@ -61,15 +59,15 @@ def read_relation(
 def _no_relation(
     source: Source, key: KeyPath, text: str, signs: tuple[str, ...], matches: list[re.Match[str]]
 ) -> CoadjointError:
-    """Why a text is no relation."""
+    """Why a text is not a relation."""
     wanted = matches[1] if len(matches) > 1 else matches[0] if matches else None
     problem = "there are two signs" if len(matches) > 1 else f"there is no {list_names(signs)}"
     example = "Y == cross(Omega, s)" if signs == EQUATION else "1 - Gamma3^2 > 0"
     return source.fault(
         key,
         problem,
-        found=wanted.group() if wanted else text,
-        expected=f"two expressions with {list_names(signs)} between them",
-        hint=f"Write for instance {example!r}.",
+        wanted.group() if wanted else text,
+        f"two expressions with {list_names(signs)} between them",
+        f"Write for instance {example!r}.",
         at=source.within(key, *(wanted.span() if wanted else (0, len(text)))),
     )

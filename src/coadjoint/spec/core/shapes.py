@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at, list_names
+from coadjoint.spec.core.faults import did_you_mean, fault_at, list_names
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
@@ -32,64 +32,6 @@ ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")
 LARGEST_INVERSE = 3
 
 
-def _dot(a: Shape, b: Shape) -> Shape | None:
-    return () if len(a) == 1 and a == b else None
-
-
-def _cross(a: Shape, b: Shape) -> Shape | None:
-    return (3,) if a == b == (3,) else None
-
-
-def _commutator(a: Shape, b: Shape) -> Shape | None:
-    return a if _is_square(a) and a == b else None
-
-
-def _trace(a: Shape) -> Shape | None:
-    return () if _is_square(a) else None
-
-
-def _transpose(a: Shape) -> Shape | None:
-    return a[::-1] if len(a) == 2 else None
-
-
-def _det(a: Shape) -> Shape | None:
-    return () if _is_small_square(a) else None
-
-
-def _inverse(a: Shape) -> Shape | None:
-    return a if _is_small_square(a) else None
-
-
-def _hat(a: Shape) -> Shape | None:
-    return (3, 3) if a == (3,) else None
-
-
-def _diag(a: Shape) -> Shape | None:
-    if len(a) == 1:
-        return a * 2
-    return a[:1] if _is_square(a) else None
-
-
-def _norm(a: Shape) -> Shape | None:
-    return () if len(a) == 1 else None
-
-
-def _outer(a: Shape, b: Shape) -> Shape | None:
-    return a + b if len(a) == len(b) == 1 else None
-
-
-def _rows(*rows: Shape) -> Shape | None:
-    return (len(rows), *rows[0]) if len(rows[0]) == 1 and set(rows) == {rows[0]} else None
-
-
-def _vector(*components: Shape) -> Shape | None:
-    return None if any(components) else (len(components),)
-
-
-def _elementary(a: Shape) -> Shape | None:
-    return () if a == () else None
-
-
 def _is_square(a: Shape) -> bool:
     return len(a) == 2 and a[0] == a[1]
 
@@ -98,19 +40,39 @@ def _is_small_square(a: Shape) -> bool:
     return _is_square(a) and a[0] <= LARGEST_INVERSE
 
 
+_Rule = Callable[..., Shape | None]
+#: The shape of a value by the shapes of the arguments; None if these do not fit.
+_RULES: Mapping[str, _Rule] = MappingProxyType(
+    {
+        "dot": lambda a, b: () if len(a) == 1 and a == b else None,
+        "cross": lambda a, b: (3,) if a == b == (3,) else None,
+        "commutator": lambda a, b: a if _is_square(a) and a == b else None,
+        "trace": lambda a: () if _is_square(a) else None,
+        "transpose": lambda a: a[::-1] if len(a) == 2 else None,
+        "det": lambda a: () if _is_small_square(a) else None,
+        "inverse": lambda a: a if _is_small_square(a) else None,
+        "hat": lambda a: (3, 3) if a == (3,) else None,
+        "diag": lambda a: a * 2 if len(a) == 1 else a[:1] if _is_square(a) else None,
+        "norm": lambda a: () if len(a) == 1 else None,
+        "outer": lambda a, b: a + b if len(a) == len(b) == 1 else None,
+        "rows": lambda *a: (len(a), *a[0]) if len(a[0]) == 1 and set(a) == {a[0]} else None,
+        "vector": lambda *a: None if any(a) else (len(a),),
+        **dict.fromkeys(ELEMENTARY, lambda a: () if a == () else None),
+    }
+)
+
+
 @dataclass(frozen=True)
 class Function:
     """A function of the expression language.
 
     Attributes:
         arity: Number of arguments; 0 for any number but none.
-        rule: Shape of the value from the shapes of the arguments; None if they do not fit.
         takes: The arguments that fit, in words.
         meaning: What it is, for documents.
     """
 
     arity: int
-    rule: Callable[..., Shape | None]
     takes: str
     meaning: str
 
@@ -118,27 +80,27 @@ class Function:
 _SMALL = f"a square matrix of at most {LARGEST_INVERSE} by {LARGEST_INVERSE}"
 FUNCTIONS: Mapping[str, Function] = MappingProxyType(
     {
-        "dot": Function(2, _dot, "two vectors of one length", "a_i b_i"),
-        "cross": Function(2, _cross, "two 3-vectors", "a x b"),
-        "commutator": Function(2, _commutator, "two square matrices of one size", "AB - BA"),
-        "trace": Function(1, _trace, "a square matrix", "A_ii"),
-        "transpose": Function(1, _transpose, "a matrix", "A_ji"),
-        "det": Function(1, _det, _SMALL, "determinant"),
-        "inverse": Function(1, _inverse, _SMALL, "inverse matrix"),
-        "hat": Function(1, _hat, "a 3-vector", "the matrix with hat(a)*b = a x b"),
+        "dot": Function(2, "two vectors of one length", "a_i b_i"),
+        "cross": Function(2, "two 3-vectors", "a x b"),
+        "commutator": Function(2, "two square matrices of one size", "AB - BA"),
+        "trace": Function(1, "a square matrix", "A_ii"),
+        "transpose": Function(1, "a matrix", "A_ji"),
+        "det": Function(1, _SMALL, "determinant"),
+        "inverse": Function(1, _SMALL, "inverse matrix"),
+        "hat": Function(1, "a 3-vector", "the matrix with hat(a)*b = a x b"),
         "diag": Function(
-            1, _diag, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"
+            1, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"
         ),
-        "outer": Function(2, _outer, "two vectors", "matrix a_i b_j"),
-        "vector": Function(0, _vector, "scalars", "vector of these components"),
-        "rows": Function(0, _rows, "vectors of one length", "matrix with these rows"),
-        "norm": Function(1, _norm, "a vector", "sqrt(dot(a, a))"),
-        "sqrt": Function(1, _elementary, "a scalar", "square root"),
-        "sin": Function(1, _elementary, "a scalar", "sine"),
-        "cos": Function(1, _elementary, "a scalar", "cosine"),
-        "tan": Function(1, _elementary, "a scalar", "tangent"),
-        "exp": Function(1, _elementary, "a scalar", "exponential"),
-        "log": Function(1, _elementary, "a scalar", "natural logarithm"),
+        "outer": Function(2, "two vectors", "matrix a_i b_j"),
+        "vector": Function(0, "scalars", "vector of these components"),
+        "rows": Function(0, "vectors of one length", "matrix with these rows"),
+        "norm": Function(1, "a vector", "sqrt(dot(a, a))"),
+        "sqrt": Function(1, "a scalar", "square root"),
+        "sin": Function(1, "a scalar", "sine"),
+        "cos": Function(1, "a scalar", "cosine"),
+        "tan": Function(1, "a scalar", "tangent"),
+        "exp": Function(1, "a scalar", "exponential"),
+        "log": Function(1, "a scalar", "natural logarithm"),
     }
 )
 
@@ -204,13 +166,9 @@ def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
 def _find_shape(node: Node, name: str, scope: Mapping[str, Shape]) -> Shape:
     if name in scope:
         return scope[name]
-    raise _fault(
-        node,
-        f"{name!r} is not declared",
-        name,
-        "a variable or parameter of this spec",
-        did_you_mean(name, scope, f"Declared are {list_names(scope)}." if scope else ""),
-    )
+    problem = f"{name!r} is not declared"
+    hint = did_you_mean(name, scope, f"Declared are {list_names(scope)}." if scope else "")
+    raise fault_at(node, problem, name, "a variable or parameter of this spec", hint)
 
 
 def _component(node: Node, name: str, indices: tuple[int, ...], shape: Shape) -> Shape:
@@ -218,12 +176,12 @@ def _component(node: Node, name: str, indices: tuple[int, ...], shape: Shape) ->
     text = f"{name}[{', '.join(map(str, indices))}]"
     if len(shape) < len(indices):
         expected = f"{name}[1]" if shape else f"{name} without a subscript"
-        raise _fault(node, f"{name} is {words(shape)}, found {text}", text, expected)
+        raise fault_at(node, f"{name} is {words(shape)}, found {text}", text, expected)
     for index, length in zip(indices, shape, strict=False):
         if not 1 <= index <= length:
             hint = "Components are counted from 1." if index == 0 else ""
             problem = f"the subscript of {text} is out of range"
-            raise _fault(node, problem, text, f"1 to {length}", hint)
+            raise fault_at(node, problem, text, f"1 to {length}", hint)
     return shape[len(indices) :]
 
 
@@ -233,9 +191,9 @@ def _power(node: Power, base: Shape) -> Shape:
     if not _is_square(base):
         hint = "The square of a vector is dot(a, a)." if len(base) == 1 else ""
         problem = f"{words(base)} has no power"
-        raise _fault(node, problem, words(base), "a scalar or a square matrix", hint)
+        raise fault_at(node, problem, words(base), "a scalar or a square matrix", hint)
     if node.exponent < 0 and not _is_small_square(base):
-        raise _fault(node, f"{words(base)} is inverted", words(base), _SMALL)
+        raise fault_at(node, f"{words(base)} is inverted", words(base), _SMALL)
     return base
 
 
@@ -244,12 +202,12 @@ def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
         if left == right:
             return left
         problem = f"{words(left)} {operator} {words(right)} do not fit"
-        raise _fault(node, problem, problem, f"two of one shape around {operator}")
+        raise fault_at(node, problem, problem, f"two of one shape around {operator}")
     if operator == "/":
         if right == ():
             return left
         hint = "Write inverse(A)*x." if len(right) == 2 else ""
-        raise _fault(node, f"division by {words(right)}", words(right), "a scalar divisor", hint)
+        raise fault_at(node, f"division by {words(right)}", words(right), "a scalar divisor", hint)
     if left == () or right == ():
         return left + right
     if len(left) == 2 and left[1] == right[0]:
@@ -259,15 +217,15 @@ def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
         hint = "Write dot(a, b) for the scalar product, cross(a, b) for the vector product."
     elif len(left) == 1:
         hint = "Write transpose(A)*a for a row vector times a matrix."
-    raise _fault(node, problem, problem, "matching sizes around *", hint)
+    raise fault_at(node, problem, problem, "matching sizes around *", hint)
 
 
 def _call(node: Call, arguments: list[Shape]) -> Shape:
     function, name = FUNCTIONS[node.function], node.function
     if function.arity not in (0, len(arguments)):
         given = f"{len(arguments)} argument{'s' * (len(arguments) != 1)}"
-        raise _fault(node, f"{name} is given {given}", given, function.takes)
-    shape = function.rule(*arguments)
+        raise fault_at(node, f"{name} is given {given}", given, function.takes)
+    shape = _RULES[name](*arguments)
     if shape is not None:
         return shape
     given, hint = " and ".join(map(words, arguments)), ""
@@ -275,8 +233,4 @@ def _call(node: Call, arguments: list[Shape]) -> Shape:
         hint = "The product of matrices is trace(transpose(A)*B)."
     if name in ("det", "inverse") and _is_square(arguments[0]):
         hint = "Larger systems are solved inside the kernels: give the Lagrangian instead."
-    raise _fault(node, f"{name} is given {given}", given, function.takes, hint)
-
-
-def _fault(node: Node, problem: str, found: str, expected: str, hint: str = "") -> ExpressionError:
-    return fault_at(node, problem, found=found, expected=expected, hint=hint)
+    raise fault_at(node, f"{name} is given {given}", given, function.takes, hint)

@@ -179,7 +179,7 @@ def _power(node: Node, base: Size, exponent: int, shape: Shape) -> Size:
 
 
 def _function(node: Node, function: str, argument: Size) -> Size:
-    """An elementary function: a new name, unless its argument is a constant out of bounds."""
+    """An elementary function: a new name; a constant argument must be within the limits."""
     if argument.fixed:
         value = argument.constant
         if value is None or abs(value) > limits.FUNCTION_ARGUMENT:
@@ -231,7 +231,7 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
 
 
 def _largest(parts: list[Size]) -> Size:
-    """The size of what is put together without being reckoned with."""
+    """The size of a vector or matrix by its parts."""
     return Size(
         max(part.terms for part in parts),
         max(part.degree for part in parts),
@@ -246,8 +246,8 @@ def _determinant(a: Size, n: int) -> Size:
 
 
 def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:
-    return fault_at(node, problem, found=problem, limit=limit)
+    return fault_at(node, problem, problem, limit=limit)
 
 
 def _no_value(node: Node, problem: str, expected: str) -> ExpressionError:
-    return fault_at(node, problem, found=problem, expected=expected)
+    return fault_at(node, problem, problem, expected)

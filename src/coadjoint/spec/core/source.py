@@ -1,4 +1,4 @@
-"""Source: a spec's text with its positions, and how to point at the guilty characters in it.
+"""Source: a spec's text with its positions, and how to point at the characters at fault.
 
 Comes in: a file path and its text. Goes out: errors of one form,
 
@@ -86,10 +86,10 @@ class Source:
         self,
         key: KeyPath,
         problem: str,
-        *,
         found: Any = "",
         expected: str = "",
         hint: str = "",
+        *,
         at: Span | None = None,
         kind: type[CoadjointError] = SpecError,
         **parts: Any,
@@ -99,10 +99,10 @@ class Source:
         Args:
             key: The key concerned.
             problem: What was found, as a clause.
-            found: The guilty value.
+            found: The value at fault.
             expected: What would have been accepted.
             hint: The likely fix, as a sentence.
-            at: The guilty characters; by default the value of the key.
+            at: The characters at fault; by default the value of the key.
             kind: Class of the error.
             parts: Further attributes.
         """
@@ -124,13 +124,34 @@ class Source:
             **parts,
         )
 
-    def unknown(
-        self, key: KeyPath, problem: str, name: str, known: Iterable[str], otherwise: str = ""
+    def at_key(
+        self,
+        key: KeyPath,
+        problem: str,
+        found: Any,
+        expected: str,
+        hint: str = "",
+        kind: type[CoadjointError] = SpecError,
     ) -> CoadjointError:
-        """An error for a name that nothing has, with the nearest of those that are known."""
+        """An error that points at a key and not at its value."""
+        at = self.positions.key(key)
+        return self.fault(key, problem, found, expected, hint, at=at, kind=kind)
+
+    def unknown(
+        self,
+        key: KeyPath,
+        problem: str,
+        name: str,
+        known: Iterable[str],
+        otherwise: str = "",
+        *,
+        is_key: bool = False,
+    ) -> CoadjointError:
+        """An error for a name that nothing has, as a value or a key, with the nearest known one."""
         names = list(known)
-        expected, hint = f"one of {list_names(names)}", did_you_mean(name, names, otherwise)
-        return self.fault(key, problem, found=name, expected=expected, hint=hint)
+        expected = f"one of {list_names(names)}" if names else "a declared one"
+        point = self.at_key if is_key else self.fault
+        return point(key, problem, name, expected, did_you_mean(name, names, otherwise))
 
     def too_many(
         self, key: KeyPath, problem: str, found: object, limit: str, **options: Any

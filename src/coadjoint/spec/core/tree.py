@@ -1,7 +1,7 @@
 """Plain expression trees: what the reader makes of text, and what the derivation reads.
 
 Comes in: nothing. Goes out: frozen nodes that carry their place in the text (``start``, ``end``,
-offsets from 0, end exclusive), so that a later step can still point at the guilty characters.
+offsets from 0, end exclusive), so that a later step can still point at the characters at fault.
 No SymPy here, and no text of a spec survives in a node except declared names.
 Read next: `coadjoint.spec.core.expressions`, which makes these, and `coadjoint.derive.interpret`,
 which turns them into exact field elements.

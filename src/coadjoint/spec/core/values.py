@@ -127,12 +127,9 @@ def read_default(
     """The declared default, one number for each component; None if there is none."""
     spread = None if value is None else _spread(value, shape)
     if spread is None and value is not None:
-        raise source.fault(
-            key,
-            f"the default of {str(key[-2])!r} does not have its shape {list(shape)}",
-            found=_shape_text(value),
-            expected=f"one number for all components, or {_shape_words(shape)}",
-        )
+        problem = f"the default of {str(key[-2])!r} does not have its shape {list(shape)}"
+        expected = f"one number for all components, or {_shape_words(shape)}"
+        raise source.fault(key, problem, _shape_text(value), expected)
     return spread
 
 
@@ -181,10 +178,7 @@ _SIZED = {
 def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
     """A number of components that no matrix of a form keeps."""
     counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
-    return source.fault(
-        key,
-        f"{count} components fill no matrix of the form {form!r}",
-        found=count,
-        expected=f"{counts[form]} components for an n by n matrix",
-        hint=f"Remove form, or choose another {_SIZED[str(key[0])]}.",
-    )
+    problem = f"{count} components fill no matrix of the form {form!r}"
+    expected = f"{counts[form]} components for an n by n matrix"
+    hint = f"Remove form, or choose another {_SIZED[str(key[0])]}."
+    return source.fault(key, problem, count, expected, hint)

@@ -7,7 +7,6 @@ error with file, line, key and counter-example. Read next: `coadjoint.spec.secti
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -31,8 +30,9 @@ from coadjoint.algebra import (
 from coadjoint.errors import AlgebraError
 from coadjoint.limits import STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient, read_combination
-from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import Quantity
+from coadjoint.spec.core.faults import list_names
+from coadjoint.spec.core.formulas import HasComponents
+from coadjoint.spec.core.pairs import read_pairs
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.source import Source
@@ -60,8 +60,6 @@ from coadjoint.spec.sections.matrix_brackets import read_bracket
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.sections.time import TIME
 
-_BRACKET = re.compile(BRACKET_PATTERN, re.ASCII)
-
 
 @dataclass(frozen=True)
 class Structure:
@@ -88,7 +86,7 @@ def read_structure(reading: Reading, part: AlgebraPart) -> Structure:
 
 def scalars_of(reading: Reading) -> Scalars:
     """The parameters that constants may depend on, and what they may not name."""
-    driving: list[Quantity] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
+    driving: list[HasComponents] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
     return Scalars(PARAMETERS.of(reading), driving)
 
 
@@ -148,7 +146,7 @@ class _Algebras:
     def _add_blocks(
         self, algebra: LieAlgebra, declared: Mapping[str, list[str]], key: KeyPath
     ) -> LieAlgebra:
-        """The algebra with the declared blocks beside its own."""
+        """The algebra with the declared blocks in addition to its own."""
         if not declared:
             return algebra
         blocks = {
@@ -164,48 +162,16 @@ class _Algebras:
     ) -> LieAlgebra:
         brackets = {
             pair: read_combination(self.source, (*key, text), texts[text], basis, self.scalars)
-            for pair, text in self._pairs(texts, key, basis).items()
+            for pair, text in self._pairs(key, texts, basis).items()
         }
         with point_at_faults(self.source, key):
             return from_brackets(self.system, basis, brackets)
 
     def _pairs(
-        self, texts: Iterable[str], key: KeyPath, basis: Sequence[str]
+        self, key: KeyPath, texts: Iterable[str], basis: Sequence[str]
     ) -> dict[tuple[int, int], str]:
-        """The keys ``[e1, e2]`` of a table by the places of their pairs, each pair once."""
-        pairs: dict[tuple[int, int], str] = {}
-        for text in texts:
-            i, j = self._pair(text, (*key, text), basis)
-            if i == j or (i, j) in pairs or (j, i) in pairs:
-                problem = f"the pair of {basis[i]} and {basis[j]} is declared twice"
-                if i == j:
-                    problem = f"{text} is declared, the bracket of {basis[i]} with itself"
-                raise self.source.fault(
-                    (*key, text),
-                    problem,
-                    found=text,
-                    expected="each pair of different vectors once, in either order",
-                    hint="Remove it.",
-                    at=self.source.positions.key((*key, text)),
-                    kind=AlgebraError,
-                )
-            pairs[i, j] = text
-        return pairs
-
-    def _pair(self, text: str, key: KeyPath, basis: Sequence[str]) -> tuple[int, int]:
-        """The places of e1 and e2 in a key ``[e1, e2]``."""
-        match = _BRACKET.fullmatch(text)
-        unknown = [name for name in match.groups() if name not in basis] if match else [text]
-        if match is None or unknown:
-            raise self.source.fault(
-                key,
-                f"{text!a} is not a bracket of the basis",
-                found=unknown[0],
-                expected="a key such as '[e1, e2]' with names of the basis",
-                hint=did_you_mean(unknown[0], basis),
-                at=self.source.positions.key(key),
-            )
-        return basis.index(match[1]), basis.index(match[2])
+        """The keys ``[e1, e2]`` of a table by the places of their pairs."""
+        return read_pairs(self.source, key, texts, BRACKET_PATTERN, basis, AlgebraError)
 
     def _by_matrices(
         self,
@@ -217,13 +183,10 @@ class _Algebras:
         matrices, size = read_matrices(self.source, key, tables, basis, self.scalars)
         for name in basis:
             if name not in matrices:
-                raise self.source.fault(
-                    key,
-                    f"the matrix of {name!r} is missing",
-                    found=name,
-                    expected=f"a matrix for each of {list_names(basis)}",
-                    hint=f"Write {name} = [[...], [...]] among the matrices.",
-                )
+                problem = f"the matrix of {name!r} is missing"
+                expected = f"a matrix for each of {list_names(basis)}"
+                hint = f"Write {name} = [[...], [...]] among the matrices."
+                raise self.source.fault(key, problem, name, expected, hint)
         chosen = [matrices[name] for name in basis]
         if bracket is None:
             with point_at_faults(self.source, key):
@@ -277,7 +240,7 @@ class _Algebras:
         inner = (*key, "cocycle")
         cocycle = {
             pair: read_coefficient(self.source, (*inner, text), part.cocycle[text], self.scalars)
-            for pair, text in self._pairs(part.cocycle, inner, algebra.basis).items()
+            for pair, text in self._pairs(inner, part.cocycle, algebra.basis).items()
         }
         with point_at_faults(self.source, inner):
             return central_extension(algebra, cocycle, part.center)
@@ -319,13 +282,9 @@ class _Algebras:
         """Refuse a product whose parts bring one name twice."""
         for place, name in enumerate(algebra.basis):
             if name in algebra.basis[:place]:
-                raise self.source.fault(
-                    key,
-                    f"the basis would have two vectors {name!r}",
-                    found=name,
-                    expected="names that differ",
-                    hint="Choose another name here.",
-                )
+                problem = f"the basis would have two vectors {name!r}"
+                expected, hint = "names that differ", "Choose another name here."
+                raise self.source.fault(key, problem, name, expected, hint)
 
 
 ALGEBRA = Table[Structure](

@@ -20,6 +20,7 @@ from coadjoint.spec.core.formulas import Formula, Scope, read_fitting
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
+from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.sections.variables import VARIABLES, state_of
 
 #: Ways to say how a chart moves.
@@ -45,7 +46,7 @@ class ChartPart(Part):
     hamiltonian: str = Field("", description="h of positions and momenta, in place of rates")
     lagrangian: str = Field("", description="l of positions and velocities, in place of rates")
     pairs: list[_Pair] = Field(
-        [], description="positions with their momenta or velocities, beside h or l"
+        [], description="positions with their momenta or velocities, with h or l"
     )
 
 
@@ -73,7 +74,7 @@ class DeclaredChart:
         where: Functions that are zero throughout.
         kind: ``rates``, ``hamiltonian`` or ``lagrangian``: how the motion is given.
         motion: The rates by variable, or h or l by its kind.
-        pairs: Positions with their momenta or velocities, beside h or l.
+        pairs: Positions with their momenta or velocities, with h or l.
     """
 
     name: str
@@ -89,18 +90,8 @@ def read_charts(reading: Reading, parts: Mapping[str, ChartPart]) -> tuple[Decla
     """The declared charts, in order.
 
     Raises:
-        SpecError: A formula does not fit, something is missing or too much, or the motion is one
-            that the kernel solves for.
+        SpecError: A formula does not fit, or something is missing or too much.
     """
-    for table in ("constraints", "reduction"):
-        if parts and getattr(reading.file, table):
-            raise reading.at_key(
-                ("charts",),
-                f"[charts] does not go with [{table}]",
-                table,
-                "a motion whose rates are written out",
-                f"Remove [charts], or [{table}].",
-            )
     return tuple(_read_chart(reading, name, part) for name, part in parts.items())
 
 
@@ -113,25 +104,20 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
     scope = reading.scope("a chart", (), shapes)
     for v in variables:
         reading.declare(Naming((*key, "variables", v.name), v.name, v.components))
-    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading))}
+    reduction = REDUCTION.of(reading)
+    fixed = {} if reduction is None else reduction.section
+    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading)) if v.name not in fixed}
     given = [each for each in _MOTIONS if getattr(part, each)]
     if len(given) != 1:
-        raise reading.at_key(
-            key,
-            f"the chart has {list_names(given) or 'no motion'}",
-            list_names(given),
-            f"exactly one of {list_names(_MOTIONS)}",
-            "Write rates = { r = ... } for every variable.",
-        )
+        problem = f"the chart has {list_names(given) or 'no motion'}"
+        expected = f"exactly one of {list_names(_MOTIONS)}"
+        hint = "Write rates = { r = ... } for every variable."
+        raise reading.at_key(key, problem, list_names(given), expected, hint)
     (kind,) = given
     if kind == "rates" and part.pairs:
-        raise reading.at_key(
-            (*key, "pairs"),
-            "the pairs say nothing beside rates",
-            "pairs",
-            "pairs beside a Hamiltonian or a Lagrangian",
-            "Remove pairs.",
-        )
+        problem = "there are pairs with rates"
+        expected = "pairs only with a Hamiltonian or a Lagrangian"
+        raise reading.at_key((*key, "pairs"), problem, "pairs", expected, "Remove pairs.")
     if kind == "rates":
         motion = _read_each(reading, (*key, "rates"), part.rates, scope, own)
     else:
@@ -161,7 +147,8 @@ def _read_each(
     """A formula for each name, of its shape."""
     for name in texts:
         if name not in shapes:
-            raise reading.unknown((*key, name), "variable", name, shapes, "none")
+            problem = f"there is no variable {name!a}"
+            raise reading.unknown((*key, name), problem, name, shapes, is_key=True)
     missing = [name for name in shapes if name not in texts]
     if missing:
         raise _incomplete(reading, key, missing)
@@ -177,12 +164,9 @@ def _check_pairs(reading: Reading, key: KeyPath, part: ChartPart, own: Mapping[s
     wrong = [name for name in paired if name not in own or paired.count(name) > 1]
     wrong += [q for q, p in part.pairs if q in own and p in own and own[q] != own[p]]
     if wrong:
-        raise reading.at_key(
-            (*key, "pairs") if part.pairs else key,
-            f"{wrong[0]!r} is in no pair of one shape, or in two",
-            wrong[0],
-            f"each of {list_names(own)} in one pair",
-        )
+        problem = f"{wrong[0]!r} is in no pair of one shape, or in two"
+        expected = f"each of {list_names(own)} in one pair"
+        raise reading.at_key((*key, "pairs") if part.pairs else key, problem, wrong[0], expected)
     missing = [name for name in own if name not in paired]
     if missing:
         raise _incomplete(reading, (*key, "pairs") if part.pairs else key, missing)
@@ -201,5 +185,4 @@ CHARTS = Table[tuple[DeclaredChart, ...]](
     "the same motion in other variables, by name",
     read_charts,
     many=True,
-    absent=(),
 )

@@ -196,13 +196,8 @@ def _split_sides(reading: Reading, key: KeyPath, text: str) -> tuple[str, str]:
             depth += (letter in "([") - (letter in ")]")
             if letter == "," and depth == 0:
                 return inner[:place].strip(), inner[place + 1 :].strip()
-    raise reading.source.fault(
-        key,
-        f"{text!a} is not a bracket",
-        found=text,
-        expected="a key such as '{L, A}'",
-        at=reading.source.positions.key(key),
-    )
+    problem, expected = f"{text!a} is not a bracket", "a key such as '{L, A}'"
+    raise reading.at_key(key, problem, text, expected)
 
 
 def _read_side(reading: Reading, key: KeyPath, text: str, side: str) -> Formula:
@@ -212,18 +207,14 @@ def _read_side(reading: Reading, key: KeyPath, text: str, side: str) -> Formula:
         formula = _read_any(reading, key, side, "a side of a bracket")
     except CoadjointError as error:
         problem = str(error).splitlines()[0].partition(f"{text}: ")[2] or str(error)
-        raise reading.source.fault(
-            key, f"{side!a}: {problem}".rstrip("."), found=error.parts.get("found"), at=at
+        raise reading.fault(
+            key, f"{side!a}: {problem}".rstrip("."), error.parts.get("found"), at=at
         ) from None
     if len(formula.shape) > 1:
-        raise reading.source.fault(
-            key,
-            f"{side!a} is {words(formula.shape)}",
-            found=side,
-            expected="scalars and vectors in a bracket",
-            hint="Take a row or a component of it, as A[1] or A[1, 2].",
-            at=at,
-        )
+        problem = f"{side!a} is {words(formula.shape)}"
+        expected = "scalars and vectors in a bracket"
+        hint = "Take a row or a component of it, as A[1] or A[1, 2]."
+        raise reading.fault(key, problem, side, expected, hint, at=at)
     return formula
 
 
@@ -235,13 +226,10 @@ def _check_claims(reading: Reading) -> None:
     if bare and not any(variable.role == "momentum" for variable in variables):
         for table in ("casimirs", "brackets"):
             if getattr(claims, table):
-                raise source.fault(
-                    ("claims", table),
-                    f"there are {table} without a bracket",
-                    found=table,
-                    expected="a Lagrangian, momenta or [poisson] that give a bracket",
-                    hint=f"Remove {table}, or declare [lagrangian] and a route that takes it.",
-                )
+                problem = f"there are {table} without a bracket"
+                expected = "a Lagrangian, momenta or [poisson] that give a bracket"
+                hint = f"Remove {table}, or declare [lagrangian] and a route that takes it."
+                raise source.fault(("claims", table), problem, table, expected, hint)
     particles = [variable for variable in variables if variable.role == "coordinate"]
     flat = [q for q in particles if q.value_shape not in ((3,), (3, 3)) or q.form == "symmetric"]
     if claims.galilean.claim and (file.newton is None or flat):
@@ -251,8 +239,8 @@ def _check_claims(reading: Reading) -> None:
             f"the coordinate {name!r} is not a particle in space"
             if flat
             else "there is no [newton]",
-            found=name,
-            expected="laws in [newton] of coordinates with shape = [3], one for each particle, or "
+            name,
+            "laws in [newton] of coordinates with shape = [3], one for each particle, or "
             'of one with shape = [9] and form = "matrix", a row for each particle',
         )
 

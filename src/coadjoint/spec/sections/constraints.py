@@ -84,8 +84,8 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
     """The constraints in declared order.
 
     Raises:
-        SpecError: One is no equation between velocities, or beside them stands what a constrained
-            motion does not have.
+        SpecError: One is not an equation between velocities, or the spec has with them what a
+            constrained motion does not have.
     """
     source, file = reading.source, reading.file
     _check_unasked(source, file)
@@ -123,13 +123,10 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
     for definition in sorted(find_definitions_with_reactions(reading.file)):
         name = signature(definition)[0]
         if name in names:
-            raise reading.source.fault(
-                key,
-                f"the constraint rests on {name}, which names a reaction",
-                found=name,
-                expected="an equation between velocities, which no reaction enters",
-                hint=f"Write {name} without reactions, or use it in [forces] alone.",
-            )
+            problem = f"the constraint rests on {name}, which names a reaction"
+            expected = "an equation between velocities, which no reaction enters"
+            hint = f"Write {name} without reactions, or use it in [forces] alone."
+            raise reading.fault(key, problem, name, expected, hint)
 
 
 def _check_unasked(source: Source, file: Any) -> None:
@@ -139,7 +136,6 @@ def _check_unasked(source: Source, file: Any) -> None:
         SpecError: Something is, with what to declare instead.
     """
     gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
-    unbracketed = "none, since a constraint that gives no velocity leaves no bracket of the state"
     asked = {"casimirs": "claims of Casimirs", "brackets": "claims of brackets"}
     for key, what in asked.items():
         if getattr(file.claims, key) and not gives:
@@ -147,9 +143,10 @@ def _check_unasked(source: Source, file: Any) -> None:
                 ("claims", key),
                 f"there are {what} with [constraints]",
                 found=key,
-                expected=unbracketed,
-                hint="Declare momenta along the constraints in [momenta], and name what is "
-                "conserved in claims.conserved.",
+                expected="constraints that each give a velocity, since the bracket is one of the "
+                "momenta of all velocities that are left",
+                hint="Solve the constraints for velocities, as w == y*u, or name what is conserved "
+                "in claims.conserved.",
             )
 
 
@@ -171,7 +168,6 @@ CONSTRAINTS = Table[tuple[Constraint, ...]](
     read_constraints,
     many=True,
     least=1,
-    absent=(),
     names=_name_all,
     acts=True,
 )

@@ -46,13 +46,9 @@ def _read_name(source: Source, text: str) -> str:
     """The name in a key of [definitions]."""
     if not _KEY.fullmatch(text):
         key: KeyPath = ("definitions", text)
-        raise source.fault(
-            key,
-            f"{text!a} cannot be defined",
-            found=text,
-            expected='a name, or a name with arguments in quotes, such as "V(s, d)"',
-            at=source.positions.key(key),
-        )
+        problem = f"{text!a} cannot be defined"
+        expected = 'a name, or a name with arguments in quotes, such as "V(s, d)"'
+        raise source.at_key(key, problem, text, expected)
     return signature(text)[0]
 
 

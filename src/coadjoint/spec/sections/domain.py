@@ -45,7 +45,7 @@ def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, 
     """The declared inequalities, which may name reactions: a body leaves the plane.
 
     Raises:
-        SpecError: One is no inequality between scalars, or has a name that none may have.
+        SpecError: One is not an inequality between scalars, or has a reserved name.
     """
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
     scope = reading.scope("a condition", motion_roles(reading), reactions)
@@ -58,9 +58,7 @@ def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, 
             raise reading.at_key(key, problem, name, expected, hint)
         left, sign, right = read_relation(reading.source, key, text, INEQUALITIES, scope)
         if left.shape:
-            raise reading.source.fault(
-                key, f"both sides are {words(left.shape)}", found=text, expected="two scalars"
-            )
+            raise reading.fault(key, f"both sides are {words(left.shape)}", text, "two scalars")
         conditions.append(Condition(name, left, sign, right))
     return tuple(conditions)
 

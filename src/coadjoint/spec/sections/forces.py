@@ -1,4 +1,4 @@
-"""Forces: the table [forces], what acts beside the energy.
+"""Forces: the table [forces], what acts in addition to the energy.
 
 Comes in: formulas by the names of what they act along. Goes out: a `Formula` for each.
 Read next: `coadjoint.spec.sections.relaxation`.
@@ -73,9 +73,10 @@ def read_along(
 FORCES = Table[dict[str, Formula]](
     "forces",
     str,
-    "forces beside the energy, by the names of the velocities they work on",
+    "forces in addition to the energy, by the names of the velocities they work on",
     read_forces,
     many=True,
+    absent={},
     acts=True,
 )
 
@@ -89,7 +90,7 @@ class DissipationPart(Part):
 def _no_velocity(
     reading: Reading, key: KeyPath, name: str, velocities: Mapping[str, Variable]
 ) -> CoadjointError:
-    """An error for something along what is no velocity, or nothing that a force may change."""
+    """An error for a force along something that forces do not act along."""
     roles = {each.role for each in velocities.values()} or {"velocity"}
     what = "velocity" if roles == {"velocity"} else "variable"
     problem, hint = f"there is no such {what} as {name!a}", did_you_mean(name, velocities)
@@ -121,7 +122,7 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     """Rayleigh's function.
 
     Raises:
-        SpecError: It is no formula of velocities.
+        SpecError: It is not a formula of velocities.
     """
     key: KeyPath = ("dissipation", "R")
     reactions = reaction_shapes(CONSTRAINTS.of(reading))
@@ -132,16 +133,14 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
     for each in VARIABLES.of(reading):
         if each.role == "velocity" and each not in velocities and named & _names_of(each):
             problem, hint = _say_massless(each)
-            raise reading.source.fault(
-                key, problem, found=each.name, expected="velocities with a mass", hint=hint
-            )
+            raise reading.fault(key, problem, each.name, "velocities with a mass", hint)
     if not named & {name for each in velocities for name in _names_of(each)}:
-        raise reading.source.fault(
+        raise reading.fault(
             key,
             "Rayleigh's function names no velocity",
-            found=part.R,
-            expected="a function of velocities, whose force is -dR/dxi",
-            hint=f"Name {list_names(v.name for v in velocities)} in it, or remove [dissipation]."
+            part.R,
+            "a function of velocities, whose force is -dR/dxi",
+            f"Name {list_names(v.name for v in velocities)} in it, or remove [dissipation]."
             if velocities
             else "Write what acts along a momentum in [forces].",
         )

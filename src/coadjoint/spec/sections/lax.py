@@ -58,12 +58,9 @@ def read_lax(reading: Reading, part: LaxPart) -> Lax:
 def _check_spectral(reading: Reading, name: str) -> None:
     """The spectral parameter has a name of its own; it may be a keyword, since no code names it."""
     if not NAME.fullmatch(name) or name in reading.owners or name in FUNCTIONS:
-        raise reading.source.fault(
-            ("lax", "spectral"),
-            f"{name!a} cannot name the spectral parameter",
-            found=name,
-            expected="a name that nothing else has, such as 'lambda'",
-        )
+        problem = f"{name!a} cannot name the spectral parameter"
+        expected = "a name that nothing else has, such as 'lambda'"
+        raise reading.fault(("lax", "spectral"), problem, name, expected)
 
 
 def _read_square(reading: Reading, which: str, text: str, scope: Scope) -> Formula:

@@ -33,7 +33,7 @@ def point_at_faults(source: Source, key: KeyPath) -> Iterator[None]:
         kind, parts = type(error), dict(error.parts)
         value = parts.pop("found", "")
         parts.pop("expected", None)  # the message says it already
-        raise source.fault(key, str(error), found=value, kind=kind, **parts) from None
+        raise source.fault(key, str(error), value, kind=kind, **parts) from None
 
 
 def places_of(
@@ -61,12 +61,8 @@ def block_places(
     if isinstance(block, list):
         places = places_of(source, key, block, algebra.basis)
         if len(set(places)) < len(places):
-            raise source.fault(
-                key,
-                "a name of the basis stands twice",
-                found=list_names(block),
-                expected="each name once",
-            )
+            problem = "a name of the basis stands twice"
+            raise source.fault(key, problem, list_names(block), "each name once")
         return places
     if block in algebra.blocks:
         return algebra.blocks[block]
@@ -86,8 +82,8 @@ def check_basis_names(source: Source, key: KeyPath, names: Sequence[str]) -> Non
             raise source.fault(
                 (*key, place) if (*key, place) in source.positions.values else key,
                 f"{name!a} is not a name",
-                found=name,
-                expected="a letter, then letters and digits, such as e1",
+                name,
+                "a letter, then letters and digits, such as e1",
             )
 
 
@@ -101,7 +97,7 @@ def read_matrices(
     """Sparse matrices by name of the basis, and their common size.
 
     Raises:
-        SpecError: A name is not in the basis, a matrix has another size, or an entry is no number.
+        SpecError: A name is not in the basis, or a matrix has another size or other entries.
         LimitError: There are too many entries.
     """
     size = len(next(iter(tables.values()), []))
@@ -114,22 +110,14 @@ def read_matrices(
         raise source.too_many(key, problem, entries, "MATRIX_ENTRIES", hint=hint)
     for name, rows in tables.items():
         if name not in basis:
-            raise source.fault(
-                (*key, name),
-                f"{name!a} is not in the basis",
-                found=name,
-                expected=f"names of the basis: {list_names(basis)}",
-                hint=did_you_mean(name, basis),
-                at=source.positions.key((*key, name)),
-            )
+            problem = f"{name!a} is not in the basis"
+            expected = f"names of the basis: {list_names(basis)}"
+            raise source.at_key((*key, name), problem, name, expected, did_you_mean(name, basis))
         lengths = [len(row) for row in rows]
         if not size or lengths != [size] * size:
-            raise source.fault(
-                (*key, name),
-                f"the matrix of {name!r} has rows of {list_names(map(str, lengths))} numbers",
-                found=list_names(map(str, lengths)),
-                expected=f"{size or 1} rows of {size or 1} numbers, like the first matrix",
-            )
+            problem = f"the matrix of {name!r} has rows of {list_names(map(str, lengths))} numbers"
+            expected = f"{size or 1} rows of {size or 1} numbers, like the first matrix"
+            raise source.fault((*key, name), problem, list_names(map(str, lengths)), expected)
     return {
         name: _read_matrix(source, (*key, name), rows, scalars) for name, rows in tables.items()
     }, size

@@ -63,7 +63,7 @@ def read_bracket(
         shape = shape_of(tree, scope)
         if shape != (size, size):
             problem = f"the value is {words(shape)}"
-            raise fault_at(tree, problem, found=words(shape), expected=words((size, size)))
+            raise fault_at(tree, problem, words(shape), words((size, size)))
         scalars.check_terms(tree, check_size(tree, scope))
         if any(degree_in(tree, (name,)) != 1 for name in PAIR):
             raise fault_at(tree, "this is not linear in X and in Y", expected=_EXPECTED)
@@ -79,13 +79,9 @@ def _check_free(tree: Node, scalars: Scalars) -> None:
     """X and Y are the matrices, so no parameter may have these names."""
     for node in walk(tree):
         if isinstance(node, Name) and node.name in PAIR and node.name in scalars.shapes:
-            raise fault_at(
-                node,
-                f"{node.name!r} is a parameter, and stands for a matrix of the algebra here",
-                found=node.name,
-                expected="parameters with other names than X and Y",
-                hint="Rename the parameter.",
-            )
+            problem = f"{node.name!r} is a parameter, and stands for a matrix of the algebra here"
+            expected, hint = "parameters with other names than X and Y", "Rename the parameter."
+            raise fault_at(node, problem, node.name, expected, hint)
 
 
 class _Evaluation:

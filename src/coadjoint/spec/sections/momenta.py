@@ -67,14 +67,11 @@ def read_sections(reading: Reading, parts: Mapping[str, SectionPart]) -> tuple[S
     Raises:
         SpecError: There is no Lagrangian, no such velocity that nothing gives, or a shape differs.
     """
-    if parts and (reading.file.lagrangian is None or reading.file.poisson is not None):
-        raise reading.source.fault(
-            ("momenta",),
-            "there is [momenta] without a Lagrangian, or beside a declared bracket",
-            found="momenta",
-            expected="[lagrangian] alone, whose derivatives by the velocities are the momenta",
-            hint="Name the momentum in [observables], and claim it in claims.conserved.",
-        )
+    if reading.file.lagrangian is None or reading.file.poisson is not None:
+        problem = "there is [momenta] without a Lagrangian, or with a declared bracket"
+        expected = "[lagrangian] alone, whose derivatives by the velocities are the momenta"
+        hint = "Name the momentum in [observables], and claim it in claims.conserved."
+        raise reading.fault(("momenta",), problem, "momenta", expected, hint)
     scope = reading.scope("a section", position_roles(reading), driven=())
     velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
     independent = {each.name: each for each in velocities if each.independent is not False}

@@ -46,7 +46,8 @@ def read_newton(reading: Reading, parts: Mapping[str, NewtonPart]) -> tuple[Forc
     coordinates = {each.name: each for each in variables if each.role == "coordinate"}
     for name in parts:
         if name not in coordinates:
-            raise reading.unknown(("newton", name), "coordinate", name, coordinates, "a coordinate")
+            problem = f"there is no coordinate {name!a}"
+            raise reading.unknown(("newton", name), problem, name, coordinates, is_key=True)
     scope = reading.scope("Newton's law", ("coordinate", "velocity"))
     moving = {each.of for each in state_of(variables) if each.role == "velocity"}
     for name in coordinates:
@@ -64,22 +65,14 @@ def read_newton(reading: Reading, parts: Mapping[str, NewtonPart]) -> tuple[Forc
 def _check_law(reading: Reading, name: str, given: bool, moving: bool) -> None:
     """Every coordinate has a law, and its velocity is part of the state."""
     if not given:
-        raise reading.source.fault(
-            ("newton",),
-            f"the coordinate {name!r} has no law",
-            found=name,
-            expected="a law for every coordinate",
-            hint=f'Write for instance {name} = {{ force = "-{name}" }}.',
-        )
+        problem, expected = f"the coordinate {name!r} has no law", "a law for every coordinate"
+        hint = f'Write for instance {name} = {{ force = "-{name}" }}.'
+        raise reading.fault(("newton",), problem, name, expected, hint)
     if not moving:
-        raise reading.source.fault(
-            ("newton", name),
-            f"no velocity of {name!r} is part of the state",
-            found=name,
-            expected="a velocity of every coordinate, and no momenta",
-            hint=_advise_velocity(reading, name),
-            at=reading.source.positions.key(("newton", name)),
-        )
+        problem = f"no velocity of {name!r} is part of the state"
+        expected = "a velocity of every coordinate, and no momenta"
+        hint = _advise_velocity(reading, name)
+        raise reading.at_key(("newton", name), problem, name, expected, hint)
 
 
 def _advise_velocity(reading: Reading, name: str) -> str:
@@ -120,7 +113,6 @@ NEWTON = Table[tuple[Force, ...]](
     read_newton,
     many=True,
     least=1,
-    absent=(),
     routed=True,
     example='q = { mass = "m", force = "-k*q" }',
 )

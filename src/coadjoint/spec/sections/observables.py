@@ -1,4 +1,4 @@
-"""Observables: the table [observables], what is emitted beside the dynamics.
+"""Observables: the table [observables], what is emitted with the dynamics.
 
 Comes in: expressions. Goes out: `Observable` records of scalars, vectors and matrices.
 Read next: `coadjoint.spec.sections.symmetries`.
@@ -21,7 +21,7 @@ from coadjoint.spec.sections.variables import motion_roles
 
 
 class ObservablePart(TextPart):
-    """A scalar, vector or matrix emitted beside the dynamics."""
+    """A scalar, vector or matrix emitted with the dynamics."""
 
     alone = "expression"
 
@@ -32,7 +32,7 @@ class ObservablePart(TextPart):
 
 @dataclass(frozen=True)
 class Observable:
-    """A declared scalar, vector or matrix emitted beside the dynamics."""
+    """A declared scalar, vector or matrix emitted with the dynamics."""
 
     name: str
     formula: Formula
@@ -67,7 +67,7 @@ def read_observables(
 OBSERVABLES = Table[tuple[Observable, ...]](
     "observables",
     ObservablePart,
-    "what is emitted beside the dynamics",
+    "what is emitted with the dynamics",
     read_observables,
     many=True,
     names=name_each,

@@ -8,61 +8,42 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from math import prod
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from coadjoint.spec.core.components import Components, Shape, matrix_size
-from coadjoint.spec.core.parts import Part
+from coadjoint.spec.core.components import Argument, matrix_size
+from coadjoint.spec.core.parts import ArgumentPart
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.values import Length, Numbers, Prose, Unit, misfit_form, read_default
+from coadjoint.spec.core.values import misfit_form, read_default
 
 
-class ParameterPart(Part):
+class ParameterPart(ArgumentPart):
     """A constant of the system."""
 
-    shape: Annotated[list[Length], Field(max_length=2)] = Field(
-        [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix"
-    )
     form: Literal["antisymmetric", "symmetric"] | None = Field(
         None,
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, or those with the diagonal, row by row",
     )
     positive: bool = Field(False, description="whether every component is positive")
-    default: Numbers | None = Field(
-        None, description="exact default: a number for all components, or nested lists of them"
-    )
-    unit: Unit = Field("1", description="unit, such as 'kg m^2'; '1' if dimensionless")
-    doc: Prose = Field("", description="what it is, for documents")
 
 
 @dataclass(frozen=True)
-class Parameter(Components):
+class Parameter(Argument):
     """A constant of the system.
 
     Attributes:
-        name: As declared, e.g. ``chi``.
-        shape: ``()``, ``(n,)`` or ``(n, m)``; with a form ``(n,)`` for the n entries that it keeps.
         positive: Whether every component may be assumed positive.
-        default: One exact value per component, row by row; None if the user must give it.
-        unit: Unit text, ``"1"`` if dimensionless.
-        doc: Free text for documents.
         form: ``"antisymmetric"`` or ``"symmetric"`` if it is such a matrix in formulas, else "".
     """
 
     role: ClassVar[str] = "parameter"
 
-    name: str
-    shape: Shape
     positive: bool = False
-    default: tuple[Fraction, ...] | None = None
-    unit: str = "1"
-    doc: str = ""
     form: str = ""
 
 
@@ -89,13 +70,18 @@ def _read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter
     key: KeyPath = ("parameters", name, "default")
     default = read_default(source, key, part.default, shape)
     if default is not None and part.positive and min(default) <= 0:
-        raise source.fault(
-            key,
-            f"the default {min(default)} of {name!r} is not positive",
-            found=str(min(default)),
-            expected="positive numbers, since positive = true",
-        )
-    return Parameter(name, shape, part.positive, default, part.unit, part.doc, form)
+        problem = f"the default {min(default)} of {name!r} is not positive"
+        expected = "positive numbers, since positive = true"
+        raise source.fault(key, problem, str(min(default)), expected)
+    return Parameter(
+        name=name,
+        shape=shape,
+        default=default,
+        unit=part.unit,
+        doc=part.doc,
+        positive=part.positive,
+        form=form,
+    )
 
 
 PARAMETERS = Table[tuple[Parameter, ...]](

@@ -6,7 +6,6 @@ the Jacobi identity is proved later. Read next: `coadjoint.spec.sections.newton`
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,15 +14,14 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from coadjoint.spec.core.components import unpack
-from coadjoint.spec.core.faults import did_you_mean, list_names
+from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.pairs import read_pairs
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.values import POISSON_PATTERN
 from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of, state_roles
-
-_KEY = re.compile(POISSON_PATTERN, re.ASCII)
 
 
 class PoissonPart(Part):
@@ -66,7 +64,7 @@ class Poisson:
         entries: ``(i, j, {x_i, x_j})`` by places among the components of the state, each pair once:
             the declared brackets, or the magnetic terms of a canonical one.
         pairs: ``(i, j)`` of a position and its momentum of a canonical bracket, else empty.
-        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices beside
+        weights: ``{x_i, x_j}`` of each pair: 1, but 1/2 for an entry of symmetric matrices off
             the diagonal, since there the pairing is ``tr(P dS/dt)``, which counts it twice.
     """
 
@@ -131,8 +129,8 @@ class _Bracket:
             raise self.source.fault(
                 ("poisson", "nambu"),
                 f"{len(texts)} distinguished functions of {n} coordinates",
-                found=len(texts),
-                expected=f"{n - 2}, two fewer than there are coordinates"
+                len(texts),
+                f"{n - 2}, two fewer than there are coordinates"
                 if n > 2
                 else "at least 3 coordinates",
             )
@@ -145,37 +143,12 @@ class _Bracket:
         self, way: str, texts: Mapping[str, str], allowed: Sequence[int]
     ) -> tuple[tuple[int, int, Formula], ...]:
         """Brackets of components, each pair once."""
-        entries: dict[tuple[int, int], Formula] = {}
-        for text, value in texts.items():
-            key: KeyPath = ("poisson", way, text)
-            i, j = self._pair(key, text, allowed)
-            if i == j or (i, j) in entries or (j, i) in entries:
-                raise self.source.fault(
-                    key,
-                    f"{text!a} is {'declared twice' if i != j else '0 and needs no declaration'}",
-                    found=text,
-                    expected="each pair of two components once, in either order",
-                    at=self.source.positions.key(key),
-                )
-            entries[i, j] = self._formula(key, value, "a bracket")
-        return tuple((i, j, formula) for (i, j), formula in entries.items())
-
-    def _pair(self, key: KeyPath, text: str, allowed: Sequence[int]) -> tuple[int, int]:
-        """The places of X1 and X2 in a key ``{X1, X2}``."""
-        names = [self.state[place] for place in allowed]
-        match = _KEY.fullmatch(text)
-        unknown = [name for name in match.groups() if name not in names] if match else [text]
-        if match is None or unknown:
-            example = list_names(names[:2]) if len(names) > 1 else "X1, X2"
-            raise self.source.fault(
-                key,
-                f"{text!a} is not a bracket of these components",
-                found=unknown[0],
-                expected=f"a key such as '{{{example}}}' with components among {list_names(names)}",
-                hint=did_you_mean(unknown[0], names),
-                at=self.source.positions.key(key),
-            )
-        return self.state.index(match[1]), self.state.index(match[2])
+        key, names = ("poisson", way), [self.state[place] for place in allowed]
+        pairs = read_pairs(self.source, key, texts, POISSON_PATTERN, names)
+        return tuple(
+            (allowed[i], allowed[j], self._formula((*key, text), texts[text], "a bracket"))
+            for (i, j), text in pairs.items()
+        )
 
     def _canonical(self, names: Sequence[Sequence[str]]) -> dict[tuple[int, int], Fraction]:
         """The places of positions and momenta with their brackets; others commute with all."""
@@ -190,12 +163,9 @@ class _Bracket:
                     f"{n!r} {_describe(len(c), f)}"
                     for n, c, f in zip(pair, (q, p), forms, strict=True)
                 ]
-                raise self.source.fault(
-                    key,
-                    " and ".join(sides),
-                    found=list_names(pair),
-                    expected="a position and a momentum of one shape and form",
-                )
+                problem = " and ".join(sides)
+                expected = "a position and a momentum of one shape and form"
+                raise self.source.fault(key, problem, list_names(pair), expected)
             paired += (*q, *p)
             weights |= zip(zip(q, p, strict=True), pairing_weights(len(q), forms[0]), strict=True)
         self._check_single(paired)
@@ -214,13 +184,9 @@ class _Bracket:
                 often = "no pair" if place not in places else "more than one pair"
                 ways = "Declare a constant as a parameter, or let a force or [metriplectic] move it"
                 hint = "" if place in places else f"{ways}."
-                raise self.source.fault(
-                    ("poisson", "canonical"),
-                    f"the coordinate {name!r} is in {often}",
-                    found=name,
-                    expected="each coordinate in one pair",
-                    hint=hint,
-                )
+                problem = f"the coordinate {name!r} is in {often}"
+                expected = "each coordinate in one pair"
+                raise self.source.fault(("poisson", "canonical"), problem, name, expected, hint)
 
 
 def _describe(count: int, form: str) -> str:

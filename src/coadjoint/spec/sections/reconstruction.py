@@ -131,12 +131,9 @@ def _read_one(reading: Reading, name: str, part: ReconstructedPart, scope: Scope
         rate = reading.formula(reading.source.place_of(key, "rate"), part.rate, scope)
     default = read_default(reading.source, (*key, "default"), part.default, _shape(part))
     if part.attitude is not None and default is not None and not any(default):
-        raise reading.source.fault(
-            (*key, "default"),
-            "the quaternion 0 is not an attitude",
-            found=[0] * len(default),
-            expected="a quaternion of length 1, such as [1, 0, 0, 0]",
-        )
+        problem = "the quaternion 0 is not an attitude"
+        expected = "a quaternion of length 1, such as [1, 0, 0, 0]"
+        raise reading.fault((*key, "default"), problem, [0] * len(default), expected)
     return Reconstructed(
         name=name,
         rate=rate,
@@ -154,12 +151,12 @@ def _check_turned(reading: Reading, key: KeyPath, name: str) -> None:
     spanned = {place for v in variables if v.role == "velocity" for place in v.block}
     places = None if algebra is None else turning_places(algebra)
     if places is None or not set(places) <= spanned:
-        raise reading.source.fault(
+        raise reading.fault(
             key,
             f"nothing turns the attitude {name!r}",
-            found="no algebra" if algebra is None else algebra.name,
-            expected='a velocity over the rotations of "so(3)" or "se(3)"',
-            hint='Without one, declare an angle: theta = "omega".',
+            "no algebra" if algebra is None else algebra.name,
+            'a velocity over the rotations of "so(3)" or "se(3)"',
+            'Without one, declare an angle: theta = "omega".',
         )
 
 
@@ -181,5 +178,6 @@ RECONSTRUCTION = Table[tuple[Reconstructed, ...]](
     "what follows from the motion, as x = 'v'",
     read_reconstruction,
     many=True,
+    always=True,  # what follows for a body that rolls is not declared
     names=_name_all,
 )

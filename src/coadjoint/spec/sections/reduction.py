@@ -24,7 +24,7 @@ class ReductionPart(Part):
     """A submanifold that the motion keeps, on which some variables follow from the others."""
 
     section: Annotated[dict[str, str], Field(min_length=1)] = Field(
-        description="what variables are there, as y = 'cross(x, K*x)'; they are no state any more",
+        description="what variables are there, as y = 'cross(x, K*x)'; the state is without them",
         json_schema_extra=name_pattern(),
     )
     where: list[str] = Field([], description="functions of all variables that vanish there")
@@ -47,8 +47,8 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
     """The declared submanifold.
 
     Raises:
-        SpecError: What is restricted is no vector or scalar of the state, something is left of no
-            variable, or the spec has what a restricted motion cannot.
+        SpecError: What is restricted is not a vector or scalar of the state, no variable is left,
+            or the spec has a table that a restricted motion cannot have.
     """
     _check_alone(reading)
     variables = state_of(VARIABLES.of(reading))
@@ -56,12 +56,11 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
     for name in part.section:
         _check_eliminated(reading, name, known)
     if len(part.section) == len(known):
-        raise reading.source.fault(
-            ("reduction", "section"),
+        problem, expected = (
             "no variable of the state is left",
-            found=list_names(part.section),
-            expected="a section over at least one variable",
+            "a section over at least one variable",
         )
+        raise reading.fault(("reduction", "section"), problem, list_names(part.section), expected)
     roles = tuple(dict.fromkeys(variable.role for variable in variables))
     left: list[Declared] = [q for q in reading.quantities if q.name not in part.section]
     of_left = make_scope("a section", roles, left)
@@ -97,33 +96,23 @@ def _check_alone(reading: Reading) -> None:
     for key, given in alien.items():
         if given:
             name = str(key[-1])
-            raise reading.source.fault(
-                key,
-                f"{name!r} does not go with [reduction], whose motion has no bracket",
-                found=name,
-                expected="a state, a Hamiltonian, forces, observables and integrals",
-                hint="Declare it in a spec of the whole system.",
-            )
+            problem = f"{name!r} does not go with [reduction], whose motion has no bracket"
+            expected = "a state, a Hamiltonian, forces, observables and integrals"
+            hint = "Declare it in a spec of the whole system."
+            raise reading.fault(key, problem, name, expected, hint)
     if file.hamiltonian is None:
-        raise reading.source.fault(
-            ("reduction",),
-            "there is no Hamiltonian",
-            found="hamiltonian",
-            expected="a table [hamiltonian] with [reduction]",
-        )
+        problem, expected = "there is no Hamiltonian", "a table [hamiltonian] with [reduction]"
+        raise reading.fault(("reduction",), problem, "hamiltonian", expected)
 
 
 def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]) -> None:
     """What the section gives is a variable, and no matrix kept as a list."""
     if name not in known or known[name].form:
         kind = "is a matrix kept as a list" if name in known else "is no variable"
-        raise reading.at_key(
-            ("reduction", "section", name),
-            f"{name!r} {kind}",
-            name,
-            f"one of {list_names(n for n, v in known.items() if not v.form)}",
-            did_you_mean(name, known),
-        )
+        problem = f"{name!r} {kind}"
+        expected = f"one of {list_names(n for n, v in known.items() if not v.form)}"
+        hint = did_you_mean(name, known)
+        raise reading.at_key(("reduction", "section", name), problem, name, expected, hint)
 
 
 REDUCTION = Table[Submanifold | None](

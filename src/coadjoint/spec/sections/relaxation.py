@@ -34,7 +34,7 @@ class MetriplecticPart(Part):
 
 @dataclass(frozen=True)
 class Relaxation:
-    """Dissipation by a symmetric bracket beside the Poisson bracket P.
+    """Dissipation by a symmetric bracket, in addition to the Poisson bracket P.
 
     Attributes:
         G: Symmetric and positive semidefinite: a scalar, times the unit matrix, or a matrix with a
@@ -73,13 +73,10 @@ def read_metriplectic(reading: Reading, part: MetriplecticPart) -> Relaxation:
         SpecError: As `read_double_bracket`, or both are declared.
     """
     if reading.file.double_bracket is not None:
-        raise reading.source.fault(
-            ("metriplectic",),
-            "there are both [double_bracket] and [metriplectic]",
-            found="metriplectic",
-            expected="one of them: the first keeps Casimirs, the second the energy",
-            hint="Remove [metriplectic] or [double_bracket].",
-        )
+        problem = "there are both [double_bracket] and [metriplectic]"
+        expected = "one of them: the first keeps Casimirs, the second the energy"
+        hint = "Remove [metriplectic] or [double_bracket]."
+        raise reading.fault(("metriplectic",), problem, "metriplectic", expected, hint)
     G = _read_metric(reading, "metriplectic", part.G)
     scope = reading.scope("an entropy", state_roles(reading), driven=())
     return Relaxation(G, reading.formula(("metriplectic", "S"), part.S, scope))
@@ -90,12 +87,12 @@ def _read_metric(reading: Reading, table: str, text: str) -> Formula:
     key: KeyPath = (table, "G")
     moving = [v for v in state_of(VARIABLES.of(reading)) if v.role == "velocity"]
     if moving:
-        raise reading.source.fault(
+        raise reading.fault(
             (table,),
             f"the state has the velocity {moving[0].name!r}, and G acts by a bracket of momenta",
-            found=moving[0].name,
-            expected="momenta in the state",
-            hint=f'Declare them, as in p = {{ role = "momentum", of = "{moving[0].of or "q"}" }}.',
+            moving[0].name,
+            "momenta in the state",
+            f'Declare them, as in p = {{ role = "momentum", of = "{moving[0].of or "q"}" }}.',
         )
     scope = reading.scope("a metric", motion_roles(reading))
     G = reading.formula(key, text, scope, any_shape=True)

@@ -63,13 +63,9 @@ def read_representations(
     for name, part in parts.items():
         key: KeyPath = ("representations", name)
         if not NAME.fullmatch(name) or name in KNOWN:
-            raise source.fault(
-                key,
-                f"{name!a} cannot name a representation",
-                found=name,
-                expected=f"a name other than {', '.join(KNOWN)}, which every algebra has",
-                at=source.positions.key(key),
-            )
+            problem = f"{name!a} cannot name a representation"
+            expected = f"a name other than {', '.join(KNOWN)}, which every algebra has"
+            raise source.at_key(key, problem, name, expected)
         if part.matrices is None:
             representations[name] = _on_matrices(source, key, algebra, name, part)
         elif part.left is None and part.right is None:
@@ -79,12 +75,9 @@ def read_representations(
             )
         else:
             side = "right" if part.left is None else "left"
-            raise source.fault(
-                (*key, side),
-                f"the representation {name!r} has both matrices and {side!r}",
-                found=side,
-                expected="either matrices over the basis, or blocks that act from left and right",
-            )
+            problem = f"the representation {name!r} has both matrices and {side!r}"
+            expected = "either matrices over the basis, or blocks that act from left and right"
+            raise source.fault((*key, side), problem, side, expected)
     return representations
 
 
@@ -93,14 +86,10 @@ def _on_matrices(
 ) -> Representation:
     """``A -> L A - A R`` with the matrices of two blocks, either of which may be missing."""
     if part.left is None and part.right is None:
-        raise source.fault(
-            key,
-            f"the representation {name!r} says nothing of how the algebra acts",
-            found=name,
-            expected="matrices, or a block of the algebra as left or right",
-            hint=f'Write for instance right = "{next(iter((*algebra.blocks, *algebra.basis)))}".',
-            at=source.positions.key(key),
-        )
+        problem = f"the representation {name!r} says nothing of how the algebra acts"
+        expected = "matrices, or a block of the algebra as left or right"
+        hint = f'Write for instance right = "{next(iter((*algebra.blocks, *algebra.basis)))}".'
+        raise source.at_key(key, problem, name, expected, hint)
     left, right = (
         _own_matrices(source, (*key, side), algebra, block)
         for side, block in (("left", part.left), ("right", part.right))
@@ -119,12 +108,9 @@ def _own_matrices(
     used = {n for i in places if algebra.matrices for at in algebra.matrices[i] for n in at}
     if not used:
         named = list_names(algebra.basis[i] for i in places)
-        raise source.fault(
-            key,
-            f"{algebra.name} has no matrices for {named}",
-            found=named,
-            expected="a block of an algebra that is given by matrices, such as so(3)",
-        )
+        problem = f"{algebra.name} has no matrices for {named}"
+        expected = "a block of an algebra that is given by matrices, such as so(3)"
+        raise source.fault(key, problem, named, expected)
     number = {old: new for new, old in enumerate(sorted(used))}
     return tuple(
         {(number[r], number[c]): x for (r, c), x in matrix.items()} if i in places else {}
@@ -138,11 +124,12 @@ REPRESENTATIONS = Table[dict[str, Representation]](
     "declared representations",
     read_representations,
     many=True,
+    absent={},
 )
 
 
 class ClebschPart(Part):
-    """A canonical pair of the route clebsch, beside those of the advected quantities."""
+    """A canonical pair of the route clebsch, in addition to those of the advected quantities."""
 
     representation: str = Field(description="how the algebra acts on it, such as 'adjoint'")
 

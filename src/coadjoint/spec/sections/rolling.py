@@ -60,19 +60,16 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
     """
     key = ("rolling",)
     if not reading.file.constraints:
-        raise reading.source.fault(
-            key,
-            "there are no constraints",
-            found="constraints",
-            expected='[constraints] with [rolling], as rolling = "Y == cross(Omega, s)"',
-        )
+        problem = "there are no constraints"
+        expected = '[constraints] with [rolling], as rolling = "Y == cross(Omega, s)"'
+        raise reading.fault(key, problem, "constraints", expected)
     turning, velocity = _find_body(reading, key)
     scope = reading.scope("an arm", position_roles(reading), driven=())
     _check_free(reading, key)
     normals = [v.name for v in VARIABLES.of(reading) if v.role == "advected" and v.shape == (3,)]
     if part.normal not in normals:
         problem = f"there is no advected vector {part.normal!a}"
-        raise reading.source.unknown((*key, "normal"), problem, part.normal, normals)
+        raise reading.unknown((*key, "normal"), problem, part.normal, normals)
     arm = read_fitting(reading.source, (*key, "arm"), part.arm, scope, (3,), part.normal)
     return Rolling(arm, part.normal, turning, velocity)
 
@@ -88,19 +85,13 @@ def _find_body(reading: Reading, key: KeyPath) -> tuple[str, str]:
     ]
     in_space = algebra is not None and turning_places(algebra) is not None
     if not all(names) or not in_space:
-        raise reading.source.fault(
-            key,
-            "there is no velocity of the block rotation and none of translation",
-            found=list_names(velocities.values()),
-            expected='the algebra "se(3)" with a velocity over each of these blocks',
-        )
+        problem = "there is no velocity of the block rotation and none of translation"
+        expected = 'the algebra "se(3)" with a velocity over each of these blocks'
+        raise reading.fault(key, problem, list_names(velocities.values()), expected)
     if invariance != "left":
-        raise reading.source.fault(
-            ("algebra", "invariance"),
-            "velocities are seen from space, and [rolling] sees them from the body",
-            found=invariance,
-            expected='invariance = "left" with [rolling]',
-        )
+        problem = "velocities are seen from space, and [rolling] sees them from the body"
+        expected = 'invariance = "left" with [rolling]'
+        raise reading.fault(("algebra", "invariance"), problem, invariance, expected)
     return names[0], names[1]
 
 
@@ -112,13 +103,12 @@ def _check_free(reading: Reading, key: KeyPath) -> None:
         owners |= dict.fromkeys(getattr(reading.file, table), table)
     for name in sorted(wanted & owners.keys()):
         what = "the attitude" if name.startswith(ATTITUDE) else "the point of contact"
-        raise reading.source.fault(
+        raise reading.fault(
             key,
             f"{name!r} is declared in [{owners[name]}], and it is what [rolling] calls {what}",
-            found=name,
-            expected=f"other names than {list_names(sorted(wanted))} for what is declared",
-            hint="The attitude and the point of contact are followed without being declared: "
-            "remove it."
+            name,
+            f"other names than {list_names(sorted(wanted))} for what is declared",
+            "The attitude and the point of contact are followed without being declared: remove it."
             if owners[name] == "reconstruction"
             else f"Call it '{name}_0'.",
         )

@@ -1,4 +1,4 @@
-"""Solved velocities: those that a constraint gives, and which are no part of the state.
+"""Solved velocities: those that a constraint gives, which are not part of the state.
 
 Comes in: the checked tables, before there are variables, since this decides what the state is. Goes
 out: the velocities with their constraints. Read next: `coadjoint.spec.sections.variables`.

@@ -76,7 +76,7 @@ class SymmetryPart(Part):
 
 @dataclass(frozen=True)
 class Symmetry:
-    """An infinitesimal action, whose momentum map is emitted beside the dynamics.
+    """An infinitesimal action, whose momentum map is emitted with the dynamics.
 
     Attributes:
         name: Of the momentum map.
@@ -146,7 +146,7 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
     if name not in state:
         problem = f"{name!a} is not a variable of the state"
-        raise reading.source.unknown(key, problem, name, state)
+        raise reading.unknown(key, problem, name, state)
     return state[name]
 
 
@@ -218,12 +218,9 @@ class _Actions:
         name = getattr(part, way)
         names = {name, *(f"{name}_{block}" for block in algebra.blocks)}
         if not NAME.fullmatch(name) or names & (self.reading.owners.keys() | {"energy"}):
-            raise self.source.fault(
-                (*key, way),
-                f"{name!a} cannot name an element of {algebra.name}",
-                found=name,
-                expected="a name that nothing else has, such as 'xi'",
-            )
+            problem = f"{name!a} cannot name an element of {algebra.name}"
+            expected = "a name that nothing else has, such as 'xi'"
+            raise self.source.fault((*key, way), problem, name, expected)
         if way == "vector":
             parts = {f"{name}_{block}": len(run) for block, run in algebra.blocks.items()}
             counts = {name: algebra.dimension, **parts}
@@ -234,13 +231,10 @@ class _Actions:
     def _check_matrices(self, key: KeyPath, algebra: LieAlgebra) -> None:
         """The algebra has matrices, which its elements are, or which act on the state."""
         if not algebra.matrices:
-            raise self.source.fault(
-                key,
-                f"{algebra.name} has no matrices",
-                found=algebra.name,
-                expected="an algebra that is declared by matrices, or by name",
-                hint=f"Write {'generators' if key[-1] == 'linear' else 'vector'} in its place.",
-            )
+            problem = f"{algebra.name} has no matrices"
+            expected = "an algebra that is declared by matrices, or by name"
+            hint = f"Write {'generators' if key[-1] == 'linear' else 'vector'} in its place."
+            raise self.source.fault(key, problem, algebra.name, expected, hint)
 
     def _check_linear(self, key: KeyPath, names: Sequence[str], algebra: LieAlgebra) -> None:
         """The matrices fit the stacked components."""
@@ -254,8 +248,8 @@ class _Actions:
                 (*key, "linear"),
                 f"{list_names(names)} have {count} components, and the matrices of {algebra.name} "
                 f"have {rows} rows",
-                found=count,
-                expected=f"variables with {rows} components together",
+                count,
+                f"variables with {rows} components together",
             )
 
     def _read_generator(
@@ -277,13 +271,9 @@ class _Actions:
         try:
             degree = degree_in(formula.tree, tuple(names))
             if degree not in (1, None):
-                raise ExpressionError(
-                    f"the value is of degree {degree} in {element!r}",
-                    0,
-                    len(formula.text),
-                    found=element,
-                    expected=f"a formula that is linear in {element}",
-                )
+                problem = f"the value is of degree {degree} in {element!r}"
+                expected = f"a formula that is linear in {element}"
+                raise ExpressionError(problem, 0, len(formula.text), element, expected)
         except ExpressionError as error:
             raise self.source.expression_fault(key, error) from None
         return formula
@@ -309,5 +299,5 @@ def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[s
 
 
 def shapes_in_claims(reading: Reading) -> Mapping[str, Shape]:
-    """What claims about symmetries may name beside the state."""
+    """What claims about symmetries may name in addition to the state."""
     return emitted_shapes([*OBSERVABLES.of(reading), *SYMMETRIES.of(reading)])

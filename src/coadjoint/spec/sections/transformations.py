@@ -86,7 +86,7 @@ def _read_exchange(reading: Reading, name: str, observable: str, text: str) -> F
     named = shapes_in_claims(reading)
     if observable not in named:
         problem = f"{observable!a} is neither an observable nor a momentum map"
-        raise reading.source.unknown(key, problem, observable, named)
+        raise reading.unknown(key, problem, observable, named, is_key=True)
     scope = reading.scope("an observable", state_roles(reading), named)
     at, shape = reading.source.place_of(key, "claim"), named[observable]
     return read_fitting(reading.source, at, text, scope, shape, observable)

@@ -158,7 +158,7 @@ def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple
 def _read_variable(
     reading: Reading, name: str, part: VariablePart, solved: Collection[str] | None
 ) -> Variable:
-    """One variable; velocities that constraints give are no part of the state."""
+    """One variable; velocities that constraints give are not part of the state."""
     source, parts = reading.source, reading.file.variables
     algebra, invariance = ALGEBRA.of(reading).algebra, ALGEBRA.of(reading).invariance
     key: KeyPath = ("variables", name)
@@ -229,13 +229,10 @@ def _is_state(
 
 
 def _constrained_momentum(source: Source, key: KeyPath) -> CoadjointError:
-    return source.fault(
-        (*key, "role"),
-        f"{key[-1]!r} is a momentum, and the state has velocities on these routes",
-        found="momentum",
-        expected="velocities, which are the state on the routes nonholonomic and hamel",
-        hint="Remove it; the velocities that no constraint gives are the state.",
-    )
+    problem = f"{key[-1]!r} is a momentum, and the state has velocities on these routes"
+    expected = "velocities, which are the state on the routes nonholonomic and hamel"
+    hint = "Remove it; the velocities that no constraint gives are the state."
+    return source.fault((*key, "role"), problem, "momentum", expected, hint)
 
 
 def _as_partner(
@@ -244,31 +241,20 @@ def _as_partner(
     """A velocity or momentum with the shape and form of its coordinate."""
     coordinates = [name for name, each in parts.items() if each.role == "coordinate"]
     if part.of is None:
-        raise source.fault(
-            (*key, "role"),
-            f"the {part.role} {key[-1]!r} belongs to no coordinate",
-            found=part.role,
-            expected=f"of = one of {list_names(coordinates)}" if coordinates else "a coordinate",
-            hint=_advise_partner(part.role, parts, coordinates),
-        )
+        problem = f"the {part.role} {key[-1]!r} belongs to no coordinate"
+        expected = f"of = one of {list_names(coordinates)}" if coordinates else "a coordinate"
+        hint = _advise_partner(part.role, parts, coordinates)
+        raise source.fault((*key, "role"), problem, part.role, expected, hint)
     if part.of not in coordinates:
-        raise source.fault(
-            (*key, "of"),
-            f"there is no coordinate {part.of!a}",
-            found=part.of,
-            expected=f"one of {list_names(coordinates)}"
-            if coordinates
-            else "a declared coordinate",
-            hint=did_you_mean(part.of, coordinates),
-        )
+        problem = f"there is no coordinate {part.of!a}"
+        expected = f"one of {list_names(coordinates)}" if coordinates else "a declared coordinate"
+        hint = did_you_mean(part.of, coordinates)
+        raise source.fault((*key, "of"), problem, part.of, expected, hint)
     rivals = [n for n, each in parts.items() if (each.role, each.of) == (part.role, part.of)]
     if rivals[0] != key[-1]:
-        raise source.fault(
-            (*key, "of"),
-            f"{rivals[0]!r} is the {part.role} of {part.of!r} already",
-            found=part.of,
-            expected=f"one {part.role} for each coordinate",
-        )
+        problem = f"{rivals[0]!r} is the {part.role} of {part.of!r} already"
+        expected = f"one {part.role} for each coordinate"
+        raise source.fault((*key, "of"), problem, part.of, expected)
     whole = parts[part.of]
     return part.model_copy(update={"shape": whole.shape, "form": whole.form})
 
@@ -287,13 +273,9 @@ def _advise_partner(
 
 def _alien_key(source: Source, key: KeyPath, part: VariablePart) -> CoadjointError:
     *_, name, alien = key
-    return source.fault(
-        key,
-        f"the {part.role} {name!r} has a {alien}",
-        found=str(getattr(part, str(alien))),
-        expected=f"{alien} for {_OWN_KEYS[str(alien)]} alone",
-        hint=f"Remove {alien}.",
-    )
+    problem = f"the {part.role} {name!r} has a {alien}"
+    expected = f"{alien} for {_OWN_KEYS[str(alien)]} alone"
+    return source.fault(key, problem, str(getattr(part, str(alien))), expected, f"Remove {alien}.")
 
 
 def _check_role(
@@ -306,12 +288,8 @@ def _check_role(
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
         return
-    raise source.fault(
-        (*key, "role"),
-        f"{key[-1]!r} has the role {part.role!r} {place}",
-        found=part.role,
-        expected=f"{roles} {place}",
-    )
+    problem = f"{key[-1]!r} has the role {part.role!r} {place}"
+    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}")
 
 
 def check_elements(
@@ -326,13 +304,10 @@ def check_elements(
         if form == "matrix" or len(block) < algebra.dimension:
             turned = {}
         if size(algebra.elements) != rows or turned != dict(matrix):
-            raise source.fault(
-                key,
-                f"the matrix of {algebra.basis[i]} is not of the form {form!r}",
-                found=algebra.basis[i],
-                expected=f"a basis of all {form} matrices with {rows} rows",
-                hint="Remove form, or declare the algebra by such matrices.",
-            )
+            problem = f"the matrix of {algebra.basis[i]} is not of the form {form!r}"
+            expected = f"a basis of all {form} matrices with {rows} rows"
+            hint = "Remove form, or declare the algebra by such matrices."
+            raise source.fault(key, problem, algebra.basis[i], expected, hint)
 
 
 def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
@@ -355,9 +330,9 @@ def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple
         raise source.fault(
             key,
             f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
-            found=names,
-            expected="a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
-            hint="Leave form out, and write hat(...) where a matrix is meant."
+            names,
+            "a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
+            "Leave form out, and write hat(...) where a matrix is meant."
             if size == 3
             else "Leave form out, or declare the algebra by these matrices.",
         )
@@ -373,13 +348,10 @@ def _representation(
 ) -> Representation:
     """The action on an advected quantity."""
     if part.representation is None:
-        raise source.fault(
-            key,
-            f"the advected quantity {key[-1]!r} has no representation",
-            found=str(key[-1]),
-            expected=f"representation = one of {list_names((*KNOWN, *declared))}",
-            hint=f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".',
-        )
+        problem = f"the advected quantity {key[-1]!r} has no representation"
+        expected = f"representation = one of {list_names((*KNOWN, *declared))}"
+        hint = f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".'
+        raise source.fault(key, problem, str(key[-1]), expected, hint)
     inner = (*key, "representation")
     name = part.representation
     return representation_of(source, inner, algebra, name, declared, invariance)
@@ -414,7 +386,7 @@ def motion_roles(reading: Reading) -> tuple[str, ...]:
 
 
 def position_roles(reading: Reading) -> tuple[str, ...]:
-    """Roles of the positions: what a Lagrangian is a function of beside the velocities."""
+    """Roles of the positions: what a Lagrangian is a function of, apart from the velocities."""
     roles = motion_roles(reading)
     default = "coordinate" if ALGEBRA.of(reading).algebra is None else "advected"
     return tuple(each for each in roles if each not in ("velocity", "momentum")) or (default,)

@@ -40,10 +40,10 @@ def read(text: str, program: Program, system: str) -> list[Body]:
 
 def read_c(text: str, name: str) -> list[Body]:
     """The branches of a C function: one, or one for shared and one for separate parameters."""
-    found = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
-    if not found:
+    function = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
+    if not function:
         raise failure(f"kernel.c has no function {name!r}", name)
-    body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", found[1], flags=re.DOTALL)
+    body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", function[1], flags=re.DOTALL)
     zeros, body = _take_zeros(_STEPS.sub("", body))
     branches = re.fullmatch(
         r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
@@ -61,10 +61,10 @@ def read_c(text: str, name: str) -> list[Body]:
 
 def _take_zeros(text: str) -> tuple[list[int], str]:
     """The rows that a table sets to zero, and the text without the table and its loop."""
-    found = _ZEROS.search(text)
-    if not found:
+    table = _ZEROS.search(text)
+    if not table:
         return [], text
-    return [int(row) for row in found[1].split(",") if row.strip()], _ZEROS.sub("", text, count=1)
+    return [int(row) for row in table[1].split(",") if row.strip()], _ZEROS.sub("", text, count=1)
 
 
 def _read_branch(text: str, member: str, zeros: list[int], name: str) -> Body:
