@@ -1,0 +1,343 @@
+"""Steps: the methods of integration over many members at a time, in NumPy.
+
+Comes in: where members are, and how far they may go. Goes out: where a step of each leads, and
+whether its error is small enough. These are the functions of the generated ``solver.c``, operation
+by operation: where a system calls nothing beyond sqrt, the exact build has the same bits.
+Read next: `coadjoint.solve.ensemble`, which calls them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Protocol
+
+import numpy as np
+
+from coadjoint.lower.tableau import END, EXTRA, FIFTH, PATH, STAGES, THIRD, dop853
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+
+#: Rates at a state, some time after that of the lanes.
+Rates = Callable[["Array", "Array"], "Array"]
+
+
+@dataclass
+class Lanes:
+    """Members on their way.
+
+    Attributes:
+        state: ``(n, N)``.
+        time: ``(N,)``.
+        end: How far each may go, ``(N,)``.
+        step: The step that is tried next, ``(N,)``; 0 to have it chosen.
+        parameters: ``(k, N)``, or ``(k,)`` if all share them.
+        driving: Inputs and time now, ``(m, N)``.
+        slopes: Their rates, ``(m, N)``.
+    """
+
+    state: Array
+    time: Array
+    end: Array
+    step: Array
+    parameters: Array
+    driving: Array
+    slopes: Array
+
+
+@dataclass
+class Attempt:
+    """A step that was tried.
+
+    Attributes:
+        took: Its length, ``(N,)``.
+        state: Where it leads, ``(n, N)``.
+        accepted: Whether its error is small enough, ``(N,)``.
+        path: The state after a part of it.
+    """
+
+    took: Array
+    state: Array
+    accepted: Mask
+    path: Callable[[Array], Array]
+
+
+class Method(Protocol):
+    """A method of integration.
+
+    Attributes:
+        tries_again: Whether a step that is not finite is tried again, a tenth as long.
+    """
+
+    tries_again: bool
+
+    def try_step(self, lanes: Lanes) -> Attempt:
+        """Try a step of each lane; its `Lanes.step` becomes the next one to try."""
+        ...
+
+
+# -- Taylor -------------------------------------------------------------------------------------
+
+#: The mantissa of 2^(i/8), i = 0..7.
+_PARTS: Final = np.array(
+    [
+        1.0,
+        1.0905077326652577,
+        1.189207115002721,
+        1.2968395546510096,
+        1.4142135623730951,
+        1.5422108254079407,
+        1.681792830507429,
+        1.8340080864093424,
+    ]
+)
+
+
+def rough_log2(a: Array) -> Array:
+    """The logarithm to base 2 within 0.01, by operations that round alike everywhere.
+
+    >>> bool(abs(rough_log2(np.array([10.0])) - np.log2(10.0))[0] < 0.01)
+    True
+    """
+    bits = a.view(np.int64)
+    exponent = ((bits >> 52) | 0x4330000000000000).view(np.float64) - 4503599627371519.0
+    m = ((bits & 0xFFFFFFFFFFFFF) | 0x3FF0000000000000).view(np.float64)
+    return np.asarray(exponent + ((2.0 - m * 0.3333333333333333) * m - 1.6666666666666667))
+
+
+def power_of_eighths(eighths: Array) -> Array:
+    """Two to the power of a number of eighths, which is rounded to an integer.
+
+    >>> power_of_eighths(np.array([8.2, -4.0])).tolist()
+    [2.0, 0.7071067811865476]
+    """
+    whole = (eighths + 6755399441055744.0).view(np.int64) - 0x4338000000000000
+    scale = (((whole >> 3) + 1023) << 52).view(np.float64)
+    return np.asarray(_PARTS[whole & 7] * scale)
+
+
+class Taylor:
+    """The method of Taylor's series: A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99.
+
+    Args:
+        expand: The coefficients of the motion of lanes up to an order, ``(n, order + 1, N)``.
+        order: The order.
+        rtol: Relative tolerance.
+        atol: Absolute tolerance.
+        size: A fixed step, or 0.
+    """
+
+    tries_again = False
+
+    def __init__(
+        self,
+        expand: Callable[[Lanes, int], Array],
+        order: int,
+        rtol: float,
+        atol: float,
+        size: float = 0.0,
+    ) -> None:
+        self.expand, self.order = expand, order
+        self.rtol, self.atol, self.size = rtol, atol, size
+
+    def try_step(self, lanes: Lanes) -> Attempt:
+        """As `Method.try_step`."""
+        path = self.expand(lanes, self.order)
+        most = lanes.end - lanes.time
+        took = _fixed(self.size, most) if self.size > 0 else _smaller(self._choose(path), most)
+
+        def at(after: Array) -> Array:
+            total = path[:, self.order]
+            for k in range(self.order - 1, -1, -1):
+                total = total * after + path[:, k]
+            return total
+
+        return Attempt(took, at(took), np.ones(took.shape, bool), at)
+
+    def _choose(self, path: Array) -> Array:
+        """The step of Jorba and Zou, rounded to eighths of an octave."""
+        order = self.order
+        floor = np.full(path.shape[2], self.atol / self.rtol)
+        size = rough_log2(_larger(_norm(path[:, 0]), floor))
+        one = (size - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
+        two = (size - rough_log2(_norm(path[:, order]))) * (1.0 / order)
+        octaves = _smaller(one, two) - (2.0 + 0.7 / (order - 1)) * 1.4426950408889634
+        limit = np.full(octaves.shape, 1000.0)
+        bounded = _smaller(_larger(octaves, -limit), limit)
+        return power_of_eighths(bounded * 8.0 - 0.5)
+
+
+def _norm(rows: Array) -> Array:
+    """The largest row."""
+    largest: Array = np.abs(rows[0])
+    for row in rows[1:]:
+        largest = _larger(np.abs(row), largest)
+    return largest
+
+
+def _fixed(size: float, most: Array) -> Array:
+    """A fixed step, a little longer where it would leave next to nothing."""
+    return np.where(most < size * 1.000001, most, size)
+
+
+def _larger(a: Array, b: Array) -> Array:
+    return np.where(a > b, a, b)
+
+
+def _smaller(a: Array, b: Array) -> Array:
+    return np.where(a < b, a, b)
+
+
+# -- Runge and Kutta ----------------------------------------------------------------------------
+
+
+class RungeKutta4:
+    """The classical method of order 4 with a fixed step.
+
+    Args:
+        rates: Rates of lanes, at states some time later.
+        size: The step.
+    """
+
+    tries_again = False
+
+    def __init__(self, rates: Callable[[Lanes, Array, Array], Array], size: float) -> None:
+        self.rates, self.size = rates, size
+
+    def try_step(self, lanes: Lanes) -> Attempt:
+        """As `Method.try_step`."""
+        x, none = lanes.state, np.zeros(lanes.time.shape)
+        h = _fixed(self.size, lanes.end - lanes.time)
+        half = h * 0.5
+        first = self.rates(lanes, none, x)
+        k = self.rates(lanes, half, x + half * first)
+        total = first + 2.0 * k
+        k = self.rates(lanes, half, x + half * k)
+        total = total + 2.0 * k
+        k = self.rates(lanes, h, x + h * k)
+        end = x + h * 0.16666666666666666 * (total + k)
+
+        def path(after: Array) -> Array:
+            part, last = after / h, self.rates(lanes, h, end)
+            chord = end - x
+            start = h * first - chord
+            both = h * (last - first) + 2.0 * start
+            return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
+
+        return Attempt(h, end, np.ones(h.shape, bool), path)
+
+
+class DormandPrince8:
+    """The method of Dormand and Prince of order 8, with steps that follow the tolerances.
+
+    Args:
+        rates: Rates of lanes, at states some time later.
+        rtol: Relative tolerance.
+        atol: Absolute tolerance.
+        size: A fixed step, or 0.
+    """
+
+    def __init__(
+        self,
+        rates: Callable[[Lanes, Array, Array], Array],
+        rtol: float,
+        atol: float,
+        size: float = 0.0,
+    ) -> None:
+        self.rates, self.table, self.tries_again = rates, dop853(), not size > 0
+        self.rtol, self.atol, self.size = rtol, atol, size
+
+    def try_step(self, lanes: Lanes) -> Attempt:
+        """As `Method.try_step`."""
+        most = lanes.end - lanes.time
+        if not self.size > 0:
+            fresh = lanes.step == 0.0
+            if fresh.any():
+                lanes.step = np.where(fresh, self._first(lanes, most), lanes.step)
+        h = _fixed(self.size, most) if self.size > 0 else _smaller(lanes.step, most)
+        k: list[Array] = []
+        x = lanes.state
+        for stage in range(STAGES):
+            k.append(self.rates(lanes, self.table.nodes[stage] * h, x))
+            x = lanes.state + h * self._add(k, stage + 1)
+        accepted = np.ones(h.shape, bool)
+        if not self.size > 0:
+            accepted = self._control(lanes, h, k, x)
+        start = lanes.state
+
+        def path(after: Array) -> Array:
+            return self._path(lanes, start, x, h, list(k), after)
+
+        return Attempt(h, x, accepted, path)
+
+    def _add(self, k: list[Array], row: int) -> Array:
+        """The sum of a row of the table over rates."""
+        total = np.zeros(k[0].shape)
+        for weight, column in self.table.row(row):
+            total = total + weight * k[column]
+        return total
+
+    def _square_norm(self, rows: Array, scale: Array) -> Array:
+        total = np.zeros(rows.shape[1])
+        for row, size in zip(rows, scale, strict=True):
+            part = row / size
+            total = total + part * part
+        return total / float(len(rows))
+
+    def _first(self, lanes: Lanes, most: Array) -> Array:
+        """A first step: Hairer, Norsett and Wanner, II.4."""
+        x, none = lanes.state, np.zeros(most.shape)
+        rates = self.rates(lanes, none, x)
+        scale = self.atol + self.rtol * np.abs(x)
+        d0 = np.sqrt(self._square_norm(x, scale))
+        d1 = np.sqrt(self._square_norm(rates, scale))
+        tiny = (d0 < 1e-5) | (d1 < 1e-5)
+        h0 = _smaller(np.where(tiny, 1e-6, 0.01 * d0 / d1), most)
+        later = self.rates(lanes, h0, x + h0 * rates) - rates
+        d2 = np.sqrt(self._square_norm(later, scale)) / h0
+        d = _larger(d1, d2)
+        h1 = np.where(d <= 1e-15, _larger(np.full(d.shape, 1e-6), h0 * 1e-3), _root(0.01 / d))
+        return _smaller(_smaller(100.0 * h0, h1), most)
+
+    def _control(self, lanes: Lanes, h: Array, k: list[Array], end: Array) -> Mask:
+        """Whether the error is small enough, and the next step."""
+        scale = self.atol + self.rtol * _larger(np.abs(lanes.state), np.abs(end))
+        e5 = self._square_norm(self._add(k, FIFTH), scale)
+        e3 = self._square_norm(self._add(k, THIRD), scale)
+        total = e5 + 0.01 * e3
+        error = np.where(total == 0.0, 0.0, h * e5 / np.sqrt(total))
+        accepted = error < 1.0
+        factor = _smaller(np.full(h.shape, 10.0), 0.9 / _root(error))
+        cut = _larger(np.full(h.shape, 0.2), _smaller(np.full(h.shape, 1.0), factor))
+        wanted = h * np.where(accepted, factor, cut)
+        wanted = np.where(np.isnan(error), h * 0.1, wanted)
+        short = accepted & (h < lanes.step)
+        lanes.step = np.where(short, _larger(lanes.step, wanted), wanted)
+        return accepted
+
+    def _path(
+        self, lanes: Lanes, start: Array, end: Array, h: Array, k: list[Array], after: Array
+    ) -> Array:
+        """The state after a part of a step."""
+        k.append(self.rates(lanes, h, end))
+        for extra in range(3):
+            x = start + h * self._add(k, EXTRA + extra)
+            k.append(self.rates(lanes, self.table.nodes[END + 1 + extra] * h, x))
+        chord = end - start
+        coefficients = [chord, h * k[0] - chord, 2.0 * chord - h * (k[END] + k[0])]
+        coefficients += [h * self._add(k, PATH + row) for row in range(4)]
+        part = after / h
+        rest = 1.0 - part
+        total = np.zeros(start.shape)
+        for row in range(6, -1, -1):
+            total = (total + coefficients[row]) * (rest if row % 2 else part)
+        return start + total
+
+
+def _root(a: Array) -> Array:
+    """The eighth root."""
+    return np.asarray(np.sqrt(np.sqrt(np.sqrt(a))))
