@@ -17,8 +17,10 @@ from typing import Any, Final
 from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement, operation, walk
+from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
+from coadjoint.render.solvers import arrange, arrange_function
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
@@ -111,6 +113,8 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
+    rhs = next(program for program in context.programs if program.name == "rhs")
+    table = dop853()
     rendered = render_templates(
         tuple(TEMPLATES.values()),
         {
@@ -141,9 +145,19 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
                 for table, quantities in _tables(context).items()
             },
             "domain": list(map(declaration, context.domain)),
+            "solver": arrange(rhs),
+            "rates": arrange_function(rhs, "_rates"),
+            "dop853": {
+                each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
+            },
         },
     )
     return {file: rendered[template] for file, template in TEMPLATES.items()}
+
+
+def _fill(entries: Iterable[str]) -> list[str]:
+    """Entries of a table as lines, each with its comma."""
+    return textwrap.wrap(" ".join(f"{entry}," for entry in entries), WIDTH - 8)
 
 
 def _note_unproved(number: int) -> list[str]:

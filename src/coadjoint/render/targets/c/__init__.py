@@ -10,6 +10,11 @@ TARGET = Target(
     builds={"c": "", "c-fast": "fused operations: not the same bits"},
     exact=("c",),
     kernel="kernel.c",
-    files={"kernel.c": "c/kernel.c.j2", "kernel.h": "c/kernel.h.j2"},
+    files={
+        "kernel.c": "c/kernel.c.j2",
+        "kernel.h": "c/kernel.h.j2",
+        "solver.c": "c/solver.c.j2",
+        "solver.h": "c/solver.h.j2",
+    },
     needs_compiler=True,
 )
