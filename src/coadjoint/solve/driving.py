@@ -105,12 +105,12 @@ class Function(Signal):
         """
         where, given = f"of the function inputs at t = {time:.12g}", self.function(float(time))
         if given is None:
-            wanted = ", ".join(self.system.INPUTS.components)
+            size, wanted = self.system.INPUTS.size, ", ".join(self.system.INPUTS.components)
             raise KernelArgumentError(
-                f"{self.system.name}: the function inputs returns None at t = {time:.12g}; expected "
-                f"({self.system.INPUTS.size},): {wanted}, or values by name. Does it lack a return?",
+                f"{self.system.name}: the function inputs returns None at t = {time:.12g}; "
+                f"expected ({size},): {wanted}, or values by name. Write return before its value.",
                 found="None",
-                expected=[self.system.INPUTS.size],
+                expected=[size],
             )
         values = _pack(self.system, given, where)
         return _check_one(self.system, values, where)
