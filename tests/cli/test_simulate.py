@@ -256,6 +256,15 @@ def test_defaults_run_to_the_end(name):
     assert (found.status, found.message, found.time_reached) == ("OK", "", 10)
 
 
+def test_wheels_that_come_to_stand_across_the_board_do_not_run_to_the_end():
+    """The check above can fail: from phi = 1 at a rate of 0.1 a snakeboard ends at pi/2."""
+    loaded = load_system("snakeboard")
+    start = loaded.projection([1, 0, 0, 1, 1, 2, 0.1])
+    found = loaded.simulate(start, (0, 10), samples=2, rtol=1e-6, target="python")
+    assert found.status == "DOMAIN"
+    assert abs(found.time_reached - (math.pi / 2 - 1) / 0.1) < 1e-6
+
+
 def with_defaults(state, path):
     """The quantities of a state with the defaults that a spec gives them."""
     variables = tomllib.loads(path.read_text())["variables"]

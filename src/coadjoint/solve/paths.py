@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 #: Pieces of each interval between samples: points that are drawn, and panels of the integral.
 PIECES = 4
+#: The least number of pieces of a whole path: the speed has a kink at a cusp, where the error of
+#: the integral falls only with the square of a piece.
+LEAST = 4000
 #: Gauss's rule on each panel: exact for polynomials up to degree 7.
 NODES, WEIGHTS = (np.asarray(part) for part in np.polynomial.legendre.leggauss(4))
 #: Points between two samples are added until an integration from one arrives so close to the next,
@@ -83,7 +86,8 @@ class Path:
         state, way = self._samples[..., :-1], []
 
         def find_rates(at: Array, passed: float) -> Array:
-            return self._evaluate_rates(at, *self._find_driving(left + passed / steps))
+            place = np.asarray(left + passed / steps, dtype=np.float64)
+            return self._evaluate_rates(at, *self._find_driving(place))
 
         with np.errstate(all="ignore"):  # what leaves the finite numbers has missed
             for step in range(steps):
@@ -97,19 +101,25 @@ class Path:
 
     def find_points(self) -> Array:
         """Points of the curve, ``(2, *batch, P)``, all samples among them."""
-        place = np.arange((len(self._time) - 1) * PIECES + 1) / PIECES
+        pieces = self._count_pieces()
+        place: Array = np.arange((len(self._time) - 1) * pieces + 1) / np.float64(pieces)
         points = self._find_xy(*self._interpolate(place))
-        points[..., ::PIECES] = self._find_xy(self._samples, self._time, self._inputs)
+        points[..., ::pieces] = self._find_xy(self._samples, self._time, self._inputs)
         return points
 
     def find_length(self) -> Array:
         """The length of the path, ``batch``: the integral of the speed over time."""
-        panels = np.arange((len(self._time) - 1) * PIECES) / PIECES
-        inside = (panels[:, np.newaxis] + (NODES + 1) / (2 * PIECES)).ravel()  # (4 panels,)
+        pieces = self._count_pieces()
+        panels = np.arange((len(self._time) - 1) * pieces) / pieces
+        inside = (panels[:, np.newaxis] + (NODES + 1) / (2 * pieces)).ravel()  # (4 panels,)
         speed = np.hypot(*self._find_velocity(inside))  # (*batch, 4 panels)
-        widths = np.repeat(np.diff(self._time), PIECES) / (2 * PIECES)
+        widths = np.repeat(np.diff(self._time), pieces) / (2 * pieces)
         weights = (widths[:, np.newaxis] * WEIGHTS).ravel()
         return np.asarray(np.nansum(speed * weights, axis=-1))  # NaN where a member has ended
+
+    def _count_pieces(self) -> int:
+        """The pieces of each interval."""
+        return max(PIECES, -(-LEAST // max(1, len(self._time) - 1)))
 
     def _find_velocity(self, place: Array) -> Array:
         """Rates of (x, y), ``(2, *batch, P)``: those of the kernel, or of observables differences.
@@ -124,7 +134,8 @@ class Path:
             return rates[[names.index("x"), names.index("y")]]
         ends = (self._find_xy(*self._interpolate(place + side)) for side in (-STEP, STEP))
         before, after = ends
-        return (after - before) / (2 * STEP * np.diff(self._time)[place.astype(int)])
+        widths = np.diff(self._time)[place.astype(np.intp)]
+        return np.asarray((after - before) / (2 * STEP * widths))
 
     def _find_xy(self, states: Array, time: Array, inputs: Array | None) -> Array:
         """The point at states of the path, ``(2, *batch, P)``."""
