@@ -1,8 +1,9 @@
-"""Files: what stands on a disk, read without trust in what it is.
+"""Files: what stands on a disk, read without trust in what it is, and results written whole.
 
 Comes in: a path. Goes out: the bytes of a regular file, or the JSON object in it. A named pipe, a
 device, a folder, a link, a file without end and a text nested to any depth are each an `OSError` or
-an empty object, never a program that hangs or ends with a fault of ours.
+an empty object, never a program that hangs or ends with a fault of ours. A result replaces the file
+of its name only once it is complete.
 """
 
 from __future__ import annotations
@@ -10,11 +11,14 @@ from __future__ import annotations
 import errno
 import json
 import os
+import secrets
 import stat
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
+
+from coadjoint.errors import OutputError
 
 #: Bytes of a file of ours at the most; the manifest of 50 systems has 35 000.
 MOST_BYTES: Final = 64 * 1024**2
@@ -107,3 +111,58 @@ def is_table_of_texts(value: Any) -> bool:
 def _is_list_of(value: Any, kind: type) -> bool:
     """Whether a JSON value is a list of one kind."""
     return isinstance(value, list) and all(isinstance(entry, kind) for entry in value)
+
+
+def check_writable(path: Path) -> None:
+    """A file can be written at a path, as far as that shows without writing it.
+
+    Raises:
+        OutputError: Its folder is missing or not writable, or the path is a folder.
+    """
+    folder, reason = path.resolve().parent, ""
+    if path.is_dir():
+        reason = "it is a folder. Name a file in it."
+    elif _is_special(path):  # which is written in place
+        reason = "" if os.access(path, os.W_OK) else "no permission. Choose another file."
+    elif not folder.is_dir():
+        reason = f"{folder} is not a folder. Create it, or choose another file."
+    elif not os.access(folder, os.W_OK | os.X_OK):  # where it is replaced
+        reason = f"no permission to write in {folder}. Choose another file."
+    if reason:
+        raise OutputError(f"{path}: cannot be written: {reason}", path=str(path))
+
+
+@contextmanager
+def write_whole(path: Path) -> Iterator[Path]:
+    """A place to write a file, which is moved to its path at the end: whole or not at all.
+
+    A link stays a link to what is replaced. A device or pipe is written in place.
+
+    Raises:
+        OutputError: It cannot be written; what stood there before is untouched.
+    """
+    check_writable(path)
+    target = path.resolve()
+    place = target.with_name(f".{target.stem}.{secrets.token_hex(4)}{target.suffix}")
+    if _is_special(path):
+        place = target = path
+    try:
+        yield place
+        if place != target:
+            place.replace(target)
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot be written: {error.strerror or error}. "
+            "Choose another file, or free some space.",
+            path=str(path),
+        ) from error
+    finally:
+        if place != target:
+            place.unlink(missing_ok=True)
+
+
+def _is_special(path: Path) -> bool:
+    """Whether a path is a device, pipe or socket, or names an open file; nothing replaces it."""
+    if path.is_absolute() and path.parts[1:2] in (("dev",), ("proc",)):
+        return path.exists()
+    return path.exists() and not path.is_file() and not path.is_dir()

@@ -5,15 +5,25 @@ from __future__ import annotations
 import csv
 import json
 import math
+import sys
+import tomllib
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
 
 import numpy as np
 import pytest
 
 from coadjoint.cli.arguments import load_system
+from coadjoint.resources import derivations_folder
+from coadjoint.solve.quantities import Quantities
+from tests.conftest import SYSTEMS
 from tests.driven_specs import POINT
 from tests.rolling import FOLLOWED_SLEIGH
 from tests.solve.domains import STONE, SUSLOV
 from tests.specs import RIGID_BODY
+
+simulate = import_module("coadjoint.cli.simulate")
 
 
 def test_invariants_of_a_shipped_system_are_kept(run):
@@ -103,11 +113,15 @@ def test_tables_show_state_units_and_drift(run):
     assert "status: OK" in result.stdout
 
 
+def table_of(path):
+    """The lines of a table, without those that stand above it."""
+    return [line for line in path.read_text().splitlines() if not line.startswith("#")]
+
+
 def test_csv_reads_back_to_the_trajectory(run, folder):
     """The rows of the table are the samples, and the rates belong to the states."""
     run("simulate", "rigid_body", "--csv", "body.csv", "--samples", "11", "--time", "1")
-    with (folder / "body.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = list(csv.DictReader(table_of(folder / "body.csv")))
     assert [float(row["time"]) for row in rows] == np.linspace(0, 1, 11).tolist()
     state = [float(rows[-1][name]) for name in ("Pi1", "Pi2", "Pi3")]
     assert float(rows[-1]["energy"]) == load_system("rigid_body").energy(state)
@@ -186,7 +200,7 @@ def test_what_is_reconstructed_is_shown_written_and_drawn(folder, run):
     result = run("simulate", "sleigh.toml", *words)
     assert result.exit_code == 0, result.stderr
     assert "reconstructed" in result.stdout
-    head, first, *_ = csv.reader((folder / "way.csv").read_text().splitlines())
+    head, first, *_ = csv.reader(table_of(folder / "way.csv"))
     row = dict(zip(head, map(float, first), strict=True))
     assert {name: row[name] for name in ("theta", "x", "y")} == {"theta": 0, "x": 0, "y": 3}
     assert (folder / "way.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
@@ -199,6 +213,67 @@ def test_without_a_path_on_a_plane_there_is_no_trace(folder, run):
     assert "rigid_body leaves no trace: no x and no y among Pi" in result.stderr
     assert not result.stdout
     assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--csv", "missing/a.csv"], "missing is not a folder"),
+        (["--plot", "missing/a.png"], "missing is not a folder"),
+        (["--plot", "a.unknown"], "its ending is '.unknown'"),
+        (["--trace", "a"], "its ending is ''"),
+        (["--csv", "."], "it is a folder"),
+    ],
+)
+def test_outputs_are_checked_before_anything_is_computed(run, folder, monkeypatch, words, message):
+    """A missing folder, an unknown ending and a folder: nothing is loaded, status 2."""
+    monkeypatch.setattr(simulate, "load_system", None)
+    result = run("simulate", "heavy_top", *words)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert not list(folder.iterdir())
+
+
+def test_matplotlib_is_missed_before_anything_is_computed(run, folder, monkeypatch):
+    """The message has the pip command."""
+    monkeypatch.setattr(simulate, "load_system", None)
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    for option in ("--plot", "--trace"):
+        result = run("simulate", "heavy_top", option, "a.png")
+        assert result.exit_code == 2
+        assert "pip install 'coadjoint[plot]'" in result.stderr
+    assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_defaults_run_to_the_end(name):
+    """From the defaults of its spec every shipped system runs 10 s and ends with OK."""
+    loaded = load_system(name)
+    loaded.STATE = with_defaults(loaded.STATE, derivations_folder() / f"{name}.toml")
+    found = loaded.simulate(
+        simulate.find_start(loaded, ()), (0, 10), samples=2, rtol=1e-6, target="python"
+    )
+    assert (found.status, found.message, found.time_reached) == ("OK", "", 10)
+
+
+def test_wheels_that_come_to_stand_across_the_board_do_not_run_to_the_end():
+    """The check above can fail: from phi = 1 at a rate of 0.1 a snakeboard ends at pi/2."""
+    loaded = load_system("snakeboard")
+    start = loaded.projection([1, 0, 0, 1, 1, 2, 0.1])
+    found = loaded.simulate(start, (0, 10), samples=2, rtol=1e-6, target="python")
+    assert found.status == "DOMAIN"
+    assert abs(found.time_reached - (math.pi / 2 - 1) / 0.1) < 1e-6
+
+
+def with_defaults(state, path):
+    """The quantities of a state with the defaults that a spec gives them."""
+    variables = tomllib.loads(path.read_text())["variables"]
+
+    def default(name):
+        given = np.ravel(variables.get(name, {}).get("default", []))
+        return tuple(float(Fraction(str(number))) for number in given) or None
+
+    return Quantities(*(replace(each, default=default(each.name)) for each in state.values()))
 
 
 def test_constant_inputs_come_from_the_command_line(run, folder):

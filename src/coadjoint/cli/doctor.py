@@ -32,7 +32,7 @@ from coadjoint.resources import systems_folder
 
 PACKAGES: Final = ("sympy", "numpy", "scipy", "mpmath", "jinja2", "pydantic", "click", "rich")
 #: Packages of each optional extra.
-EXTRAS: Final = {"plot": ("matplotlib",), "data": ("xarray", "h5netcdf", "h5py"), "c": ("ziglang",)}
+EXTRAS: Final = {"plot": ("matplotlib",), "data": ("xarray", "pandas"), "c": ("ziglang",)}
 
 #: Limits of the operating system, and what they must allow at the least.
 LEAST: Final = (

@@ -21,6 +21,7 @@ from typing import Any
 import click
 
 from coadjoint.errors import OutputError, plain
+from coadjoint.files import write_whole
 
 #: Called with system, stage, stages done, stages in all.
 Progress = Callable[[str, str, int, int], None]
@@ -134,19 +135,13 @@ def progress_bars() -> Iterator[Progress]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file that the user named.
+    """Write a file that the user named, whole or not at all.
 
     Raises:
         OutputError: It cannot be written; the message names it.
     """
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(
-            f"{path}: cannot be written: {error.strerror}. "
-            "Choose another file, or free some space.",
-            path=str(path),
-        ) from error
+    with write_whole(path) as place:
+        place.write_text(text, encoding="utf-8")
 
 
 def show_text(text: str, output: Path | None) -> None:

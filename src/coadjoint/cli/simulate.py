@@ -7,8 +7,6 @@ command line. Goes out: tables or JSON, and files that were asked for. Read next
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterable
 from functools import partial
@@ -18,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coadjoint.cli.arguments import load_system, seconds_option, system_argument
-from coadjoint.cli.output import json_option, print_json, print_table, say, write_text
+from coadjoint.cli.output import json_option, print_json, print_table, say
+from coadjoint.files import check_writable
 
 if TYPE_CHECKING:
     from coadjoint.solve.quantities import Quantities
@@ -117,6 +116,7 @@ def command(
     as_json: bool,
 ) -> int:
     """Integrate a trajectory; show the drift of invariants."""
+    _check_outputs(table, *filter(None, (plot, trace)))
     loaded = load_system(system, seconds)
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy
@@ -124,10 +124,7 @@ def command(
         check_traced(loaded)
     given = chosen_parameters(loaded.PARAMETERS, parameters)
     driven = chosen_parameters(loaded.INPUTS, inputs) or None
-    start: Any = initial_state(loaded.STATE, state)
-    declared = state or all(quantity.default for quantity in loaded.STATE.values())
-    if "projection" in loaded.functions and not declared:  # the user gave none
-        start = loaded.projection(start, given, driven, time=0.0 if loaded.TIME else None)
+    start = find_start(loaded, state, given, driven)
     solution = loaded.simulate(
         start,
         (0.0, time),
@@ -141,12 +138,39 @@ def command(
     )
     (print_json(_record(loaded, solution)) if as_json else _print(loaded, solution))
     if table is not None:
-        write_text(table, trajectory_csv(loaded, solution))
+        solution.to_csv(table)
     if plot is not None:
         solution.plot(plot)
     if trace is not None:
         solution.trace(trace)
     return 0 if solution.status == "OK" else 1
+
+
+def _check_outputs(table: Path | None, *pictures: Path) -> None:
+    """What was asked for can be written, before anything is derived or computed.
+
+    Raises:
+        KernelArgumentError: matplotlib is not installed, or does not know an ending.
+        OutputError: A folder is missing or not writable, or a path is a folder.
+    """
+    if table is not None:
+        check_writable(table)
+    for picture in pictures:
+        from coadjoint.solve.plot import check_picture  # which needs NumPy
+
+        check_picture(picture)
+
+
+def find_start(
+    system: System, given: Iterable[Assignment], parameters: Any = None, inputs: Any = None
+) -> Any:
+    """Where a run begins; on the constraints, if the user and the spec say nothing."""
+    given = list(given)
+    start = initial_state(system.STATE, given)
+    declared = given or all(quantity.default for quantity in system.STATE.values())
+    if "projection" not in system.functions or declared:
+        return start
+    return system.projection(start, parameters, inputs, time=0.0 if system.TIME else None)
 
 
 def initial_state(quantities: Quantities, given: Iterable[Assignment]) -> list[float]:
@@ -200,20 +224,6 @@ def _shown_names(system: System) -> tuple[str, ...]:
     """State, what is reconstructed, and observables, by component."""
     tables = (system.STATE, system.RECONSTRUCTED, system.OBSERVABLES)
     return tuple(name for quantities in tables for name in quantities.components)
-
-
-def trajectory_csv(system: System, solution: Solution) -> str:
-    """Time, state, what is reconstructed and observables, one row for each sample.
-
-    In digits that read back exactly.
-    """
-    names = _shown_names(system)
-    columns = [solution.time.tolist(), *(solution[name].tolist() for name in names)]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *names])
-    writer.writerows(zip(*columns, strict=True))
-    return text.getvalue()
 
 
 def _print(system: System, solution: Solution) -> None:

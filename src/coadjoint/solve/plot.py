@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coadjoint.errors import KernelArgumentError, OutputError
+from coadjoint.errors import KernelArgumentError
+from coadjoint.files import check_writable, write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +46,7 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
         KernelArgumentError: matplotlib is not installed, or does not know the ending.
         OutputError: The file cannot be written.
     """
-    figure = new_figure(headless=path is not None)
+    figure = begin_figure(path)
     sphere = _sphere_quantity(solution)
     heights = [3.0, 1.0] if sphere else [2.2, 1.0]
     grid = figure.add_gridspec(2, 1, height_ratios=heights)
@@ -55,6 +56,13 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
         _draw_components(figure, grid[0], solution)
     _draw_drift(figure.add_subplot(grid[1]), solution)
     return finish(figure, solution, path)
+
+
+def begin_figure(path: str | PathLike[str] | None) -> Any:
+    """An empty figure for a path, which is checked first; for None, one that pyplot can show."""
+    if path is not None:
+        check_picture(Path(fspath(path)))
+    return new_figure(headless=path is not None)
 
 
 def new_figure(*, headless: bool) -> Any:
@@ -81,22 +89,28 @@ def finish(figure: Any, solution: Solution, path: str | PathLike[str] | None) ->
 
 
 def _save(figure: Any, path: Path) -> None:
-    """Write the picture next to its place and move it there."""
-    temporary = path.with_name(f".{path.stem}.tmp{path.suffix}")
-    try:
-        figure.savefig(temporary)
-        temporary.replace(path)
-    except ValueError as error:
+    """Write the picture, whole or not at all."""
+    with write_whole(path) as place:
+        figure.savefig(place, format=path.suffix.removeprefix(".").lower())
+
+
+def check_picture(path: Path) -> None:
+    """A picture can be written at a path, as far as that shows without drawing it.
+
+    Raises:
+        KernelArgumentError: matplotlib is not installed, or does not know the ending.
+        OutputError: The folder is missing or not writable, or the path is a folder.
+    """
+    figure = new_figure(headless=True)
+    endings = sorted(figure.canvas.get_supported_filetypes())
+    if path.suffix.removeprefix(".").lower() not in endings:
         raise KernelArgumentError(
-            f"{path} cannot be drawn: {error}. Expected an ending such as .png, .pdf or .svg.",
+            f"{path} cannot be drawn: its ending is {path.suffix!r}. "
+            "Expected an ending such as .png, .pdf or .svg.",
             found=path.suffix,
-        ) from error
-    except OSError as error:
-        raise OutputError(
-            f"{path} could not be written: {error.strerror}. Choose another file.", path=str(path)
-        ) from error
-    finally:
-        temporary.unlink(missing_ok=True)
+            expected=endings,
+        )
+    check_writable(path)
 
 
 def _sphere_quantity(solution: Solution) -> str:

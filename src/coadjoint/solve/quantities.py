@@ -84,6 +84,10 @@ class Quantities(Mapping[str, Quantity]):
             return self._by_name[name]
         return next(q for q in self.values() if name in q.components)
 
+    def __reduce__(self) -> tuple[type[Quantities], tuple[Quantity, ...]]:
+        """Pickled as the quantities alone; the rest is made of them again."""
+        return Quantities, tuple(self.values())
+
     def _table(self) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = [("name", "shape", "unit", "default")]
         for q in self.values():

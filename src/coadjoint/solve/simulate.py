@@ -54,6 +54,7 @@ def simulate(
     times = _list_times(t, samples)
     name = _check_method(method)
     _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
+    settings = {"method": name, "rtol": float(rtol), "atol": float(atol), "target": str(target)}
     driving = Driving(system, inputs, float(times[0]), float(times[-1]))
     domain = Domain(system, packed, target, driving)
     domain.check_start(float(times[0]), initial)
@@ -66,7 +67,7 @@ def simulate(
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
         reason = f"the rates are not finite at t = {times[0]:g}"
         run = times[:1], initial[:, None], "NONFINITE", reason
-        return _make_solution(system, packed, driving, run)
+        return _make_solution(system, packed, driving, run, settings)
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
 
@@ -78,20 +79,32 @@ def simulate(
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
     with np.errstate(all="ignore"):
         run = _follow(stretches, initial, times, max_steps, latest, domain, constraints)
-    return _make_solution(system, packed, driving, run)
+    return _make_solution(system, packed, driving, run, settings)
 
 
 #: Times that were reached, states there, status and reason.
 _Run = tuple["Array", "Array", str, str]
 
 
-def _make_solution(system: System, parameters: Array, driving: Driving, run: _Run) -> Solution:
+def _make_solution(
+    system: System, parameters: Array, driving: Driving, run: _Run, settings: dict[str, Any]
+) -> Solution:
     """The Solution of a run, the state apart from what was reconstructed below it."""
     times, states, status, reason = run
     n = system.STATE.size
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
-    return Solution(system, times, states[:n], parameters, status, reason, followed, inputs)
+    return Solution(
+        system=system,
+        time=times,
+        state=states[:n],
+        parameters=parameters,
+        status=status,
+        message=reason,
+        reconstructed=followed,
+        inputs=inputs,
+        settings=settings,
+    )
 
 
 class _Stretches:

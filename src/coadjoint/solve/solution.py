@@ -5,9 +5,11 @@ Comes in: times and states. Goes out: a record that people index by name, print,
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from html import escape
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,6 +40,7 @@ class Solution:
         message: Where it stopped and why, empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``; None if there are none.
+        settings: How it was made: method, tolerances and target, plain JSON values by name.
     """
 
     def __init__(
@@ -50,6 +53,7 @@ class Solution:
         message: str,
         reconstructed: Array | None = None,
         inputs: Array | None = None,
+        settings: Mapping[str, Any] | None = None,
     ) -> None:
         self.system = system
         self.time = time
@@ -59,6 +63,15 @@ class Solution:
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
         self.inputs = inputs
+        self.settings = dict(settings or {})
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: all but what is computed from the rest on demand."""
+        kind = type(self)
+        computed = {
+            name for name in vars(self) if isinstance(getattr(kind, name, None), cached_property)
+        }
+        return {name: value for name, value in vars(self).items() if name not in computed}
 
     def __len__(self) -> int:
         return len(self.time)
@@ -129,8 +142,23 @@ class Solution:
         """Observables along the trajectory, one row per component."""
         if "observables" not in self.system.functions:  # forces alone, and nothing declared
             return self.state[:0]
-        time = self.time if self.system.TIME else None
-        return self.system.observables(self.state, self.parameters, self.inputs, time=time)
+        return self.evaluate("observables", self.state)
+
+    def evaluate(self, function: str, state: Array) -> Array:
+        """A function of the System at states on the way, with the parameters, inputs and times.
+
+        Args:
+            function: Its name.
+            state: What it takes, ``(n, *batch, T)``.
+        """
+        batch = state.shape[1:]
+        parameters, inputs = self.parameters, self.inputs
+        if parameters.ndim > 1:  # of each member, at all its samples
+            parameters = np.broadcast_to(parameters[..., np.newaxis], (len(parameters), *batch))
+        if inputs is not None and inputs.ndim == state.ndim - 1 > 1:
+            inputs = np.broadcast_to(inputs[..., np.newaxis], (len(inputs), *batch))
+        time = np.broadcast_to(self.time, batch) if self.system.TIME else None
+        return self.system.evaluate(function, state, parameters, inputs, time=time)
 
     @cached_property
     def drift(self) -> dict[str, float]:
@@ -187,27 +215,81 @@ class Solution:
         } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
 
     def to_xarray(self) -> Any:
-        """The solution as an `xarray.Dataset` with units.
+        """The solution as an `xarray.Dataset` with units; see `coadjoint.solve.datasets`.
 
         Raises:
             KernelArgumentError: xarray is not installed; the message has the pip command.
         """
-        try:
-            import xarray
-        except ImportError as error:
-            raise KernelArgumentError(
-                "to_xarray needs xarray, which is not installed. "
-                "Run `pip install 'coadjoint[data]'`.",
-                found="xarray",
-            ) from error
-        variables: dict[str, Any] = {}
-        for quantities, _ in reversed(self._tables):
-            for name, quantity in quantities.items():
-                lead = [name + "_component"] if quantity.shape else []
-                dims = ([*lead, "time"], self[name], {"units": quantity.unit})
-                variables[name] = dims
-        attributes = {"system": self.system.name, "title": self.system.title, "id": self.system.id}
-        return xarray.Dataset(variables, coords={"time": self.time}, attrs=attributes)
+        from coadjoint.solve.datasets import to_xarray
+
+        return to_xarray(self)
+
+    def to_netcdf(self, path: str | PathLike[str]) -> None:
+        """Write `to_xarray` as a NetCDF 3 file, whole or not at all.
+
+        Raises:
+            KernelArgumentError: xarray is not installed; the message has the pip command.
+            OutputError: The file cannot be written.
+        """
+        from coadjoint.solve.datasets import to_netcdf
+
+        to_netcdf(self, Path(path))
+
+    @classmethod
+    def from_netcdf(cls, system: System, path: str | PathLike[str]) -> Solution:
+        """The solution that `to_netcdf` wrote, to the last bit.
+
+        Args:
+            system: The System that it is of.
+            path: The file.
+
+        Raises:
+            KernelArgumentError: xarray is not installed, the file cannot be read, or it is not a
+                solution of this System.
+        """
+        from coadjoint.solve.datasets import read_netcdf
+
+        return read_netcdf(system, Path(path))
+
+    def to_pandas(self) -> Any:
+        """A `pandas.DataFrame` of one row per time and one column per component.
+
+        A batch has one row per member and time. ``attrs`` has what `to_csv` writes above the table.
+
+        Raises:
+            KernelArgumentError: pandas is not installed; the message has the pip command.
+        """
+        from coadjoint.solve.tables import to_pandas
+
+        return to_pandas(self)
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write a table of one row per time, whole or not at all.
+
+        Lines that begin with ``#`` stand above it: system, parameters, settings and units. Numbers
+        have the digits that read back to the same bits.
+
+        Raises:
+            OutputError: The file cannot be written.
+        """
+        from coadjoint.solve.tables import to_csv
+
+        to_csv(self, Path(path))
+
+    @classmethod
+    def from_csv(cls, system: System, path: str | PathLike[str]) -> Solution:
+        """The solution that `to_csv` wrote, to the last bit.
+
+        Args:
+            system: The System that it is of.
+            path: The file.
+
+        Raises:
+            KernelArgumentError: The file cannot be read or is not a solution of this System.
+        """
+        from coadjoint.solve.tables import read_csv
+
+        return read_csv(system, Path(path))
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Draw the trajectory and the drift of its invariants below; see `coadjoint.solve.plot`.

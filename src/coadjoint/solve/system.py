@@ -300,6 +300,20 @@ class System(Functions):
         """Explanations of quantities by name."""
         return dict(self.certificate.get("docs", {}))
 
+    # -- copies and pickles ------------------------------------------------------------------------
+
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[str, ...]]:
+        """Pickled by reference: module, or folder, and id; see `coadjoint.solve.references`."""
+        from coadjoint.solve.references import find_system, refer_to
+
+        return find_system, refer_to(self)
+
+    def __copy__(self) -> System:
+        return self  # nothing about it can be changed
+
+    def __deepcopy__(self, _memory: dict[int, Any]) -> System:
+        return self
+
     def __repr__(self) -> str:
         tables = {"state": self.STATE, "parameters": self.PARAMETERS}
         driving = {"inputs": self.INPUTS, "time": self.TIME}

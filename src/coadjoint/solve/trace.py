@@ -2,6 +2,7 @@
 
 Comes in: a `Solution` with ``x`` and ``y``, of the state or reconstructed. Goes out: a matplotlib
 figure, or a picture file.
+Read next: `coadjoint.solve.paths`, which finds the curve and its length.
 """
 
 from __future__ import annotations
@@ -12,11 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.plot import COLOURS, finish, new_figure, unit_label
+from coadjoint.solve.paths import Path
+from coadjoint.solve.plot import COLOURS, begin_figure, finish, unit_label
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
 
 
 def trace(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -32,12 +38,13 @@ def trace(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
         OutputError: The file cannot be written.
     """
     check_traced(solution.system)
-    figure = new_figure(headless=path is not None)
+    figure = begin_figure(path)
     axes = figure.add_subplot()
-    x, y = solution["x"], solution["y"]
+    way = Path(solution)
+    x, y = (part.reshape(-1, part.shape[-1]).T for part in way.find_points())  # (P, members)
     axes.plot(x, y, color=COLOURS[0], linewidth=1.1)
-    axes.plot(x[:1], y[:1], "o", color=COLOURS[1], markersize=7, label="start")
-    axes.plot(x[-1:], y[-1:], "s", color=COLOURS[2], markersize=6, label="end")
+    axes.plot(x[0], y[0], "o", color=COLOURS[1], markersize=7, label="start")
+    axes.plot(*_find_ends(x, y), "s", color=COLOURS[2], markersize=6, label="end")
     axes.set_aspect("equal", adjustable="datalim")
     plain = solution.unit("x")
     unit = unit_label(plain)
@@ -46,13 +53,27 @@ def trace(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8, frameon=False, loc="best")
-    length = float(np.hypot(np.diff(x), np.diff(y)).sum())
     axes.set_title(
-        f"Trace on the plane, length {length:.4g} {plain if unit else ''}, "
+        f"Trace on the plane, length {_tell_length(way)} {plain if unit else ''}, "
         f"t = {solution.time[0]:g} .. {solution.time_reached:g} s",
         fontsize=10,
     )
     return finish(figure, solution, path)
+
+
+def _find_ends(x: Array, y: Array) -> tuple[Array, Array]:
+    """The last finite point of each member."""
+    finite = np.isfinite(x) & np.isfinite(y)
+    last = len(x) - 1 - np.argmax(finite[::-1], axis=0)
+    members = np.arange(x.shape[1])
+    return x[last, members], y[last, members]
+
+
+def _tell_length(way: Path) -> str:
+    """The length of a path, or the least and greatest of several."""
+    lengths = way.find_length()
+    ends = sorted({f"{lengths.min():.4g}", f"{lengths.max():.4g}"}, key=float)
+    return ("" if way.is_close else "about ") + " to ".join(ends)
 
 
 def check_traced(system: System) -> None:

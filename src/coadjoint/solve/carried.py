@@ -1,0 +1,193 @@
+"""What a file of a solution holds: its components by name, and what is known about all of them.
+
+Comes in: a Solution, or what was read of a file. Goes out: the other. State, what is reconstructed
+and inputs are read back; observables are written for readers and computed again from the state.
+Shapes are general: components are ``(*batch, T)``.
+Read next: `coadjoint.solve.tables` and `coadjoint.solve.datasets`, the two forms of files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module, metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.declared import Quantity
+    from coadjoint.solve.quantities import Quantities
+    from coadjoint.solve.solution import Solution
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+
+def import_extra(package: str, asked: str) -> Any:
+    """A package of the extra ``data``.
+
+    Raises:
+        KernelArgumentError: It is not installed.
+    """
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise KernelArgumentError(
+            f"{asked} needs {package}, which is not installed. "
+            "Run `pip install 'coadjoint[data]'`.",
+            found=package,
+        ) from error
+
+
+def list_quantities(solution: Solution) -> dict[str, Quantity]:
+    """Every quantity that the solution has values of, state first; a name appears once."""
+    system = solution.system
+    tables: list[Quantities] = [system.STATE]
+    tables += [] if solution.reconstructed is None else [system.RECONSTRUCTED]
+    tables += [system.OBSERVABLES]
+    tables += [] if solution.inputs is None else [system.INPUTS]
+    found: dict[str, Quantity] = {}
+    for quantities in tables:
+        for name, quantity in quantities.items():
+            found.setdefault(name, quantity)
+    return found
+
+
+def list_components(solution: Solution) -> dict[str, str]:
+    """Every component that the solution has values of, with its unit."""
+    return {
+        component: quantity.unit_of(component)
+        for quantity in list_quantities(solution).values()
+        for component in quantity.components
+    }
+
+
+def list_batch(solution: Solution) -> tuple[int, ...]:
+    """The shape of the batch; empty for one trajectory."""
+    return tuple(solution.state.shape[1:-1])
+
+
+def name_axes(batch: tuple[int, ...], taken: Mapping[str, Any]) -> list[str]:
+    """A name for each axis of the batch: ``member``, or ``member_0`` and so on if there are more.
+
+    >>> name_axes((5,), {}), name_axes((5, 2), {}), name_axes((5,), {"member": 0})
+    (['member'], ['member_0', 'member_1'], ['member_'])
+    """
+    names = ["member"] if len(batch) == 1 else [f"member_{n}" for n in range(len(batch))]
+    return [name + "_" if name in taken else name for name in names]
+
+
+def describe_run(solution: Solution) -> dict[str, Any]:
+    """What a file says once: versions, system and how the solution was made, as JSON values."""
+    system = solution.system
+    versions = {f"{name}_version": _find_version(name) for name in ("coadjoint", "numpy", "scipy")}
+    return {
+        "system": system.name,
+        "title": system.title,
+        "id": system.id,
+        "status": np.asarray(solution.status).tolist(),
+        "message": np.asarray(solution.message).tolist(),
+        **{name: value for name, value in solution.settings.items() if value is not None},
+        **versions,
+    }
+
+
+#: What `describe_run` says besides the settings of a solution.
+_BESIDES = ("system", "title", "id", "status", "message")
+
+
+def rebuild(
+    system: System, said: Mapping[str, Any], rows: Callable[[str], Array], form: Mapping[str, Any]
+) -> Solution:
+    """The Solution of what was read.
+
+    Args:
+        system: The System.
+        said: What `describe_run` said.
+        rows: The values of a component by name, ``(*batch, T)``.
+        form: The ``time``, ``(T,)``, the packed ``parameters``, whether there are ``inputs``, as
+            ``"constant"``, ``"sampled"`` or ``""``, and whether it is ``reconstructed``.
+    """
+    from coadjoint.solve.solution import Solution
+
+    def stack(quantities: Quantities) -> Array:
+        return np.array([rows(name) for name in quantities.components], dtype=np.float64)
+
+    inputs = stack(system.INPUTS) if form["inputs"] else None
+    if inputs is not None and form["inputs"] == "constant":
+        inputs = inputs[..., 0].copy()
+    ours = {
+        name: value
+        for name, value in said.items()
+        if name not in _BESIDES and not name.endswith("_version")
+    }
+    return Solution(
+        system=system,
+        time=np.array(form["time"], dtype=np.float64),
+        state=stack(system.STATE),
+        parameters=np.array(form["parameters"], dtype=np.float64),
+        status=said["status"],
+        message=said["message"],
+        reconstructed=stack(system.RECONSTRUCTED) if form["reconstructed"] else None,
+        inputs=inputs,
+        settings=ours,
+    )
+
+
+def describe_form(solution: Solution) -> dict[str, str]:
+    """What the arrays of a solution are, which their values do not show."""
+    inputs = solution.inputs
+    constant = inputs is not None and inputs.ndim < solution.state.ndim
+    return {
+        "inputs": "" if inputs is None else "constant" if constant else "sampled",
+        "reconstructed": "" if solution.reconstructed is None else "yes",
+    }
+
+
+def check_same_system(
+    system: System, said: Mapping[str, Any], path: Path, needed: Iterable[str] = ()
+) -> None:
+    """A file is of a System, and says all that is needed.
+
+    Raises:
+        KernelArgumentError: It is of another one, or of none.
+    """
+    missing = [name for name in (*_BESIDES, *needed) if name not in said]
+    if missing:
+        raise KernelArgumentError(
+            f"{path} is not a solution: it does not say its {', '.join(missing)}. Expected a file "
+            "that to_csv or to_netcdf wrote.",
+            found=missing,
+            path=str(path),
+        )
+    found, expected = (said["system"], said["id"]), (system.name, system.id)
+    if found != expected:
+        raise KernelArgumentError(
+            f"{path} is of the system {found[0]} with the id {found[1]}; expected {expected[0]} "
+            f"with {expected[1]}. Load the system that made it, or simulate again.",
+            found=list(found),
+            expected=list(expected),
+            path=str(path),
+        )
+
+
+def explain_unread(path: Path, reason: object) -> KernelArgumentError:
+    """What to say of a file that cannot be read."""
+    return KernelArgumentError(
+        f"{path} cannot be read: {reason}. Expected a file that to_csv or to_netcdf wrote.",
+        path=str(path),
+    )
+
+
+def _find_version(package: str) -> str:
+    """The version of a package."""
+    if package == "coadjoint":
+        from coadjoint import __version__
+
+        return __version__
+    return metadata.version(package)

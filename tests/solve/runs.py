@@ -1,0 +1,83 @@
+"""Solutions of each kind, which files must keep to the last bit."""
+
+from __future__ import annotations
+
+import math
+from functools import cache, partial
+
+import numpy as np
+
+from coadjoint.solve.solution import Solution
+from coadjoint.systems import kapitza_top, rigid_body
+from tests.driven_specs import POINT
+from tests.rolling import FOLLOWED_SLEIGH, built
+
+SOURCE = np.random.default_rng(7)
+
+
+def check_same(found, solution):
+    """Two solutions are equal to the last bit, with all that is known about them."""
+    for name in ("time", "state", "parameters", "reconstructed", "inputs"):
+        ours, theirs = getattr(solution, name), getattr(found, name)
+        assert (ours is None) == (theirs is None), name
+        if ours is not None:
+            assert ours.shape == theirs.shape, name
+            assert ours.tobytes() == theirs.tobytes(), name
+    for name in ("system", "status", "message", "settings"):
+        assert getattr(solution, name) == getattr(found, name), name
+
+
+def made(batch=(), **changes):
+    """A solution with numbers that have all their digits, and some that are none."""
+    state = SOURCE.normal(size=(3, *batch, 4)) * 1e-3
+    state[1, ..., -1] = np.nan
+    state[2, ..., -1] = -np.inf
+    given = {
+        "system": rigid_body.system,
+        "time": np.array([0.0, 0.1, 1 / 3, math.pi]),
+        "state": state,
+        "parameters": SOURCE.uniform(1, 2, size=(3, *batch)),
+        "status": "MAX_STEPS",
+        "message": 'it "stopped",\nhere # so',
+        "settings": {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "target": "c"},
+    }
+    return Solution(**(given | changes))
+
+
+@cache
+def follow_sleigh():
+    """A sleigh with its place."""
+    return built(FOLLOWED_SLEIGH).simulate(
+        [1, 1], (0, 2), samples=7, target="numpy", reconstruct=True
+    )
+
+
+def drive_point(inputs):
+    """A point that is pushed."""
+    return built(POINT).simulate([0.3, 0.1], (0, 1), None, inputs, samples=6, target="numpy")
+
+
+def sample_point():
+    """A point that is pushed by samples."""
+    times = np.array([0.0, 0.5, 1.0])
+    return drive_point((times, {"f": [1, 3, 2], "k": np.ones((2, 3))}, "linear"))
+
+
+@cache
+def shake_top():
+    """A top whose motion depends on time."""
+    start = [1, 2, 3, 0, 0.6, 0.8]
+    return kapitza_top.simulate(start, (0, 0.2), samples=5, target="numpy")
+
+
+#: One solution of each kind.
+RUNS = {
+    "one": made,
+    "reconstructed": follow_sleigh,
+    "time": shake_top,
+    "constant inputs": partial(drive_point, {"f": 1 / 3}),
+    "sampled inputs": sample_point,
+    "one sample": partial(made, time=np.zeros(1), state=np.ones((3, 1))),
+    "batch": partial(made, (5,)),
+    "batch of two axes": partial(made, (3, 2)),
+}
