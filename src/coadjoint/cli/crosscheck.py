@@ -63,7 +63,8 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     folder = Path(argument["folder"])
     report_progress("derive", 0, 2)
     equations = derive(read_spec(Path(argument["path"])))
-    texts = {target.kernel: _text(folder / target.kernel) for target in TARGETS.values()}
+    files = [file for target in TARGETS.values() for file in target.files]
+    texts = {file: _text(folder / file) for file in files}
     report_progress("compile and cross-check", 1, 2)
     report = crosscheck(
         lower(equations),
