@@ -1,7 +1,8 @@
 """Cross-check, objects of solvers: the texts brought to life, in NumPy and compiled.
 
 Comes in: the texts of ``solver.py``, ``solver.c`` and ``solver.h``. Goes out: functions that
-advance an `Ensemble`. Each is made from the very text that is checked, and from no cache.
+advance an `Ensemble`. Each is made from the very text that is checked: an object in the cache is
+named after the hash of its text.
 Read next: `coadjoint.crosscheck.solver_steps`.
 """
 
@@ -9,15 +10,18 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
+from coadjoint.build.cache import fetch, store
 from coadjoint.build.compiler import _run, find_compiler
+from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
-from coadjoint.errors import CompilerError
+from coadjoint.errors import CompilerError, OutputError
 from coadjoint.solve.ensemble import Ensemble
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
@@ -63,14 +67,21 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
     """
     compiler, work = find_compiler(), folder / f"{method}-{build}"
     work.mkdir()
-    for file in ("solver.c", "solver.h"):
-        (work / file).write_text(texts[file], encoding="ascii")
+    sources = {file: texts[file].encode() for file in ("solver.c", "solver.h")}
+    key = _key(compiler, {**sources, "method": FLAGS[method].encode()}, build)
+    cached = fetch(key)
+    if cached is not None:
+        return cached
+    for file, content in sources.items():
+        (work / file).write_bytes(content)
     said, status = "", 1
     for native in (True, False):  # some compilers do not know -march=native
         flags = (*compiler.flags(build, native=native), FLAGS[method])
         command = (*compiler.command, *flags, "solver.c", "-o", "solver.so", "-lm")
         status, said = _run(command, work)
         if status == 0:
+            with suppress(OSError, OutputError):
+                store(key, (work / "solver.so").read_bytes())
             return work / "solver.so"
     raise CompilerError(
         f"{compiler.command[0]} failed on solver.c ({method}) with status {status}: "

@@ -82,8 +82,7 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
     if function == "find_rates":
         return _body(rows, ("state", "parameters", "fixed", "driving"), rates.reads, rates.lines)
     is_c = function == "expand"
-    moving = frozenset((*program.state, *driven))
-    reads = solver.reads | moving | (frozenset() if is_c else solver.fixed_reads)
+    reads = solver.reads.union(program.state, (frozenset() if is_c else solver.fixed_reads))
     arrays = ("state", "parameters", "driving", *(["fixed"] if is_c else []))
     lines = solver.first if is_c else (*solver.fixed, *solver.first)
     body = _body(rows, arrays, reads, lines)
