@@ -76,6 +76,28 @@ CHECKS = (
     ),
 )
 MUTANTS = (
+    *of(
+        "lower/jets",
+        "_multiply: rewrite Multiply(factor, tail) -> tail",
+        "_recurrence: rewrite PARTNERS[_1] -> _1",
+        "_combine: rewrite Negate(tail) -> tail",
+        "_add: rewrite right if _1 else left -> left if _1 else right",
+        tests=("tests/lower/test_jets.py",),
+    ),
+    *of(
+        "render/solvers",
+        "_stage: rewrite '_k - 1' if _1 else '_k' -> '_k'",
+        "_recurrence: rewrite Negate(result) if _1 else result -> result",
+        "_divisor: rewrite Number(Fraction(2)) -> Number(Fraction(1))",
+        tests=("tests/lower/test_jets.py",),
+    ),
+    *of(
+        "solve/steps",
+        "RungeKutta4.try_step: rewrite h * 0.5 -> h",
+        "Taylor._choose: rewrite 0.7 / _1 -> 7 / _1",
+        "Taylor.try_step.at: rewrite total * after + _1 -> total + _1",
+        tests=("tests/crosscheck/test_solvers.py -k steps_of_numpy",),
+    ),
     *(replace(mutant, always=True) for mutant in (*CHECKS, *SIGNS)),
     *of("identities", "drift: flip equations", tests=("tests/prove/test_driven.py",)),
     *of("prove/constrained", "_differentiate: drop own", tests=("tests/prove/test_driven.py",)),

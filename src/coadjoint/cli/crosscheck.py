@@ -63,7 +63,8 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     folder = Path(argument["folder"])
     report_progress("derive", 0, 2)
     equations = derive(read_spec(Path(argument["path"])))
-    texts = {target.kernel: _text(folder / target.kernel) for target in TARGETS.values()}
+    files = [file for target in TARGETS.values() for file in target.files]
+    texts = {file: _text(folder / file) for file in files}
     report_progress("compile and cross-check", 1, 2)
     report = crosscheck(
         lower(equations),
@@ -105,9 +106,24 @@ def _print(report: Mapping[str, Any]) -> None:
     ]
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
+    _print_solvers(report["solvers"])
     for rung, status in report["rungs"].items():
         say(f"rung {rung}: {status}")
     say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
+
+
+def _print_solvers(figures: Mapping[str, Any]) -> None:
+    """What was compared of the solvers."""
+    say(
+        f"solvers: {figures['coefficients']} coefficients and {figures['lines']} lines compared, "
+        f"{figures['choices']} lengths of steps"
+    )
+    for method, targets in figures["steps"].items():
+        worst = ", ".join(f"{target} k {each['k']:.2f}" for target, each in targets.items())
+        equal, together = (figures[name].get(method, 0) for name in ("equal", "together"))
+        bits = f"; same bits of {equal} numbers" if equal else ""
+        bits = f"; within the bound at {together} members" if together else bits
+        say(f"{method}: {worst}{bits}")
 
 
 def _compare_with_numpy(report: Mapping[str, Any], function: str, target: str) -> str:

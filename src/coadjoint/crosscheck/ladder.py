@@ -7,6 +7,7 @@ Comes in: Programs, the texts printed from them, the equations, and the loaded s
     rung 4   every target against 50 digits: k <= 4, or 16 with functions beyond sqrt
     rung 5   NumPy equals every exact target bit for bit; with functions beyond sqrt, within k
 
+The solvers climb the same ladder (`coadjoint.crosscheck.solvers`).
 Every rung runs on what was loaded from these very texts, counts what it compared, and fails where
 that is nothing: no kernel stands in for another.
 Rungs 1 and 2, claims and lowering, are exact and come earlier. NumPy agreeing with C proves almost
@@ -21,11 +22,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
+from coadjoint.build.cache import working_folder
 from coadjoint.build.compiler import compiler_version, compilers
 from coadjoint.crosscheck.bits import equal_bits
 from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_text
+from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Program
@@ -56,6 +59,7 @@ class Report:
         equal: Points at which a target has the same bits as NumPy, by function and target; none of
             what calls functions beyond sqrt, where libraries may differ in the last bits.
         together: Points at which these were compared within k instead, by function and target.
+        solvers: What was compared of its solvers.
     """
 
     system: str
@@ -65,6 +69,7 @@ class Report:
     figures: Mapping[str, Mapping[str, Figures]]
     equal: Mapping[str, Mapping[str, int]]
     together: Mapping[str, Mapping[str, int]]
+    solvers: SolverFigures
 
     @property
     def points(self) -> int:
@@ -120,7 +125,8 @@ def crosscheck(
     _require(chosen and programs, system.name, "there is no function, or no target", 3)
     subject = Subject(programs, reference, system, chosen)
     share = max(1, oracle_points // len(programs))
-    with compilers() as pool:  # compilers work at the same time
+    with working_folder() as folder, compilers() as pool:  # compilers work at the same time
+        compiling = start_compiling(pool, texts, folder, chosen)
         loading = pool.submit(system.load_kernels, chosen)
         lines = {
             name: sum(
@@ -131,6 +137,7 @@ def crosscheck(
         }
         exact = [exact_points(subject, name, _share(share, p)) for name, p in programs.items()]
         _check_texts(loading.result(), chosen, texts, system.name)
+        solvers = check_solvers(subject, texts, compiling)
     agreements = {points.function: against_oracle(subject, points) for points in exact}
     figures = {name: agreement.figures for name, agreement in agreements.items()}
     together = {name: agreement.together for name, agreement in agreements.items()}
@@ -142,7 +149,16 @@ def crosscheck(
         rungs[4] = rungs[5] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
     if not subject.exact:
         rungs[5] = "not run: nothing to compare with NumPy"
-    report = Report(system.name, rungs, subject.threshold, lines, figures, equal, together)
+    report = Report(
+        system=system.name,
+        rungs=rungs,
+        threshold=subject.threshold,
+        lines=lines,
+        figures=figures,
+        equal=equal,
+        together=together,
+        solvers=solvers,
+    )
     for name in programs:
         _check_counts(report, name, subject)
     return report

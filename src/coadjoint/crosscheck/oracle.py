@@ -35,7 +35,7 @@ LARGEST_EXPONENT: Final = Decimal(700)
 
 # `decimal` is written in C and 10 times as fast as `mpmath`, which is asked for sin and cos alone.
 # Contexts of our own: nobody's precision is changed by a check.
-_CONTEXT: Final = Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)
+CONTEXT: Final = Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)
 _DIGITS: Final = MPContext()
 _DIGITS.dps = DIGITS
 _UNIT: Final = Decimal(2.0**-53)
@@ -97,9 +97,9 @@ def exact(value: float | Fraction) -> Bounded:
     Decimal('0.25')
     """
     if isinstance(value, Fraction):
-        taken = _CONTEXT.divide(Decimal(value.numerator), Decimal(value.denominator))
+        taken = CONTEXT.divide(Decimal(value.numerator), Decimal(value.denominator))
     else:
-        taken = _CONTEXT.create_decimal(value)
+        taken = CONTEXT.create_decimal(value)
     return Bounded(taken, abs(taken))
 
 
@@ -152,7 +152,7 @@ def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> 
     Raises:
         OutsideDomain: The equations have no value there.
     """
-    with localcontext(_CONTEXT):
+    with localcontext(CONTEXT):
         try:
             known = {name: exact(value) for name, value in inputs.items()}
             return reference.evaluate(function, known, exact, call)
@@ -170,7 +170,7 @@ def error_in_envelopes(computed: float, bounded: Bounded) -> float:
     """
     if not math.isfinite(computed):
         return math.inf
-    with localcontext(_CONTEXT):
+    with localcontext(CONTEXT):
         error = abs(Decimal(computed) - bounded.value)
         return float(error / (_UNIT * bounded.envelope + _FLOOR))
 
@@ -183,7 +183,7 @@ def distance_in_envelopes(one: float, other: float, bounded: Bounded) -> float:
     """
     if not (math.isfinite(one) and math.isfinite(other)):
         return math.inf
-    with localcontext(_CONTEXT):
+    with localcontext(CONTEXT):
         return float(abs(Decimal(one) - Decimal(other)) / (_UNIT * bounded.envelope + _FLOOR))
 
 
@@ -196,7 +196,7 @@ def error_in_ulp(computed: float, bounded: Bounded) -> float:
     >>> error_in_ulp(1.0 + 2.0**-52, exact(1.0))
     1.0
     """
-    with localcontext(_CONTEXT):
+    with localcontext(CONTEXT):
         if bounded.envelope > 2 * abs(bounded.value):
             return 0.0
         error = abs(Decimal(computed) - bounded.value)

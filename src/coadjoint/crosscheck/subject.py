@@ -33,17 +33,17 @@ UNTOUCHED: Final = -1.2345678901234567e-89
 
 
 @dataclass(frozen=True)
-class _Levels:
+class Levels:
     """How many operations follow one another up to a value; an arithmetic for `run`."""
 
     count: int
 
-    def __add__(self, other: _Levels) -> _Levels:
-        return _Levels(max(self.count, other.count) + 1)
+    def __add__(self, other: Levels) -> Levels:
+        return Levels(max(self.count, other.count) + 1)
 
     __mul__ = __truediv__ = __add__
 
-    def __neg__(self) -> _Levels:
+    def __neg__(self) -> Levels:
         return self
 
 
@@ -53,14 +53,14 @@ def depth(program: Program) -> int:
     The error of a sum is at most those of its addends and one rounding, and its envelope is the sum
     of theirs: k grows by 1 at most. The same holds for a product, a quotient and a function.
     """
-    inputs = dict.fromkeys(program.names, _Levels(0))
-    outputs = run(program, inputs, _constant, lambda _, of: _Levels(of.count + 1))
+    inputs = dict.fromkeys(program.names, Levels(0))
+    outputs = run(program, inputs, level_of, lambda _, of: Levels(of.count + 1))
     return max(output.count for output in outputs)
 
 
-def _constant(value: Fraction) -> _Levels:
+def level_of(value: Fraction) -> Levels:
     """A constant is rounded once, unless it is a double."""
-    return _Levels(int(Fraction(float(value)) != value))
+    return Levels(int(Fraction(float(value)) != value))
 
 
 def work(program: Program) -> int:

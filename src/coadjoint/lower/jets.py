@@ -201,8 +201,10 @@ class _Making:
         if isinstance(node, Symbol):
             return node
         if node not in self._known:
-            self._known[node] = self._name()
             whole, tail = self._combine(node)
+            if isinstance(whole, Symbol):  # a recurrence has made a cell of it
+                return whole
+            self._known[node] = self._name()
             self._append(Cell(self._known[node], whole, tail, self._depth_of(whole)))
         return Symbol(self._known[node])
 

@@ -108,7 +108,7 @@ def arrange(rhs: Program, others: Iterable[Program] = ()) -> SolverText:
     first = list(_first(jets, arrays))
     stages = tuple(_stages(jets, arrays))
     rates = tuple(
-        Line(f"{name}[_k + 1]", _integrate(_at(tail, "_k", arrays)))
+        Line(f"{name}[_k + 1]", _next(tail, arrays))
         for name, (_, tail) in zip(jets.state, jets.rates, strict=True)
     )
     lines = [*first, *rates]
@@ -128,11 +128,6 @@ def arrange(rhs: Program, others: Iterable[Program] = ()) -> SolverText:
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
     )
-
-
-def _integrate(rate: Node) -> Node:
-    """The coefficient of a component, from that of its rate."""
-    return rate if rate == ZERO else Multiply(Symbol("_parts[_k + 1]"), rate)
 
 
 @dataclass(frozen=True)
@@ -184,6 +179,13 @@ def _at(node: Node, order: str, arrays: frozenset[str]) -> Node:
         case Divide(left=left, right=right):
             return Divide(_at(left, order, arrays), _at(right, order, arrays))
     return node
+
+
+def _next(tail: Node, arrays: frozenset[str]) -> Node:
+    """A coefficient of the state, from its rate; zero where the rate is constant."""
+    if tail == ZERO:
+        return ZERO
+    return Multiply(Symbol("_parts[_k + 1]"), _at(tail, "_k", arrays))
 
 
 def _first(jets: Jets, arrays: frozenset[str]) -> Iterator[Line]:

@@ -1,6 +1,7 @@
 """Targets, reading: what the reader of each language makes of one function.
 
-Comes in: nothing. Goes out: the record that is compared with a Program, and the failure of rung 3.
+Comes in: nothing. Goes out: the records that are compared with a Program and with recurrences, and
+the failure of rung 3.
 Read next: `coadjoint.crosscheck.parse_back`.
 """
 
@@ -25,6 +26,38 @@ class Body:
     inputs: dict[str, tuple[str, int]] = field(default_factory=dict)
     statements: list[tuple[str, Node]] = field(default_factory=list)
     outputs: list[tuple[int, Node]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A loop over the terms of sums, in the loop over orders.
+
+    Attributes:
+        last: Its last term, ``"_k"`` or ``"_k - 1"``; the first is 1.
+        lines: Name and value, in order.
+    """
+
+    last: str
+    lines: tuple[tuple[str, Node], ...]
+
+
+@dataclass
+class SolverBody:
+    """What one function of a solver does, as read from its text.
+
+    Attributes:
+        inputs: Array and row by name: ``{"Pi1": ("state", 0)}``.
+        kept: Names of arrays of coefficients.
+        lines: Name and value, in order.
+        orders: What is done at each order from 1 on.
+        starts: Names that are made at an order and added to.
+    """
+
+    inputs: dict[str, tuple[str, int]] = field(default_factory=dict)
+    kept: list[str] = field(default_factory=list)
+    lines: list[tuple[str, Node]] = field(default_factory=list)
+    orders: list[tuple[str, Node] | Loop] = field(default_factory=list)
+    starts: set[str] = field(default_factory=set)
 
 
 def join(left: Node, sign: str, right: Node) -> Node:

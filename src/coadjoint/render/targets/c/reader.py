@@ -116,13 +116,17 @@ def read_expression(text: str, name: str) -> Node:
     Add(left=Symbol(name='a'), right=Negate(operand=Number(value=Fraction(2, 1))))
     """
     try:
-        return _Reader(text, name).whole()
+        return Reader(text, name).whole()
     except RecursionError as error:
         raise failure(f"kernel.c: {text[:60]!r} is nested too deeply", name) from error
 
 
-class _Reader:
+class Reader:
     """Reads one C expression over ``+ - * /``, unary minus, calls and parentheses."""
+
+    file, token = "kernel.c", _TOKEN
+    #: What stands behind the name of a function.
+    suffix = ""
 
     def __init__(self, text: str, name: str) -> None:
         self.text, self.name = text, name
@@ -131,14 +135,14 @@ class _Reader:
 
     def _tokens(self) -> Iterator[tuple[str, str]]:
         end = 0
-        for token in _TOKEN.finditer(self.text):
+        for token in self.token.finditer(self.text):
             if token.start() != end:
                 break
             end = token.end()
             if token.lastgroup:
                 yield token.lastgroup, token[0]
         if end != len(self.text):
-            raise failure(f"kernel.c: {self.text[end:]!r} is no form of a Program", self.name)
+            raise failure(f"{self.file}: {self.text[end:]!r} is no form of a Program", self.name)
         yield "end", ""
 
     def whole(self) -> Node:
@@ -149,18 +153,21 @@ class _Reader:
         return node
 
     def sum(self) -> Node:
+        """Products, added up."""
         node = self.product()
         while self.tokens[self.at][1] in ("+", "-"):
             node = join(node, self.take(), self.product())
         return node
 
     def product(self) -> Node:
+        """Factors and divisors."""
         node = self.read_sign()
         while self.tokens[self.at][1] in ("*", "/"):
             node = join(node, self.take(), self.read_sign())
         return node
 
     def read_sign(self) -> Node:
+        """An atom, perhaps with a sign."""
         if self.tokens[self.at][1] != "-":
             return self.atom()
         self.take()
@@ -169,6 +176,7 @@ class _Reader:
         return Negate(self.read_sign())
 
     def atom(self) -> Node:
+        """A number, a name, a call, or a sum in parentheses."""
         kind, text = self.tokens[self.at]
         self.at += 1
         # An integer would divide as integers do, and 1e999 is no number.
@@ -176,17 +184,20 @@ class _Reader:
             return Number(Fraction(float(text)))
         if kind == "name" and self.tokens[self.at][1] != "(":
             return Symbol(text)
-        if text == "(" or text in FUNCTIONS:
+        called = text.removesuffix(self.suffix)
+        if text == "(" or (called in FUNCTIONS and text.endswith(self.suffix)):
             self.at += text != "("
             inner = self.sum()
             if self.take() != ")":
                 raise self.refusal()
-            return inner if text == "(" else Call(text, inner)
+            return inner if text == "(" else Call(called, inner)
         raise self.refusal()
 
     def take(self) -> str:
+        """The next token."""
         self.at += 1
         return self.tokens[self.at - 1][1]
 
     def refusal(self) -> CrossCheckError:
-        return failure(f"kernel.c: {self.text!r} is no form of a Program", self.name)
+        """The failure of rung 3."""
+        return failure(f"{self.file}: {self.text!r} is no form of a Program", self.name)

@@ -1,0 +1,144 @@
+"""Cross-check, series: the motion as a power series in 60 digits, straight from the equations.
+
+Comes in: equations that any arithmetic can evaluate. Goes out: their solution as power series in
+time, by Picard's iteration: each round integrates the rates of the round before, and gives one more
+order. No recurrence of a solver is used: a quotient is a product with a Newton iteration, a
+function is its Taylor series at the first coefficient.
+Read next: `coadjoint.crosscheck.recurrences`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from math import factorial
+from operator import mul
+
+from coadjoint.crosscheck.oracle import CONTEXT, Bounded, OutsideDomain, call, exact
+
+#: Evaluates rates in any arithmetic: values by name, numbers, functions.
+Rates = Callable[
+    [Mapping[str, "Series"], Callable[[Fraction], "Series"], Callable[[str, "Series"], "Series"]],
+    Sequence["Series"],
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A power series up to some order.
+
+    Attributes:
+        of: Its coefficients.
+    """
+
+    of: tuple[Decimal, ...]
+
+    def __add__(self, other: Series) -> Series:
+        return Series(tuple(a + b for a, b in zip(self.of, other.of, strict=True)))
+
+    def __neg__(self) -> Series:
+        return Series(tuple(-a for a in self.of))
+
+    def __mul__(self, other: Series) -> Series:
+        a, b = self.of, other.of
+        return Series(tuple(sum(map(mul, a[: k + 1], b[k::-1])) for k in range(len(a))))
+
+    def __truediv__(self, other: Series) -> Series:
+        if not other.of[0]:
+            raise OutsideDomain
+        inverse = constant(1 / other.of[0], len(self.of))
+        two, known = constant(Decimal(2), len(self.of)), 1
+        while known < len(self.of):  # Newton: twice as many coefficients in each round
+            inverse, known = inverse * (two + -(other * inverse)), 2 * known
+        return self * inverse
+
+
+def constant(value: Decimal, length: int) -> Series:
+    """A series of one coefficient."""
+    return Series((value, *[Decimal(0)] * (length - 1)))
+
+
+def apply(function: str, argument: Series) -> Series:
+    """A function of a series: its Taylor series at the first coefficient, put together by Horner.
+
+    Raises:
+        OutsideDomain: It has no value there.
+    """
+    length = len(argument.of)
+    moving = Series((Decimal(0), *argument.of[1:]))
+    slopes = _slopes(function, argument.of[0], length)
+    total, *rest = (constant(slope, length) for slope in reversed(slopes))
+    for each in rest:
+        total = total * moving + each
+    return total
+
+
+def _slopes(function: str, at: Decimal, length: int) -> list[Decimal]:
+    """The derivatives of a function, each divided by the factorial of its order."""
+    value = _value(function, at)
+    found, turn = [value], [value]
+    if function in ("sin", "cos"):
+        sine, cosine = _value("sin", at), _value("cos", at)
+        turn = [sine, cosine, -sine, -cosine] * 2
+        turn = turn[function == "cos" :][:4]
+    for k in range(1, length):
+        match function:
+            case "exp":
+                found.append(found[-1] / k)
+            case "log":
+                found.append(-((-1 / at) ** k) / k)
+            case "sqrt":  # the binomial series
+                found.append(found[-1] * (Decimal(3) / 2 - k) / (k * at))
+            case _:
+                found.append(turn[k % 4] / factorial(k))
+    return found
+
+
+def _value(function: str, at: Decimal) -> Decimal:
+    """A function at a point.
+
+    Raises:
+        OutsideDomain: It has no value there, or a root no slope.
+    """
+    if function in ("sqrt", "log") and at <= 0:
+        raise OutsideDomain
+    return call(function, Bounded(at, Decimal(0))).value
+
+
+def solve(
+    rates: Rates,
+    state: Mapping[str, float],
+    given: Mapping[str, tuple[float, ...]],
+    order: int,
+) -> dict[str, tuple[Decimal, ...]]:
+    """The motion from a state on, by component: coefficients up to an order.
+
+    Args:
+        rates: The equations.
+        state: Where it begins.
+        given: First coefficients of parameters, inputs and time.
+        order: The last order.
+
+    Raises:
+        OutsideDomain: The equations have no value there.
+    """
+    with localcontext(CONTEXT):
+        motion: dict[str, tuple[Decimal, ...]]
+        motion = {name: (Decimal(value),) for name, value in state.items()}
+        for length in range(1, order + 1):
+            known = {name: Series(each) for name, each in motion.items()}
+            for name, first in given.items():
+                whole = [Decimal(value) for value in first] + [Decimal(0)] * length
+                known[name] = Series(tuple(whole[:length]))
+
+            def number(value: Fraction, length: int = length) -> Series:
+                return constant(exact(value).value, length)
+
+            found = rates(known, number, apply)
+            motion = {
+                name: (motion[name][0], *(c / (k + 1) for k, c in enumerate(rate.of)))
+                for name, rate in zip(motion, found, strict=True)
+            }
+        return motion

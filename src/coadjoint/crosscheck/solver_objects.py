@@ -1,0 +1,161 @@
+"""Cross-check, objects of solvers: the texts brought to life, in NumPy and compiled.
+
+Comes in: the texts of ``solver.py``, ``solver.c`` and ``solver.h``. Goes out: functions that
+advance an `Ensemble`. Each is made from the very text that is checked: an object in the cache is
+named after the hash of its text.
+Read next: `coadjoint.crosscheck.solver_steps`.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from coadjoint.build.cache import fetch, store
+from coadjoint.build.compiler import _run, find_compiler
+from coadjoint.build.library import _key
+from coadjoint.crosscheck.points import Array
+from coadjoint.errors import CompilerError, OutputError
+from coadjoint.solve.ensemble import Ensemble
+from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
+
+#: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
+ORDER: Final = 7
+#: Each method with what makes an object of it.
+FLAGS: Final = {"taylor": f"-DORDER={ORDER}", "dop853": "-DDOP853", "rk4": "-DRK4"}
+#: Goes on with all members of an ensemble for so many steps at most; how many still go on.
+Advance = Callable[[Ensemble, int], int]
+
+_SIZE, _DOUBLE, _PLACE = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
+_PLACES: Final = ("state", "time", "step", "next", "steps", "rejected", "status")
+
+
+class Run(ctypes.Structure):
+    """The structure of ``solver.h``, field by field."""
+
+    _fields_ = (
+        *((name, _SIZE) for name in ("members", "first", "last")),
+        *((name, _PLACE) for name in (*_PLACES, "parameters")),
+        ("parameters_stride", _SIZE),
+        *((name, _PLACE) for name in ("knots", "inputs", "slopes")),
+        *((name, _SIZE) for name in ("pieces", "inputs_stride")),
+        ("samples", _PLACE),
+        ("sample_count", _SIZE),
+        ("out", _PLACE),
+        *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
+        *((name, _SIZE) for name in ("max_steps", "work")),
+    )
+
+
+def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: str) -> Path:
+    """The object of a method.
+
+    Args:
+        texts: ``solver.c`` and ``solver.h``.
+        folder: A private folder, where others may be compiled at the same time.
+        method: One of `FLAGS`.
+        build: ``exact`` or ``fast``.
+
+    Raises:
+        CompilerError: The compiler failed.
+    """
+    compiler, work = find_compiler(), folder / f"{method}-{build}"
+    work.mkdir()
+    sources = {file: texts[file].encode() for file in ("solver.c", "solver.h")}
+    key = _key(compiler, {**sources, "method": FLAGS[method].encode()}, build)
+    cached = fetch(key)
+    if cached is not None:
+        return cached
+    for file, content in sources.items():
+        (work / file).write_bytes(content)
+    said, status = "", 1
+    for native in (True, False):  # some compilers do not know -march=native
+        flags = (*compiler.flags(build, native=native), FLAGS[method])
+        command = (*compiler.command, *flags, "solver.c", "-o", "solver.so", "-lm")
+        status, said = _run(command, work)
+        if status == 0:
+            with suppress(OSError, OutputError):
+                store(key, (work / "solver.so").read_bytes())
+            return work / "solver.so"
+    raise CompilerError(
+        f"{compiler.command[0]} failed on solver.c ({method}) with status {status}: "
+        f"{said.strip()[:600] or 'no output'}",
+        found=compiler.command[0],
+        status=status,
+    )
+
+
+def load_solver(path: Path, system: str) -> Advance:
+    """The function of an object."""
+    function = ctypes.CDLL(str(path))[f"{system}_advance"]
+    function.restype, function.argtypes = _SIZE, [_PLACE]
+
+    def advance(ensemble: Ensemble, work: int) -> int:
+        members, given, inputs = ensemble.state.shape[1], ensemble.parameters, ensemble.inputs
+        arrays = {name: getattr(ensemble, name) for name in (*_PLACES, "samples", "out")}
+        arrays |= {"parameters": given, "knots": inputs.knots}
+        arrays |= {"inputs": inputs.values, "slopes": inputs.slopes}
+        run = Run(
+            **{name: array.ctypes.data for name, array in arrays.items()},
+            members=members,
+            last=members,
+            parameters_stride=members if given.ndim > 1 else 0,
+            pieces=inputs.pieces,
+            inputs_stride=members if inputs.own else 0,
+            sample_count=len(ensemble.samples),
+            rtol=ensemble.rtol,
+            atol=ensemble.atol,
+            size=ensemble.size,
+            max_steps=ensemble.max_steps,
+            work=work,
+        )
+        return int(function(ctypes.byref(run)))
+
+    return advance
+
+
+@dataclass(frozen=True)
+class NumpySolver:
+    """The methods in NumPy.
+
+    Attributes:
+        expand: The function of ``solver.py``.
+        rates: The rates of the NumPy kernel: state, parameters, driving.
+    """
+
+    expand: Callable[..., Array]
+    rates: Callable[[Array, Array, Array], Array]
+
+    def method(self, name: str, ensemble: Ensemble) -> Method:
+        """A method for the tolerances and the step of an ensemble."""
+        rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
+        if name == "taylor":
+            return Taylor(self._expand, ORDER, rtol, atol, size)
+        if name == "dop853":
+            return DormandPrince8(self._rates, rtol, atol, size)
+        return RungeKutta4(self._rates, size)
+
+    def advance(self, name: str) -> Advance:
+        """What goes on by a method."""
+        return lambda ensemble, work: ensemble.advance(self.method(name, ensemble), work)
+
+    def _expand(self, lanes: Lanes, order: int) -> Array:
+        return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
+
+    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        return self.rates(np.ascontiguousarray(state), lanes.parameters, driving)
+
+
+def load_numpy(text: str) -> Callable[..., Array]:
+    """The function ``expand`` of the text of ``solver.py``."""
+    module: dict[str, Any] = {}
+    exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
+    expand: Callable[..., Array] = module["expand"]
+    return expand

@@ -1,0 +1,237 @@
+"""Cross-check, text of solvers: what is printed, read back, is what was to be printed.
+
+Comes in: recurrences and the texts of ``solver.c``, ``solver.h`` and ``solver.py``. Goes out: how
+many lines and table entries were compared, or a `CrossCheckError` that names the line. The lines of
+the system and the tables are read by the readers of the targets; the rest of each text, in which
+the system has its name and sizes alone, is compared letter by letter with what the template gives
+for a system without recurrences.
+Read next: `coadjoint.crosscheck.recurrences`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import zip_longest
+
+from coadjoint.crosscheck.parse_back import as_printed
+from coadjoint.lower.program import Node, Program
+from coadjoint.lower.tableau import Tableau, dop853
+from coadjoint.render.environment import render_templates
+from coadjoint.render.kernels import Row
+from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
+from coadjoint.render.targets import TARGETS
+from coadjoint.render.targets.body import Loop, SolverBody, failure
+from coadjoint.render.targets.c import solver_reader as c_reader
+from coadjoint.render.targets.numpy import solver_reader as numpy_reader
+
+#: The files of solvers.
+FILES = ("solver.c", "solver.h", "solver.py")
+Pair = tuple[str, Node]
+
+
+@dataclass(frozen=True)
+class SolverTexts:
+    """The solvers of a system in every form.
+
+    Attributes:
+        program: The rates.
+        recurrences: What was to be printed.
+        files: The printed files by name.
+        system: Name of the system.
+    """
+
+    program: Program
+    recurrences: SolverText
+    files: Mapping[str, str]
+    system: str
+
+
+def check_solver_texts(texts: SolverTexts) -> int:
+    """Rung 3: texts of solvers read back as what was to be printed.
+
+    Returns:
+        How many lines and entries of tables were compared.
+
+    Raises:
+        CrossCheckError: They do not; the message names the first difference.
+    """
+    c, numpy = texts.files["solver.c"], texts.files["solver.py"]
+    check_rest(texts)
+    compared = _check_tables(c_reader.read_tables(c), dop853())
+    for function in ("find_fixed", "expand", "find_rates"):
+        body = c_reader.read_function(c, function)
+        compared += _check_body(body, _expected(texts, function), "solver.c", function)
+    body = numpy_reader.read_expand(numpy)
+    return compared + _check_body(body, _expected(texts, "solver.py"), "solver.py", "expand")
+
+
+# -- the lines of the system ----------------------------------------------------------------------
+
+
+def _expected(texts: SolverTexts, function: str) -> SolverBody:
+    """What a function is to do."""
+    solver, program = texts.recurrences, texts.program
+    rates = arrange_function(program, "_rates")
+    driven = (*program.inputs, *program.time)
+    rows = {"parameters": program.parameters, "state": program.state, "driving": driven}
+    rows["fixed"] = tuple(line.name for line in solver.fixed)
+    if function == "find_fixed":
+        return _body(rows, ("parameters",), solver.fixed_reads, solver.fixed)
+    if function == "find_rates":
+        return _body(rows, ("state", "parameters", "fixed", "driving"), rates.reads, rates.lines)
+    is_c = function == "expand"
+    reads = solver.reads.union(program.state, (frozenset() if is_c else solver.fixed_reads))
+    arrays = ("state", "parameters", "driving", *(["fixed"] if is_c else []))
+    lines = solver.first if is_c else (*solver.fixed, *solver.first)
+    body = _body(rows, arrays, reads, lines)
+    body.kept, body.orders = list(solver.kept), list(_orders(solver))
+    return body
+
+
+def _body(
+    rows: Mapping[str, Sequence[str]],
+    arrays: Iterable[str],
+    reads: frozenset[str],
+    lines: Iterable[Line],
+) -> SolverBody:
+    """A body with the inputs of some arrays and with some lines."""
+    inputs = {
+        name: (array, row)
+        for array in arrays
+        for row, name in enumerate(rows[array])
+        if name in reads
+    }
+    return SolverBody(inputs=inputs, lines=_pairs(lines))
+
+
+def _orders(solver: SolverText) -> Iterable[Pair | Loop]:
+    """What is done at each order."""
+    for stage in solver.stages:
+        yield from _pairs(stage.starts)
+        if stage.terms:
+            yield Loop(stage.last, tuple(_pairs(stage.terms)))
+        yield from _pairs(stage.lines)
+    yield from _pairs(solver.rates)
+
+
+def _pairs(lines: Iterable[Line]) -> list[Pair]:
+    return [(line.name, as_printed(line.value)) for line in lines]
+
+
+def _check_body(found: SolverBody, expected: SolverBody, file: str, function: str) -> int:
+    """Inputs, arrays, lines and orders are the same."""
+    lines = [
+        *zip_longest(sorted(found.inputs.items()), sorted(expected.inputs.items())),
+        *zip_longest(found.kept, expected.kept),
+        *zip_longest(found.lines, expected.lines),
+        *zip_longest(found.orders, expected.orders),
+    ]
+    for one, other in lines:
+        if one != other:
+            raise failure(
+                f"{file}, {function}: {one} was read back; expected {other}. The printer, the "
+                "template or the reader is wrong",
+                function,
+                file=file,
+                found=str(one),
+                expected=str(other),
+            )
+    return sum(1 + (len(one.lines) if isinstance(one, Loop) else 0) for one, _ in lines)
+
+
+def _check_tables(found: Mapping[str, tuple[float, ...]], table: Tableau) -> int:
+    """The tables are the tableau, number by number."""
+    compared = 0
+    for field in fields(table):
+        entries = tuple(map(float, getattr(table, field.name)))
+        for place, (one, other) in enumerate(zip_longest(found.get(field.name, ()), entries)):
+            if one != other:
+                raise failure(
+                    f"solver.c: entry {place} of {field.name} is {one!r}; expected {other!r}",
+                    field.name,
+                    file="solver.c",
+                    found=repr(one),
+                    expected=repr(other),
+                )
+        compared += len(entries)
+    return compared
+
+
+# -- the rest of the text -------------------------------------------------------------------------
+
+
+def check_rest(texts: SolverTexts) -> None:
+    """What is no line of the system is the template's, letter by letter.
+
+    Raises:
+        CrossCheckError: A line differs.
+    """
+    expected = _render_without_lines(texts)
+    for file, text in texts.files.items():
+        cut = {"solver.c": c_reader.rest, "solver.py": numpy_reader.rest}.get(file, str)
+        pairs = zip_longest(cut(text).splitlines(), cut(expected[file]).splitlines())
+        for number, (one, other) in enumerate(pairs, 1):
+            if one != other:
+                raise failure(
+                    f"{file}: line {number} of what all systems share is {one!r}; expected "
+                    f"{other!r}",
+                    file,
+                    file=file,
+                    found=str(one),
+                    expected=str(other),
+                )
+
+
+def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
+    """The files of a system of this name and these sizes that has no recurrences."""
+    program, solver, nothing = texts.program, texts.recurrences, FunctionText((), frozenset())
+    bare = SolverText(
+        fixed=solver.fixed,
+        kept=(),
+        first=(),
+        stages=(),
+        rates=(),
+        functions=solver.functions,
+        products=0,
+        reads=frozenset(),
+        fixed_reads=frozenset(),
+    )
+    driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
+    templates = {
+        file: template
+        for target in TARGETS.values()
+        for file, template in target.files.items()
+        if file in FILES
+    }
+    rendered = render_templates(
+        tuple(templates.values()),
+        {
+            "name": texts.system,
+            **_head(texts.files["solver.py"]),
+            "state": _rows(program.state),
+            "parameters": _rows(program.parameters),
+            "driving": {name: rows for name, rows in driving.items() if rows},
+            "solver": bare,
+            "rates": nothing,
+            "dop853": {field.name: [] for field in fields(Tableau)},
+        },
+    )
+    return {file: rendered[template] for file, template in templates.items()}
+
+
+def _rows(names: Iterable[str]) -> list[Row]:
+    return [Row(index, name, "") for index, name in enumerate(names)]
+
+
+def _head(text: str) -> dict[str, str]:
+    """The spec, licence and id that the head of a file tells."""
+    found = re.match(
+        r"# Generated by `coadjoint regenerate` from (.*); edits are lost\.\n"
+        r"# Template: .*\n# (.*)\n# id: ([0-9a-f]{16})\n",
+        text,
+    )
+    if not found:
+        raise failure("solver.py has another head than its template", "expand")
+    return dict(zip(("spec", "licence", "id"), found.groups(), strict=True))

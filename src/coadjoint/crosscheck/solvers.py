@@ -1,0 +1,148 @@
+"""Cross-check, solvers: rungs 2 to 5 for the methods of integration of one system.
+
+Comes in: a `Subject` and the texts of its solvers. Goes out: `SolverFigures`, or a
+`CrossCheckError`. Every check counts what it compared, and fails where that is nothing.
+
+    rung 2   the recurrences are the power series of the equations, in 60 digits
+    rung 3   the texts read back as recurrences, tableau and template
+    rung 4   single steps of NumPy, exact C and fast C against 60 digits
+    rung 5   NumPy and exact C agree over some steps
+
+Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver_steps`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from coadjoint.crosscheck.compare import Figures
+from coadjoint.crosscheck.points import Array
+from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_points
+from coadjoint.crosscheck.solver_objects import (
+    FLAGS,
+    Advance,
+    NumpySolver,
+    compile_solver,
+    load_numpy,
+    load_solver,
+)
+from coadjoint.crosscheck.solver_steps import (
+    MEMBERS,
+    START,
+    Solvers,
+    check_bits,
+    check_choice,
+    check_steps,
+    check_together,
+    choose_size,
+)
+from coadjoint.crosscheck.solver_text import FILES, SolverTexts, check_solver_texts
+from coadjoint.crosscheck.subject import Subject
+from coadjoint.render.solvers import SolverText, arrange
+
+#: The objects that are compiled, each once: method, target and build. The builds differ in their
+#: flags alone, which one method shows.
+OBJECTS: Final = (*((method, "c", "exact") for method in FLAGS), ("taylor", "c-fast", "fast"))
+#: What compilers are making, by method and target.
+Compiling = Mapping[tuple[str, str], "Future[Path]"]
+
+
+@dataclass(frozen=True)
+class SolverFigures:
+    """What was compared of the solvers of a system.
+
+    Attributes:
+        coefficients: Coefficients of motions, of recurrences and equations.
+        lines: Lines and entries of tables that were read back.
+        steps: Largest k of single steps and members, by method and target.
+        choices: Steps that the Taylor method chose.
+        equal: Numbers with the same bits in NumPy and C, by method.
+        together: Members within the bound instead, by method.
+    """
+
+    coefficients: int
+    lines: int
+    steps: Mapping[str, Mapping[str, Figures]]
+    choices: int
+    equal: Mapping[str, int]
+    together: Mapping[str, int]
+
+
+def start_compiling(
+    pool: Executor, texts: Mapping[str, str], folder: Path, targets: Iterable[str]
+) -> Compiling:
+    """Have the objects of some targets compiled in a private folder."""
+    return {
+        (method, target): pool.submit(compile_solver, texts, folder, method, build)
+        for method, target, build in OBJECTS
+        if target in targets
+    }
+
+
+def check_solvers(
+    subject: Subject, texts: Mapping[str, str], compiling: Compiling
+) -> SolverFigures:
+    """All rungs of the solvers of a system.
+
+    Args:
+        subject: The system.
+        texts: Its files by name.
+        compiling: What `start_compiling` began.
+
+    Raises:
+        CompilerError: An object cannot be compiled.
+        CrossCheckError: A rung failed.
+    """
+    program = subject.programs["rhs"]
+    text, name = arrange(program), subject.system.name
+    files = {file: texts[file] for file in FILES}
+    coefficients = check_recurrences(text, subject)
+    lines = check_solver_texts(SolverTexts(program, text, files, name))
+    solvers = Solvers(subject, text, _load(subject, files["solver.py"], compiling))
+    batch = draw_points(subject, TRIES, time=START)
+    batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
+    size = choose_size(solvers, batch)
+    steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
+    equal, together = dict[str, int](), dict[str, int]()
+    if compiling:
+        promised = subject.has_equal_bits("rhs") and _is_plain(text)
+        if promised:
+            equal = check_bits(solvers, batch, size)
+        else:
+            together = check_together(solvers, batch, size)
+    return SolverFigures(coefficients, lines, steps, choices, equal, together)
+
+
+def _is_plain(text: SolverText) -> bool:
+    """Whether recurrences call nothing beyond sqrt."""
+    return not text.functions
+
+
+def _load(subject: Subject, text: str, compiling: Compiling) -> dict[str, dict[str, Advance]]:
+    """What advances members, by method and target."""
+    numpy = NumpySolver(load_numpy(text), _numpy_rates(subject))
+    advance = {method: {"numpy": numpy.advance(method)} for method in FLAGS}
+    for (method, target), made in compiling.items():
+        advance[method][target] = load_solver(made.result(), subject.system.name)
+    return advance
+
+
+def _numpy_rates(subject: Subject) -> Callable[[Array, Array, Array], Array]:
+    """The rates of the NumPy kernel."""
+    program, inputs = subject.programs["rhs"], len(subject.programs["rhs"].inputs)
+
+    def rates(state: Array, parameters: Array, driving: Array) -> Array:
+        given = [state, np.ascontiguousarray(parameters)]
+        given += [np.ascontiguousarray(driving[:inputs])] if inputs else []
+        named = {"time": np.ascontiguousarray(driving[inputs])} if program.time else {}
+        out = np.empty(state.shape)
+        subject.system.rhs(*given, **named, target="numpy", out=out)
+        return out
+
+    return rates

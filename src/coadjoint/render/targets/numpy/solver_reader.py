@@ -1,0 +1,152 @@
+"""The target NumPy, reading solvers: the function ``expand`` of ``solver.py``, line by line.
+
+Comes in: the text. Goes out: a `SolverBody`, and the rest of the text, which is that of the
+template.
+Read next: `coadjoint.crosscheck.solver_text`.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+
+from coadjoint.lower.program import Node, Symbol
+from coadjoint.render.targets.body import Loop, SolverBody
+from coadjoint.render.targets.python_text import Reader
+
+FILE = "solver.py"
+_ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
+_BODY = re.compile(r"^    _parts = .*?^    return path$", re.DOTALL | re.MULTILINE)
+_INDEX = re.compile(r"\d+|_k|_m|_k \+ 1|_k - _m")
+#: Lines that are the same in all systems; those about the path say what a row of the state is.
+_FIXED = (
+    "_parts = [1.0 / max(k, 1) for k in range(order + 1)]",
+    "_orders = [float(k) for k in range(order + 1)]",
+    "path = np.empty((len(state), order + 1, state.shape[1]))",
+    "path[:, 0] = state",
+)
+_READ = {
+    "parameters": re.compile(r"(\w+) = parameters\[(\d+)\]"),
+    "state": re.compile(r"(\w+) = path\[(\d+)\]"),
+    "driving": re.compile(r"\(?(\w+)\[0\], \1\[1\]\)? = \(driving\[(\d+)\], slopes\[\2\]\)"),
+}
+_KEPT = re.compile(r"(\w+) = np\.empty\(path\.shape\[1:\]\)")
+_ZEROS = re.compile(r"(\w+) = np\.zeros\(\(order \+ 1, state\.shape\[1\]\)\)")
+_LOOPS = {"range(1, _k + 1)": "_k", "range(1, _k)": "_k - 1"}
+
+
+def read_expand(text: str) -> SolverBody:
+    """What ``expand`` does.
+
+    Raises:
+        CrossCheckError: It has a line that no template prints.
+    """
+    reading = _Reading()
+    functions = reading.functions(text, _is_allowed)
+    function = functions.get("expand")
+    if function is None or [each.arg for each in function.args.args] != _ARGUMENTS:
+        raise reading.refusal(f"there is no function expand of {', '.join(_ARGUMENTS)}")
+    reading.read_body(function.body)
+    return reading.body
+
+
+def rest(text: str) -> str:
+    """The text without the lines of ``expand``."""
+    return _BODY.sub("", text, count=1)
+
+
+def _is_allowed(item: ast.stmt) -> bool:
+    """Whether a statement may stand beside the function."""
+    match item:
+        case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
+            return True
+        case ast.Assign(targets=[ast.Name(id="ID")], value=ast.Constant()):
+            return True
+    return False
+
+
+def _called(function: ast.expr) -> str | None:
+    """``sqrt`` of ``np.sqrt``."""
+    match function:
+        case ast.Attribute(ast.Name("np"), called):
+            return called
+    return None
+
+
+class _Reading(Reader):
+    """The function being read."""
+
+    def __init__(self) -> None:
+        super().__init__(FILE, "expand", _called)
+        self.body = SolverBody()
+        self._told: list[str] = []
+
+    def node(self, tree: ast.expr) -> Node:
+        """A node; an entry of an array is a name with its order."""
+        match tree:
+            case ast.Subscript(ast.Name(id=name), index) if _INDEX.fullmatch(ast.unparse(index)):
+                return Symbol(f"{name}[{ast.unparse(index)}]")
+        return super().node(tree)
+
+    def read_body(self, lines: list[ast.stmt]) -> None:
+        """All lines, the last of which returns the path."""
+        docs, *inside, last, returned = lines
+        if not isinstance(docs, ast.Expr) or ast.unparse(returned) != "return path":
+            raise self.refusal("does not return the path", returned)
+        for line in inside:
+            if not self._read_setup(ast.unparse(line), line):
+                self.body.lines.append(self._assignment(line))
+        told = [line for line in _FIXED if line in self._told]
+        if told != self._told or not set(told) >= set(_FIXED) - {_FIXED[1]}:
+            raise self.refusal(f"begins with {self._told}")
+        match last:
+            case ast.For(ast.Name("_k"), over, body, []) if ast.unparse(over) == "range(1, order)":
+                self.body.orders += self._read_orders(body)
+            case _:
+                raise self.refusal("is no loop over orders", last)
+
+    def _read_setup(self, text: str, line: ast.stmt) -> bool:
+        """Whether a line names something that is read."""
+        if text in _FIXED:
+            self._told.append(text)
+            return True
+        for array, form in _READ.items():
+            found = form.fullmatch(text)
+            if found:
+                self._name_input(found[1], array, int(found[2]), line)
+                return True
+        kept, zeros = _KEPT.fullmatch(text), _ZEROS.fullmatch(text)
+        if kept:
+            self.body.kept.append(kept[1])
+        elif zeros:
+            self.body.inputs[zeros[1]] = ("zeros", 0)
+        return bool(kept or zeros)
+
+    def _name_input(self, name: str, array: str, row: int, line: ast.stmt) -> None:
+        """A name for a row of an array, before anything that moves is computed."""
+        made = self.body.inputs.pop(name, None)
+        late = any("[" in assigned for assigned, _ in self.body.lines)
+        if late or made != (("zeros", 0) if array == "driving" else None):
+            raise self.refusal("is out of place", line)
+        self.body.inputs[name] = (array, row)
+
+    def _assignment(self, line: ast.stmt) -> tuple[str, Node]:
+        """A name and its value."""
+        match line:
+            case ast.Assign([ast.Name(id=name)], value):
+                return name, self.node(value)
+            case ast.Assign([ast.Subscript() as entry], value):
+                assigned = self.node(entry)
+                if isinstance(assigned, Symbol):
+                    return assigned.name, self.node(value)
+        raise self.refusal("is no line of a recurrence", line)
+
+    def _read_orders(self, lines: list[ast.stmt]) -> Iterator[tuple[str, Node] | Loop]:
+        """The loop over orders."""
+        for line in lines:
+            match line:
+                case ast.For(ast.Name("_m"), over, body, []) if ast.unparse(over) in _LOOPS:
+                    yield Loop(_LOOPS[ast.unparse(over)], tuple(map(self._assignment, body)))
+                case _:
+                    yield self._assignment(line)

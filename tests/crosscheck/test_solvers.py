@@ -1,0 +1,385 @@
+"""The ladder of solvers: good ones pass, and each kind of spoiled one is caught by its rung."""
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from coadjoint.crosscheck import solver_steps
+from coadjoint.crosscheck.recurrences import check_recurrences, draw_points
+from coadjoint.crosscheck.solver_objects import (
+    NumpySolver,
+    compile_solver,
+    load_numpy,
+    load_solver,
+)
+from coadjoint.crosscheck.solver_steps import (
+    MEMBERS,
+    Solvers,
+    check_bits,
+    check_choice,
+    check_steps,
+    check_together,
+)
+from coadjoint.crosscheck.solver_text import FILES, SolverTexts, check_solver_texts
+from coadjoint.crosscheck.solvers import check_solvers
+from coadjoint.crosscheck.subject import Subject
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower.program import (
+    Add,
+    Call,
+    Multiply,
+    Negate,
+    Number,
+    Symbol,
+    children,
+    with_children,
+)
+from coadjoint.render.kernels import render_system
+from coadjoint.render.solvers import Line, arrange
+from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
+from tests.kernels import COMPILER, ProgramReference
+from tests.programs import HEAVY_TOP, PENDULUM
+
+needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM}
+
+
+@cache
+def texts_by_name(name):
+    """The files of a system."""
+    return render_system(CONTEXTS[name])
+
+
+def rates_of(context):
+    """The Program of its rates."""
+    return next(each for each in context.programs if each.name == "rhs")
+
+
+def subject(context):
+    """A system with its Programs in the place of equations, and its NumPy kernel alone."""
+    kernel = {}
+    exec(texts_by_name(context.name)["kernel.py"], kernel)
+
+    def rhs(state, parameters, target, out):
+        return kernel["rhs"](state, parameters, out)
+
+    system = SimpleNamespace(
+        name=context.name, PARAMETERS={each.name: each for each in context.parameters}, rhs=rhs
+    )
+    programs = {each.name: each for each in context.programs}
+    return Subject(programs, ProgramReference(context.programs), system, ("numpy", "c"))
+
+
+def texts_of(context, spoil=lambda texts: texts):
+    """The solvers of a system as texts."""
+    rendered = spoil(dict(texts_by_name(context.name)))
+    files = {file: rendered[file] for file in FILES}
+    return SolverTexts(rates_of(context), arrange(rates_of(context)), files, context.name)
+
+
+def replaced(file, good, bad):
+    """A spoiler that replaces text once in one file."""
+
+    def spoil(texts):
+        assert good in texts[file], (good, file)
+        return {**texts, file: texts[file].replace(good, bad, 1)}
+
+    return spoil
+
+
+# -- rung 2 ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("context", CONTEXTS.values(), ids=CONTEXTS)
+def test_recurrences_are_the_power_series(context):
+    """Seven coefficients of each component are compared at two points."""
+    rates = rates_of(context)
+    assert check_recurrences(arrange(rates), subject(context)) == 2 * 7 * len(rates.state)
+
+
+def changed(text, change):
+    """Recurrences with one line of one stage changed."""
+    stages = list(text.stages)
+    for place, stage in enumerate(stages):
+        for part in ("starts", "terms", "lines"):
+            lines = list(getattr(stage, part))
+            for row, line in enumerate(lines):
+                other = change(part, line)
+                if other is not None:
+                    lines[row] = other
+                    stages[place] = replace(stage, **{part: tuple(lines)})
+                    return replace(text, stages=tuple(stages))
+    raise AssertionError("nothing was changed")
+
+
+def renamed(node, old, new):
+    """A node with another array of coefficients."""
+    if isinstance(node, Symbol):
+        return Symbol(node.name.replace(f"{old}[_k", f"{new}[_k"))
+    return with_children(node, [renamed(each, old, new) for each in children(node)])
+
+
+def flip_term(part, line):
+    """A sign within a sum."""
+    if part == "terms":
+        return Line(line.name, Add(line.value.left, Negate(line.value.right)))
+    return None
+
+
+def drop_start(part, line):
+    """A sum without its first term."""
+    if part == "starts" and isinstance(line.value, Multiply):
+        return Line(line.name, Number(0))
+    return None
+
+
+def take_other_order(part, line):
+    """A coefficient of the order before."""
+    if part == "starts" and isinstance(line.value, Multiply):
+        name = line.value.right.name.replace("[_k]", "[0]")
+        return Line(line.name, Multiply(line.value.left, Symbol(name)))
+    return None
+
+
+@pytest.mark.parametrize("change", [flip_term, drop_start, take_other_order])
+def test_a_wrong_recurrence_is_caught(change):
+    """By the power series of the equations."""
+    spoiled = changed(arrange(rates_of(HEAVY_TOP)), change)
+    with pytest.raises(CrossCheckError, match=r"rung 2.*recurrences") as caught:
+        check_recurrences(spoiled, subject(HEAVY_TOP))
+    assert caught.value.rung == 2
+
+
+@pytest.mark.parametrize("bound", [("_k", "_k - 1"), ("_k", "_k")])
+def test_a_wrong_bound_of_a_loop_is_caught(bound):
+    """A sum that ends a term too early; the right bound passes."""
+    text = arrange(rates_of(HEAVY_TOP))
+    old, new = bound
+    stages = tuple(replace(s, last=new if s.last == old else s.last) for s in text.stages)
+    spoiled = replace(text, stages=stages)
+    if old == new:
+        assert check_recurrences(spoiled, subject(HEAVY_TOP))
+        return
+    with pytest.raises(CrossCheckError, match="rung 2"):
+        check_recurrences(spoiled, subject(HEAVY_TOP))
+
+
+def test_a_wrong_partner_is_caught():
+    """A sine whose slope is a sine."""
+    text = arrange(rates_of(PENDULUM))
+    sines = [line for line in text.first if isinstance(line.value, Call)]
+    names = {line.value.function: line.name.removesuffix("[0]") for line in sines}
+
+    def swap(part, line):
+        if part == "terms" and f"{names['cos']}[_k - _m]" in repr(line.value):
+            return Line(line.name, renamed(line.value, names["cos"], names["sin"]))
+        return None
+
+    with pytest.raises(CrossCheckError, match="rung 2"):
+        check_recurrences(changed(text, swap), subject(PENDULUM))
+
+
+# -- rung 3 ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("context", CONTEXTS.values(), ids=CONTEXTS)
+def test_texts_read_back(context):
+    """All lines and tables of the solvers are compared."""
+    assert check_solver_texts(texts_of(context)) > 300
+
+
+SPOILED = [
+    ("solver.c", "_m <= _k;", "_m < _k;"),
+    ("solver.c", "_m <= _k;", "_m <= _k - 1;"),
+    ("solver.c", "Pi1[_k] * _q5", "-Pi1[_k] * _q5"),
+    ("solver.c", "Omega3[_m] * Pi2[_k - _m]", "Omega3[_m] * Pi2[_k + _m]"),
+    ("solver.c", "Omega3[_m] * Pi2[_k - _m]", "Pi2[_m] * Pi2[_k - _m]"),
+    ("solver.c", "_block->fixed[1] = _p2", "_block->fixed[1] = _p3"),
+    ("solver.c", "m = _block->parameters[3]", "m = _block->parameters[4]"),
+    ("solver.c", "Pi2 = _path[1]", "Pi2 = _path[2]"),
+    ("solver.c", "Pi2[0] = _block->state[1]", "Pi2[0] = _block->state[2]"),
+    ("solver.c", "1.0 / 3,", "1.0 / 4,"),
+    ("solver.c", "_rates[0] = ", "_rates[0] = -"),
+    ("solver.c", "_rates[1]", "_rates[2]"),
+    ("solver.c", "0.05260015195876773", "0.05260015195876774"),
+    (
+        "solver.c",
+        "static const unsigned char starts[] = {\n    0, 0,",
+        "static const unsigned char starts[] = {\n    0, 1,",
+    ),
+    ("solver.c", "sum = sum + weights[q]", "sum = sum - weights[q]"),
+    (
+        "solver.c",
+        "block.time = choose(accepted, time,",
+        "block.time = choose(accepted, block.time,",
+    ),
+    ("solver.c", "error < 1.0", "error < 2.0"),
+    ("solver.c", "(2.0 + 0.7", "(1.0 + 0.7"),
+    ("solver.c", "half = h * 0.5", "half = h * 0.25"),
+    ("solver.h", "rtol, atol, size", "atol, rtol, size"),
+    ("solver.py", "range(1, _k + 1)", "range(1, _k)"),
+    ("solver.py", "for _k in range(1, order)", "for _k in range(1, order - 1)"),
+    ("solver.py", "Omega3[_m] * Pi2[_k - _m]", "Omega3[_m] * Pi2[_m]"),
+    ("solver.py", "m = parameters[3]", "m = parameters[4]"),
+    ("solver.py", "Pi2 = path[1]", "Pi2 = path[2]"),
+    ("solver.py", "1.0 / max(k, 1)", "1.0 / max(k, 2)"),
+    ("solver.py", "path[:, 0] = state", "path[:, 1] = state"),
+    ("solver.py", "import numpy as np", "import math as np"),
+]
+
+
+@pytest.mark.parametrize(("file", "good", "bad"), SPOILED)
+def test_a_spoiled_text_is_caught(file, good, bad):
+    """Each change of a line, a table, a loop or of what all systems share."""
+    with pytest.raises(CrossCheckError, match="rung 3"):
+        check_solver_texts(texts_of(HEAVY_TOP, replaced(file, good, bad)))
+
+
+def test_a_function_without_its_suffix_is_caught():
+    """A sine of a vector is no sine of a number."""
+    with pytest.raises(CrossCheckError, match="rung 3"):
+        check_solver_texts(texts_of(PENDULUM, replaced("solver.c", "= sin_of(", "= sin(")))
+
+
+# -- rungs 4 and 5 --------------------------------------------------------------------------------
+
+
+def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exact"):
+    """Solvers of some methods, in NumPy and perhaps in C."""
+    system, files = subject(context), texts_of(context, spoil).files
+
+    def rates(state, parameters, driving):
+        return system.system.rhs(state, parameters, "numpy", np.empty(state.shape))
+
+    numpy = NumpySolver(load_numpy(files["solver.py"]), rates)
+    advance = {method: {"numpy": numpy.advance(method)} for method in methods}
+    for method in methods if folder else ():
+        path = compile_solver(files, folder, method, build)
+        advance[method]["c"] = load_solver(path, context.name)
+    return Solvers(system, arrange(rates_of(context)), advance)
+
+
+def points(system):
+    """A dozen members."""
+    return draw_points(system.subject, 60).take(slice(MEMBERS))
+
+
+@pytest.mark.parametrize("context", CONTEXTS.values(), ids=CONTEXTS)
+def test_steps_of_numpy_are_exact_within_the_bound(context):
+    """One step of each method; errors are below one unit and not all zero."""
+    made = solvers(context, ("taylor", "dop853", "rk4"))
+    for figures in check_steps(made, points(made), 0.125).values():
+        assert figures["numpy"].points == 3
+        assert 0 < figures["numpy"].k < 4
+    assert check_choice(made, points(made)) == 3
+
+
+def fails(made, rung, size=0.125):
+    """Whether a step is refused by its rung."""
+    with pytest.raises(CrossCheckError, match=f"rung {rung}"):
+        check_steps(made, points(made), size)
+
+
+@pytest.mark.parametrize(
+    ("method", "changes"),
+    [
+        ("taylor", ("return path", "path[0, 7] *= 1.01; return path")),
+        ("taylor", ("_parts = [1.0 / max(k, 1)", "_parts = [1.0 / max(k - 1, 1)")),
+    ],
+)
+def test_a_wrong_coefficient_is_caught(method, changes):
+    """An error of the last order alone, and a wrong order of all."""
+    fails(solvers(HEAVY_TOP, (method,), spoil=replaced("solver.py", *changes)), 4)
+
+
+def test_a_wrong_step_of_numpy_is_caught(monkeypatch):
+    """A step of each method that is a billionth too long."""
+    for kind, method in ((Taylor, "taylor"), (RungeKutta4, "rk4"), (DormandPrince8, "dop853")):
+        right = kind.try_step
+
+        def wrong(self, lanes, right=right):
+            attempt = right(self, lanes)
+            attempt.state = lanes.state + (attempt.state - lanes.state) * (1 + 1e-9)
+            return attempt
+
+        monkeypatch.setattr(kind, "try_step", wrong)
+        fails(solvers(HEAVY_TOP, (method,)), 4)
+
+
+def test_a_sample_at_another_place_is_caught(monkeypatch):
+    """The state within a step is that of its time."""
+    right = RungeKutta4.try_step
+
+    def wrong(self, lanes):
+        attempt = right(self, lanes)
+        path = attempt.path
+        attempt.path = lambda after: path(after * (1 + 1e-9))
+        return attempt
+
+    monkeypatch.setattr(RungeKutta4, "try_step", wrong)
+    fails(solvers(HEAVY_TOP, ("rk4",)), 4)
+
+
+def test_another_choice_of_the_step_is_caught(monkeypatch):
+    """Steps of half an octave more are not those of Jorba and Zou."""
+    right = Taylor._choose
+    monkeypatch.setattr(Taylor, "_choose", lambda self, path: right(self, path) * 1.5)
+    made = solvers(HEAVY_TOP, ("taylor",))
+    with pytest.raises(CrossCheckError, match=r"rung 4.*takes the step"):
+        check_choice(made, points(made))
+
+
+@needs_compiler
+def test_c_and_numpy_have_the_same_bits(tmp_path):
+    """Runs of each method, and the count of numbers."""
+    made = solvers(HEAVY_TOP, ("taylor", "dop853", "rk4"), tmp_path)
+    equal = check_bits(made, points(made), 0.125)
+    assert min(equal.values()) > 500
+
+
+WRONG_IN_C = [
+    ("rk4", "h * 0.16666666666666666", "h * 0.16666666666666669"),
+    ("rk4", "block.time = choose(accepted, time, block.time)", "block.time = time + took * 1e-9"),
+    ("rk4", "run->samples[block->next[w]] - block->time[w]", "run->samples[block->next[w]] - 0.5"),
+    ("rk4", "block.steps + choose(accepted", "block.steps + choose(~accepted"),
+    ("dop853", "sum = sum + weights[q]", "sum = weights[q] + sum * 1.0000000000000002"),
+    ("dop853", "all(10.0), 0.9", "all(10.0), 0.8"),
+    ("taylor", "_m <= _k;", "_m < _k;"),
+]
+
+
+@needs_compiler
+@pytest.mark.parametrize(("method", "good", "bad"), WRONG_IN_C)
+def test_wrong_c_is_caught_by_bits(method, good, bad, tmp_path, monkeypatch):
+    """Weights, time, samples, counts and control; one method is run at a time."""
+    made = solvers(HEAVY_TOP, (method,), tmp_path, replaced("solver.c", good, bad))
+    runs = solver_steps._runs
+    own = lambda batch, size: (each for each in runs(batch, size) if each[0] == method)  # noqa: E731
+    monkeypatch.setattr(solver_steps, "_runs", own)
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        check_bits(made, points(made), 0.125)
+
+
+@needs_compiler
+def test_functions_beyond_sqrt_are_compared_within_the_bound(tmp_path, monkeypatch):
+    """Steps of the pendulum agree within the bound; a rate that is a little off does not."""
+    monkeypatch.setattr(solver_steps, "FLAGS", {"rk4": "-DRK4"})
+    made = solvers(PENDULUM, ("rk4",), tmp_path)
+    assert check_together(made, points(made), 0.125) == {"rk4": 3}
+    (tmp_path / "wrong").mkdir()
+    off = replaced("solver.c", "half = h * 0.5", "half = h * 0.50000001")
+    made = solvers(PENDULUM, ("rk4",), tmp_path / "wrong", off)
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        check_together(made, points(made), 0.125)
+
+
+def test_without_a_compiler_numpy_is_checked_alone():
+    """Rungs 2 to 4 run; nothing is said of bits."""
+    figures = check_solvers(subject(HEAVY_TOP), dict(render_system(HEAVY_TOP)), {})
+    assert set(figures.steps) == {"taylor", "dop853", "rk4"}
+    assert figures.choices == 3
+    assert figures.equal == figures.together == {}
+    assert figures.coefficients == 84

@@ -1,0 +1,129 @@
+"""Parts of the methods of integration: logarithms, powers, tables; and C under sanitizers."""
+
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+from coadjoint.lower.tableau import END, FIFTH, STAGES, THIRD, dop853
+from coadjoint.render.kernels import render_system
+from coadjoint.solve.steps import power_of_eighths, rough_log2
+from tests.kernels import COMPILER, STRICT
+from tests.programs import HEAVY_TOP, PENDULUM
+
+
+def test_rough_logarithms_are_within_a_hundredth():
+    """Over all magnitudes of normal numbers, and over all mantissas."""
+    numbers = np.ldexp(np.linspace(1, 2, 1001)[:, np.newaxis], np.arange(-1000, 1000, 37))
+    error = np.abs(rough_log2(numbers) - np.log2(numbers))
+    assert error.max() < 0.01
+    assert error.max() > 0.005  # it is rough
+
+
+def test_rough_logarithms_of_what_is_no_number():
+    """Zero is very small; infinity and what is not a number are very large."""
+    zero, infinite, none = rough_log2(np.array([0.0, np.inf, np.nan]))
+    assert zero < -1000
+    assert infinite >= 1000
+    assert none >= 1000
+
+
+def test_powers_of_eighths():
+    """The nearest eighth, positive and negative, to the last bit but one."""
+    eighths = np.arange(-4000.0, 4000.0) + 0.3
+    expected = np.exp2(np.round(eighths) / 8)
+    assert (np.abs(power_of_eighths(eighths) / expected - 1) <= 2.0**-52).all()
+    assert power_of_eighths(np.array([8.0, 0.0, -16.0])).tolist() == [2.0, 1.0, 0.25]
+
+
+def weights(row):
+    """A row of the table in full."""
+    full = np.zeros(16)
+    for weight, column in dop853().row(row):
+        full[column] = weight
+    return full
+
+
+def test_the_table_meets_order_conditions():
+    """Rows add up to their nodes, and quadrature has order 8 (Hairer, Norsett and Wanner, II.1)."""
+    nodes = np.array(dop853().nodes)
+    assert nodes[0] == 0
+    assert nodes[END] == 1
+    for stage in range(STAGES):
+        assert weights(stage).sum() == pytest.approx(nodes[stage], abs=1e-14)
+    b, c = weights(END)[:STAGES], nodes[:STAGES]
+    for power in range(8):
+        assert (b * c**power).sum() == pytest.approx(1 / (power + 1), abs=1e-14)
+    a = np.array([weights(stage)[:STAGES] for stage in range(STAGES)])
+    for power in range(1, 7):  # trees of height two
+        assert b @ a @ c**power == pytest.approx(1 / ((power + 1) * (power + 2)), abs=1e-14)
+
+
+def test_estimates_of_the_error_see_orders_five_and_three():
+    """What is subtracted from the step is another quadrature of that order."""
+    c = np.append(np.array(dop853().nodes)[:STAGES], 0)
+    for row, order in ((FIFTH, 5), (THIRD, 3)):
+        defects = [abs((weights(row)[: STAGES + 1] * c**power).sum()) for power in range(order + 1)]
+        assert max(defects[:order]) < 1e-13
+        assert defects[order] > 1e-4
+
+
+MAIN = """#include "solver.h"
+#include <stdio.h>
+#include <stdlib.h>
+int main(void)
+{
+    enum { STATE = %(state)d, PARAMETERS = %(parameters)d, SAMPLES = 5 };
+    for (size_t members = 1; members < 20; members += 3) {
+        double *state = calloc(STATE * members, 8), *time = calloc(members, 8);
+        double *step = calloc(members, 8), *out = calloc(STATE * members * SAMPLES, 8);
+        size_t *next = calloc(members, 8), *steps = calloc(members, 8);
+        size_t *rejected = calloc(members, 8);
+        int8_t *status = calloc(members, 1);
+        double parameters[PARAMETERS], knot[1] = {0.0};
+        double samples[SAMPLES] = {0.1, 0.11, 0.5, 0.7, 1.0};
+        for (size_t i = 0; i < STATE * members; ++i)
+            state[i] = 0.5 + 0.01 * (double)i;
+        for (int i = 0; i < PARAMETERS; ++i)
+            parameters[i] = 1.0 + 0.1 * i;
+        %(name)s_run run = {
+            .members = members, .last = members, .state = state, .time = time, .step = step,
+            .next = next, .steps = steps, .rejected = rejected, .status = status,
+            .parameters = parameters, .knots = knot, .inputs = knot, .slopes = knot, .pieces = 1,
+            .samples = samples, .sample_count = SAMPLES, .out = out, .rtol = 1e-8, .atol = 1e-8,
+            .size = %(size)s, .max_steps = 1000, .work = 3};
+        while (%(name)s_advance(&run))
+            ;
+        for (size_t n = 0; n < members; ++n)
+            if (status[n] != 1 || next[n] != SAMPLES)
+                return 1;
+        free(state), free(time), free(step), free(out), free(next), free(steps), free(rejected);
+        free(status);
+    }
+    return 0;
+}
+"""
+RUNS = {"taylor": (HEAVY_TOP, "ORDER=9", "0.0"), "dop853": (PENDULUM, "DOP853", "0.0")}
+RUNS["rk4"] = (HEAVY_TOP, "RK4", "0.03")
+
+
+@pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+@pytest.mark.parametrize("method", RUNS)
+def test_the_sanitizers_find_nothing(method, tmp_path):
+    """Solvers run under the address and undefined-behaviour sanitizers with odd numbers."""
+    context, define, size = RUNS[method]
+    texts = render_system(context)
+    rhs = next(each for each in context.programs if each.name == "rhs")
+    sizes = {"state": len(rhs.state), "parameters": len(rhs.parameters)}
+    main = MAIN % {**sizes, "name": context.name, "size": size}
+    for file, text in {"main.c": main, **texts}.items():
+        if file in ("main.c", "solver.c", "solver.h"):
+            (tmp_path / file).write_text(text)
+    flags = ["-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+    command = [shutil.which("gcc") or COMPILER, *STRICT, *flags, f"-D{define}"]
+    command += ["main.c", "solver.c", "-o", "main", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # leaks need ptrace
+    subprocess.run([str(tmp_path / "main")], check=True, env=environment)
