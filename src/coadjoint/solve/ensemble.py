@@ -142,7 +142,7 @@ class Ensemble:
         time = lanes.time + attempt.took
         time = np.where(attempt.took == lanes.end - lanes.time, lanes.end, time)
         finite = np.isfinite(attempt.state).all(axis=0)
-        stuck = time == lanes.time
+        stuck = (time == lanes.time) | (attempt.took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
         if self.out is not None:
             self._store_samples(going, lanes, attempt, time, accepted)
