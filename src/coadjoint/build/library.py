@@ -207,7 +207,7 @@ def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
         ) from error
 
 
-def _key(compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source) -> str:
+def _key(compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source = KERNEL) -> str:
     """Hash of all that an object depends on, the processor of ``-march=native`` included."""
     content = {
         "sources": {file: _hash(text) for file, text in sources.items()},

@@ -102,7 +102,7 @@ def arrange(rhs: Program) -> SolverText:
     first = list(_first(jets, arrays))
     stages = tuple(_stages(jets, arrays))
     rates = tuple(
-        Line(f"{name}[_k + 1]", Multiply(Symbol("_parts[_k + 1]"), _at(tail, "_k", arrays)))
+        Line(f"{name}[_k + 1]", _part_of(_at(tail, "_k", arrays)))
         for name, (_, tail) in zip(jets.state, jets.rates, strict=True)
     )
     lines = [*first, *rates]
@@ -121,6 +121,11 @@ def arrange(rhs: Program) -> SolverText:
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
     )
+
+
+def _part_of(tail: Node) -> Node:
+    """A coefficient of a rate over its order; zero where the rate is constant."""
+    return ZERO if tail == ZERO else Multiply(Symbol("_parts[_k + 1]"), tail)
 
 
 @dataclass(frozen=True)

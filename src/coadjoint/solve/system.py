@@ -277,9 +277,9 @@ class System(Functions):
             inputs: As in `simulate`; samples are taken at the time of each call.
             target: Kernel that computes both.
 
-        >>> from coadjoint.systems import rigid_body
-        >>> rigid_body.ode({"I": [1, 2, 3]}).fun(0.0, [1.0, 0.0, 1.0]).tolist()
-        [0.0, 0.6666666666666667, 0.0]
+        >>> from coadjoint.systems.rigid_body import system
+        >>> system.ode({"I": [1, 2, 3]}).fun(0.0, [1.0, 3.0, 1.0]).tolist()
+        [-0.5, 0.6666666666666667, -1.5]
         """
         from coadjoint.solve.ode import Ode
 
