@@ -114,7 +114,7 @@ class Library:
         Raises:
             CompilerError: The object has none of this name.
         """
-        return ctypes.CFUNCTYPE(_SIZE, _ADDRESS)(self._find(function))
+        return ctypes.CFUNCTYPE(_SIZE, _ADDRESS)(self.find(function))
 
     def _pack(self, function: str, arguments: Sequence[int]) -> Any:
         """A pointer to packed arguments, as the second file of an object takes them."""
