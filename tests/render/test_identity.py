@@ -17,6 +17,7 @@ CLAIMED = RIGID_BODY.replace(
 )
 SUM = "Pi[1]^2 + Pi[2]^2 + Pi[3]^2"
 KERNELS = {"kernel.py", "kernel.c", "kernel.h", "kernel_python.py", "__init__.py"}
+KERNELS |= {"solver.c", "solver.h", "solver.py"}
 
 
 def texts(*changes):

@@ -42,7 +42,9 @@ def test_a_system_without_conditions_or_constraints_has_no_domain():
     assert "domain" not in rigid_body.system.functions
 
 
-@pytest.mark.parametrize("method", ["auto", "RK45", "Radau", "BDF", "LSODA"])
+@pytest.mark.parametrize(
+    "method", ["auto", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA"]
+)
 def test_a_falling_stone_ends_on_the_ground(method):
     """From h = 2 with g = 1 after 2 seconds with p = -2, at the last point above the ground."""
     found = simulate(built(STONE), [2, 0], 3, method=method)

@@ -8,7 +8,15 @@ from coadjoint.errors import KernelArgumentError, KernelTypeError
 from coadjoint.systems import rigid_body
 from tests.driven_specs import BELT, BOOST, PENDULUM, POINT, ROD, SUSLOV, TOP, build, rendered
 
-METHODS = ("DOP853", "RK23", "Radau", "BDF", "LSODA")
+METHODS = (
+    "taylor",
+    "DOP853",
+    "scipy:DOP853",
+    "scipy:RK23",
+    "scipy:Radau",
+    "scipy:BDF",
+    "scipy:LSODA",
+)
 
 
 @pytest.fixture(scope="module")
@@ -138,7 +146,7 @@ def test_no_step_crosses_a_jump(system, method):
     """
     times, f = np.array([0.0, 1.0, 1.25, 4.0]), np.array([0.0, 4.0, -2.0, 7.0])
     samples = (times, np.array([f, 0 * f, 0 * f]), "previous")
-    loose = {"rtol": 1e-3, "atol": 1e-6} if method not in ("BDF", "LSODA") else {}
+    loose = {"rtol": 1e-3, "atol": 1e-6} if method not in ("scipy:BDF", "scipy:LSODA") else {}
     found = pushed(system, samples, method=method, **loose)
     t, one = found.time, np.clip(found.time - 1, 0, None)
     two = np.clip(t - 1.25, 0, None)
@@ -269,13 +277,13 @@ def test_a_domain_that_moves(tmp_path):
     assert "t = 2.77485" in found.message
 
 
-@pytest.mark.parametrize("method", ["Radau", "BDF", "LSODA"])
+@pytest.mark.parametrize("method", ["scipy:Radau", "scipy:BDF", "scipy:LSODA"])
 def test_jacobians_are_those_of_the_moment(system, method):
     """Implicit methods, which use them at the times of their steps, find the explicit run."""
     run = (system(PENDULUM), [0.5, 0.0], (0.0, 2.0), None, lambda t: np.cos(t))
     expected, found = (
         run[0].simulate(*run[1:], method=each, rtol=1e-9, atol=1e-12, samples=5)
-        for each in ("DOP853", method)
+        for each in ("scipy:DOP853", method)
     )
     assert found.status == "OK"
     np.testing.assert_allclose(found.state, expected.state, rtol=0, atol=1e-6)

@@ -171,7 +171,7 @@ def test_the_motion_itself_is_not_changed():
         alone["x"]
 
 
-@pytest.mark.parametrize("method", ["Radau", "LSODA"])
+@pytest.mark.parametrize("method", ["scipy:Radau", "scipy:LSODA"])
 def test_methods_with_a_jacobian_work_too(method):
     """They take it by differences."""
     found = built(FOLLOWED_SLEIGH).simulate(

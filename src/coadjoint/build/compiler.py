@@ -1,6 +1,6 @@
-"""The compiler: found, asked for its version, and run on one kernel within limits.
+"""The compiler: found, asked for its version, and run on one kernel or solver within limits.
 
-Comes in: a folder with ``kernel.c`` and ``kernel.h``. Goes out: a shared object in it. Nothing here
+Comes in: a folder with a C file and its header. Goes out: a shared object in it. Nothing here
 passes through a shell, and ``CC`` is a program's name and nothing more. Compilers end with whoever
 waits for them: at once on Ctrl-C, and when this process is killed (`coadjoint.build.warden`).
 """
@@ -111,6 +111,33 @@ class CompilerWarning(UserWarning):
 
 
 @dataclass(frozen=True)
+class Source:
+    """What an object is compiled from.
+
+    Attributes:
+        stem: Name of the C file and of its header without their endings.
+        defines: Options that choose what is compiled of it, such as ``-DRK4``.
+        is_loops: Whether it is long straight loops over members, which need fewer passes of GCC.
+    """
+
+    stem: str = "kernel"
+    defines: tuple[str, ...] = ()
+    is_loops: bool = True
+
+    @property
+    def files(self) -> tuple[str, str]:
+        """Its files: the one that is compiled, and the header that this reads."""
+        return f"{self.stem}.c", f"{self.stem}.h"
+
+    def label(self, name: str) -> str:
+        """The symbol of the id that its object carries, for the name of a system."""
+        return f"{name}_id" if self == KERNEL else f"{name}_{self.stem}_id"
+
+
+KERNEL = Source()
+
+
+@dataclass(frozen=True)
 class Compiler:
     """A C compiler that answered.
 
@@ -124,10 +151,11 @@ class Compiler:
     version: str
     is_gnu: bool = False
 
-    def flags(self, build: str, *, native: bool = True) -> tuple[str, ...]:
-        """Options for one build, ``exact`` or ``fast``."""
-        own = _GNU if self.is_gnu else ()
-        return (*_FLAGS, *own, *([_NATIVE] if native else []), BUILDS[build], *_SHARED)
+    def flags(self, build: str, source: Source = KERNEL, *, native: bool = True) -> tuple[str, ...]:
+        """Options for one build of a source, ``exact`` or ``fast``."""
+        own = _GNU if self.is_gnu and source.is_loops else ()
+        machine = [_NATIVE] if native else []
+        return (*_FLAGS, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
 
 
 def find_compiler() -> Compiler:
@@ -218,23 +246,24 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     return Compiler(command, output.strip().splitlines()[0], "Free Software Foundation" in output)
 
 
-def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
+def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source = KERNEL) -> Path:
     """Compile ``kernel.c`` to ``kernel.so`` in the same folder, with the name of the build in it.
 
     Args:
         compiler: What `find_compiler` returned.
-        folder: A private folder with ``kernel.c`` and ``kernel.h``.
+        folder: A private folder with ``kernel.c`` and ``kernel.h``, or those of another source.
         build: ``exact`` or ``fast``.
+        source: What is compiled.
 
     Raises:
         CompilerError: The compiler failed, hung, or made no shared object.
     """
-    result = folder / "kernel.so"
+    result = folder / f"{source.stem}.so"
     (folder / "build.c").write_text(SUPPORT.replace("BUILD", build), encoding="ascii")
-    status, output = _attempt(compiler, folder, build, native=True)
+    status, output = _attempt(compiler, folder, build, source, native=True)
     said = _with_signal(output, status)
     failed_itself = status != 0 and not errno_of(said)  # and met no limit
-    if failed_itself and _attempt(compiler, folder, build, native=False)[0] == 0:
+    if failed_itself and _attempt(compiler, folder, build, source, native=False)[0] == 0:
         status = 0  # some compilers and machines do not know -march=native
         warnings.warn(
             f"{compiler.command[0]} refuses {_NATIVE}; kernels are compiled without it, which may "
@@ -244,7 +273,7 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
         )
     if status != 0:
         raise CompilerError(
-            f"{compiler.command[0]} failed on kernel.c with status {status}: "
+            f"{compiler.command[0]} failed on {source.files[0]} with status {status}: "
             f"{output.strip()[:600] or 'no output'}. {_advise(said)}",
             found=compiler.command[0],
             status=status,
@@ -262,13 +291,13 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str) -> Path:
 _MAGIC = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
 
 
-_FILES = ("kernel.c", "build.c")
-
-
-def _attempt(compiler: Compiler, folder: Path, build: str, *, native: bool) -> tuple[int, str]:
+def _attempt(
+    compiler: Compiler, folder: Path, build: str, source: Source, *, native: bool
+) -> tuple[int, str]:
     """One run of the compiler; status and what it said."""
-    flags = compiler.flags(build, native=native)
-    return _run((*compiler.command, *flags, *_FILES, "-o", "kernel.so", "-lm"), folder)
+    flags, result = compiler.flags(build, source, native=native), f"{source.stem}.so"
+    files = (source.files[0], "build.c")
+    return _run((*compiler.command, *flags, *files, "-o", result, "-lm"), folder)
 
 
 @contextmanager

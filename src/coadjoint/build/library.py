@@ -1,8 +1,8 @@
-"""The library: a generated folder's C kernel, compiled or taken from the cache, and loaded.
+"""The library: C of a generated folder, compiled or taken from the cache, and loaded.
 
-Comes in: a folder with ``kernel.c`` and ``kernel.h``. Goes out: a `Library` whose functions ctypes
-can call. A fresh object is compared with the NumPy kernel before it enters the cache, so that a
-compiler that lies is noticed once and for all.
+Comes in: a folder with ``kernel.c`` and ``kernel.h``, or with those of a solver. Goes out: a
+`Library` whose functions ctypes can call. A fresh object is compared with its NumPy twin before it
+enters the cache, so that a compiler that lies is noticed once and for all.
 """
 
 from __future__ import annotations
@@ -24,9 +24,11 @@ from coadjoint.build.compiler import (
     ANOTHER,
     CALL,
     CALL_AT,
+    KERNEL,
     LABEL,
     SUPPORT,
     Compiler,
+    Source,
     compile_kernel,
     find_compiler,
 )
@@ -36,38 +38,47 @@ _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p
 
 
 class Library:
-    """A loaded kernel.
+    """A loaded kernel or solver.
 
     Args:
         path: The shared object.
         name: Name of the system, the prefix of its functions.
         identity: The id that the object must carry.
         build: The build that it must say it is, ``exact`` or ``fast``.
-        source: SHA-256 of the ``kernel.c`` that it was compiled from.
+        source: SHA-256 of the C file that it was compiled from.
+        kind: What that file is.
 
     Raises:
         CompilerError: It cannot be loaded, carries another id, or is another build.
     """
 
-    def __init__(self, path: Path, name: str, identity: str, build: str, source: str = "") -> None:
+    def __init__(
+        self,
+        path: Path,
+        name: str,
+        identity: str,
+        build: str,
+        source: str = "",
+        kind: Source = KERNEL,
+    ) -> None:
         self.name, self.source = name, source
         self._places: dict[str, int] = {}
         try:
             # CDLL, not PyDLL: calls release the interpreter lock.
             self._handle = ctypes.CDLL(str(path))
-            labels = [("id", f"{name}_id", identity), ("build", LABEL, build)]
+            labels = [("id", kind.label(name), identity), ("build", LABEL, build)]
             carried = [(what, self._text(each, wanted), wanted) for what, each, wanted in labels]
             self._call, self._call_at = self._handle[CALL], self._handle[CALL_AT]
         except (OSError, ValueError, AttributeError) as error:
             raise CompilerError(
-                f"the compiled kernel of {name} cannot be loaded: {error}. "
+                f"the compiled {kind.stem} of {name} cannot be loaded: {error}. "
                 f"{remedy_for(str(error)) or ANOTHER}",
                 found=str(error),
             ) from error
         for what, label, expected in carried:
             if label != expected:
                 raise CompilerError(
-                    f"the compiled kernel of {name} carries the {what} {label!r}; expected "
+                    f"the compiled {kind.stem} of {name} carries the {what} {label!r}; expected "
                     f"{expected!r}. Run `coadjoint regenerate`.",
                     found=label,
                     expected=expected,
@@ -97,6 +108,14 @@ class Library:
         """
         return partial(self._call_at, self._pack(function, arguments))
 
+    def take(self, function: str) -> Callable[[Any], int]:
+        """A function of the object that takes a pointer to a structure and returns a size.
+
+        Raises:
+            CompilerError: The object has none of this name.
+        """
+        return ctypes.CFUNCTYPE(_SIZE, _ADDRESS)(self.find(function))
+
     def _pack(self, function: str, arguments: Sequence[int]) -> Any:
         """A pointer to packed arguments, as the second file of an object takes them."""
         arrays, rest = divmod(len(arguments), 2)
@@ -125,75 +144,85 @@ class Library:
 
 
 def load_library(
-    folder: Path, name: str, identity: str, build: str, verify: Callable[[Library], None]
+    folder: Path,
+    name: str,
+    identity: str,
+    build: str,
+    verify: Callable[[Library], None],
+    kind: Source = KERNEL,
 ) -> Library:
-    """Load the C kernel of a generated folder, compiling it unless the cache has it.
+    """Load C of a generated folder, compiling it unless the cache has it.
 
     Args:
         folder: The generated folder.
         name: Name of the system.
         identity: The id of its files.
         build: ``exact`` or ``fast``.
-        verify: Raises if a fresh library computes something else than the NumPy kernel.
+        verify: Raises if a fresh library computes something else than its NumPy twin.
+        kind: What is compiled: the kernel, or another source.
 
     Raises:
         CompilerError: There is no compiler, it failed, its object is wrong, or there is no place
             where it could work.
-        OutputError: The folder has no kernel.
+        OutputError: The folder has no such source.
     """
     compiler = find_compiler()
-    sources = _sources(folder)
-    key, source = _key(compiler, sources, build), hashlib.sha256(sources["kernel.c"]).hexdigest()
+    sources = _sources(folder, kind)
+    key, source = _key(compiler, sources, build, kind), _hash(sources[kind.files[0]])
     cached = fetch(key)
     if cached is not None:
         with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
-            return Library(cached, name, identity, build, source)
+            return Library(cached, name, identity, build, source, kind)
     with ExitStack() as stack:
         try:
             work = stack.enter_context(working_folder())
             for file, content in sources.items():
                 (work / file).write_bytes(content)
-            fresh = compile_kernel(compiler, work, build)
+            fresh = compile_kernel(compiler, work, build, kind)
         except (OSError, OutputError) as error:
             reason = (isinstance(error, OSError) and system_error(error)) or error
             raise CompilerError(
-                f"the kernel of {name} cannot be compiled here: {reason}", found=str(reason)
+                f"the {kind.stem} of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error
-        library = Library(fresh, name, identity, build, source)
+        library = Library(fresh, name, identity, build, source, kind)
         verify(library)
         with suppress(OSError, OutputError):  # it is good; the next process compiles again
             store(key, fresh.read_bytes())
         return library
 
 
-def _sources(folder: Path) -> dict[str, bytes]:
+def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
     """The C files of a generated folder.
 
     Raises:
         OutputError: One cannot be read.
     """
     try:
-        return {file: (folder / file).read_bytes() for file in ("kernel.c", "kernel.h")}
+        return {file: (folder / file).read_bytes() for file in kind.files}
     except OSError as error:
         raise OutputError(
-            f"{error.filename} cannot be read: {error.strerror}; expected the C kernel of a "
+            f"{error.filename} cannot be read: {error.strerror}; expected the C {kind.stem} of a "
             "generated system. Run `coadjoint regenerate`.",
             path=str(error.filename),
         ) from error
 
 
-def _key(compiler: Compiler, sources: dict[str, bytes], build: str) -> str:
+def _key(compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source = KERNEL) -> str:
     """Hash of all that an object depends on, the processor of ``-march=native`` included."""
     content = {
-        "sources": {file: hashlib.sha256(text).hexdigest() for file, text in sources.items()},
+        "sources": {file: _hash(text) for file, text in sources.items()},
         "command": [shutil.which(compiler.command[0]), *compiler.command[1:]],
         "version": compiler.version,
-        "flags": compiler.flags(build),
+        "flags": compiler.flags(build, kind),
         "support": SUPPORT,
         "engine": __version__,
         "machine": [platform.system(), platform.machine(), _processor()],
     }
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    return _hash(json.dumps(content, sort_keys=True).encode())
+
+
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
 
 
 def _processor() -> str:

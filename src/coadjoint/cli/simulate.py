@@ -68,7 +68,10 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     "--time", type=float, default=10.0, show_default=True, help="Length of the simulation."
 )
 @click.option(
-    "--method", default="auto", show_default=True, help="Integrator of SciPy; auto is DOP853."
+    "--method",
+    default="auto",
+    show_default=True,
+    help="taylor or dop853, which are generated, or scipy:NAME; auto is taylor where it applies.",
 )
 @click.option("--rtol", type=float, default=1e-10, show_default=True, help="Relative tolerance.")
 @click.option(

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.course import Course
+from coadjoint.solve.ensemble import Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -92,7 +94,7 @@ def describe_run(solution: Solution) -> dict[str, Any]:
         "id": system.id,
         "status": np.asarray(solution.status).tolist(),
         "message": np.asarray(solution.message).tolist(),
-        **{name: value for name, value in solution.settings.items() if value is not None},
+        **solution.settings,
         **versions,
     }
 
@@ -121,21 +123,26 @@ def rebuild(
     inputs = stack(system.INPUTS) if form["inputs"] else None
     if inputs is not None and form["inputs"] == "constant":
         inputs = inputs[..., 0].copy()
-    ours = {
-        name: value
-        for name, value in said.items()
-        if name not in _BESIDES and not name.endswith("_version")
-    }
+    status = np.asarray(said["status"])
+    codes = np.array([Status[name] for name in status.ravel()], np.int8) if status.ndim else None
+    course = Course(
+        method=said.get("method", ""),
+        order=said.get("order"),
+        rtol=said.get("rtol"),
+        atol=said.get("atol"),
+        step=said.get("step"),
+        codes=None if codes is None else codes.reshape(status.shape),
+    )
     return Solution(
         system=system,
         time=np.array(form["time"], dtype=np.float64),
         state=stack(system.STATE),
         parameters=np.array(form["parameters"], dtype=np.float64),
-        status=said["status"],
+        status="" if status.ndim else str(status),
         message=said["message"],
         reconstructed=stack(system.RECONSTRUCTED) if form["reconstructed"] else None,
         inputs=inputs,
-        settings=ours,
+        course=course,
     )
 
 

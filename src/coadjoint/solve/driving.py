@@ -140,7 +140,7 @@ class Driving:
 
     def __init__(self, system: System, given: Any, start: float, end: float) -> None:
         self.system, self.now = system, dict[str, Any]()
-        self._signal = _make_signal(system, given, start, end)
+        self._signal = make_signal(system, given, start, end)
         if self._signal is not None:
             self.now["inputs"] = np.empty(system.INPUTS.size)
         if system.TIME:
@@ -148,6 +148,11 @@ class Driving:
         jumps = self._signal.breaks if self._signal is not None else ()
         self.breaks = tuple(float(time) for time in jumps if start < time < end)
         self.enter(start)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether inputs are constants, or there are none."""
+        return self._signal is None or type(self._signal) is Signal
 
     def enter(self, time: float) -> None:
         """Begin a stretch between two jumps, with its values at that time."""
@@ -213,7 +218,7 @@ class Following:
 # -- what was given -----------------------------------------------------------------------------
 
 
-def _make_signal(system: System, given: Any, start: float, end: float) -> Signal | None:
+def make_signal(system: System, given: Any, start: float, end: float) -> Signal | None:
     """The inputs as a function of time; None where a system has none."""
     if not system.INPUTS:
         if given is not None:

@@ -164,7 +164,7 @@ class Ensemble:
         time = lanes.time + attempt.took
         time = np.where(attempt.took == lanes.end - lanes.time, lanes.end, time)
         finite = np.isfinite(state).all(axis=0)
-        stuck = time == lanes.time
+        stuck = (time == lanes.time) | (attempt.took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
 
         def find_state(after: Array) -> Array:

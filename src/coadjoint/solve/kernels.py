@@ -77,7 +77,7 @@ class Kernels:
             OutputError: ``kernel.py`` cannot be loaded.
         """
         for target in targets:
-            _check_target(target)
+            check_target(target)
         self._numpy()
         with compilers() as pool:
             loading = {target: pool.submit(self._load, target) for target in targets}
@@ -92,20 +92,14 @@ class Kernels:
         Raises:
             KernelArgumentError: No such target.
         """
-        _check_target(target)
+        check_target(target)
         if target not in self._loaded:
             try:
                 self._loaded[target] = self._load(target)
             except (CompilerError, CrossCheckError) as error:
                 self._loaded[target] = self._numpy()
-                if str(error) not in _said:
-                    _said.add(str(error))
-                    advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
-                    warnings.warn(
-                        f"{error} The NumPy kernels are used instead. {advice}".rstrip(),
-                        CompilerWarning,
-                        stacklevel=5,
-                    )
+                advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
+                say_once(f"{error} The NumPy kernels are used instead. {advice}".rstrip(), depth=6)
         return self._loaded[target]
 
     def _load(self, target: str) -> Kernel:
@@ -119,7 +113,19 @@ class Kernels:
         return self._loaded["numpy"]
 
 
-def _check_target(target: str) -> None:
+def say_once(message: str, *, depth: int = 2) -> None:
+    """Warn that something is not what it could be, unless this process was told so.
+
+    Args:
+        message: The warning.
+        depth: The frame that is warned, as `warnings.warn` counts.
+    """
+    if message not in _said:
+        _said.add(message)
+        warnings.warn(message, CompilerWarning, stacklevel=depth)
+
+
+def check_target(target: str) -> None:
     """Refuse what is no target.
 
     Raises:

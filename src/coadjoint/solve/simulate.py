@@ -1,6 +1,7 @@
-"""Simulation of one trajectory with SciPy's integrators and the kernels of a System.
+"""Simulation: by a generated solver, or of one trajectory by SciPy's integrators and the kernels.
 
-Comes in: an initial state and times. Goes out: a `Solution`. Read next: `coadjoint.solve.solution`.
+Comes in: an initial state and times. Goes out: a `Solution`. Read next: `coadjoint.solve.request`,
+which checks what was asked for, and `coadjoint.solve.generated`.
 """
 
 from __future__ import annotations
@@ -12,11 +13,26 @@ import numpy as np
 import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.arrays import as_float64, pack, pack_parameters
+from coadjoint.solve import generated
+from coadjoint.solve.arrays import pack_parameters
 from coadjoint.solve.constraints import Constraints
+from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
+from coadjoint.solve.kernels import check_target
 from coadjoint.solve.reconstruct import find_start
+from coadjoint.solve.request import (
+    ATOL,
+    IMPLICIT,
+    RTOL,
+    SCIPY,
+    Request,
+    check_count,
+    check_positive,
+    check_state,
+    choose_method,
+    list_times,
+)
 from coadjoint.solve.solution import Solution
 
 if TYPE_CHECKING:
@@ -29,9 +45,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Rates = Callable[[float, Array], Array]
 
-#: Explicit methods of SciPy, then those that use the Jacobian.
-EXPLICIT, IMPLICIT = ("DOP853", "RK45", "RK23"), ("Radau", "BDF", "LSODA")
-
 
 def simulate(
     system: System,
@@ -40,34 +53,86 @@ def simulate(
     parameters: Any,
     *,
     inputs: Any,
-    method: str,
-    rtol: float,
-    atol: float,
-    samples: int,
-    max_steps: int,
+    method: Any,
+    rtol: Any,
+    atol: Any,
+    step: Any,
+    samples: Any,
+    max_steps: Any,
     target: Any,
+    threads: Any,
+    progress: Any,
     reconstruct: Any,
 ) -> Solution:
-    """Integrate one trajectory; arguments as in `System.simulate`."""
-    initial = _check_initial(system, state)
-    packed = _pack_shared(system, parameters)
-    times = _list_times(t, samples)
-    name = _check_method(method)
-    _check_positive(rtol=rtol, atol=atol, max_steps=max_steps)
-    settings = {"method": name, "rtol": float(rtol), "atol": float(atol), "target": str(target)}
-    driving = Driving(system, inputs, float(times[0]), float(times[-1]))
+    """Integrate; arguments as in `System.simulate`."""
+    initial, (start, times) = check_state(system, state), list_times(t, samples)
+    tolerances = rtol is not None or atol is not None
+    rtol, atol = RTOL if rtol is None else rtol, ATOL if atol is None else atol
+    check_positive(rtol=rtol, atol=atol, **({} if step is None else {"step": step}))
+    check_count(max_steps=max_steps, **({} if threads is None else {"threads": threads}))
+    check_target(target)
+    obstacle = generated.find_obstacle(system, inputs, target, reconstruct)
+    request = Request(
+        state=initial,
+        start=start,
+        times=times,
+        samples=int(samples) if times.size == 1 else times.size,
+        parameters=parameters,
+        inputs=inputs,
+        method=choose_method(system, method, step, obstacle, tolerances=tolerances),
+        rtol=float(rtol),
+        atol=float(atol),
+        step=None if step is None else float(step),
+        max_steps=int(max_steps),
+        target=target,
+        reconstruct=reconstruct,
+        threads=threads,
+        progress=progress,
+    )
+    if not request.method.startswith(SCIPY):
+        return generated.simulate(system, request)
+    _check_alone(system, request, obstacle)
+    return _simulate_alone(system, request)
+
+
+def _check_alone(system: System, request: Request, obstacle: str) -> None:
+    """The methods of SciPy follow one trajectory.
+
+    Raises:
+        KernelArgumentError: The state is a batch.
+    """
+    if request.state.ndim > 1:
+        advice = f"generated solvers do not apply: {obstacle}. Call it for each member"
+        if not obstacle:
+            advice = "leave method out, or take one of the generated ones, for a batch"
+        raise KernelArgumentError(
+            f"method {request.method!r} of simulate follows one trajectory; the state has the "
+            f"shape {request.state.shape}, expected ({system.STATE.size},). "
+            f"{advice[0].upper()}{advice[1:]}.",
+            found=list(request.state.shape),
+            expected=[system.STATE.size],
+        )
+
+
+def _simulate_alone(system: System, request: Request) -> Solution:
+    """Integrate one trajectory with SciPy."""
+    initial, target = request.state, request.target
+    times = request.times if request.samples > 1 else np.append(request.start, request.times)
+    packed = _pack_shared(system, request.parameters)
+    name, rtol, atol = request.method.removeprefix(SCIPY), request.rtol, request.atol
+    driving = Driving(system, request.inputs, float(times[0]), float(times[-1]))
     domain = Domain(system, packed, target, driving)
     domain.check_start(float(times[0]), initial)
     constraints = Constraints(system, packed, target, driving)
     initial = constraints.find_start(float(times[0]), initial, atol)
-    followed = find_start(system, initial, reconstruct)
+    followed = find_start(system, initial, request.reconstruct)
     initial = np.concatenate([initial, followed])
     rates, latest = _make_rates(system, packed, target, driving, followed.size)
     rates(times[0], initial)
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
         reason = f"the rates are not finite at t = {times[0]:g}"
         run = times[:1], initial[:, None], "NONFINITE", reason
-        return _make_solution(system, packed, driving, run, settings)
+        return _make_solution(system, packed, driving, run, request)
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
 
@@ -78,8 +143,8 @@ def simulate(
 
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
     with np.errstate(all="ignore"):
-        run = _follow(stretches, initial, times, max_steps, latest, domain, constraints)
-    return _make_solution(system, packed, driving, run, settings)
+        run = _follow(stretches, initial, times, request.max_steps, latest, domain, constraints)
+    return _make_solution(system, packed, driving, run, request)
 
 
 #: Times that were reached, states there, status and reason.
@@ -87,23 +152,28 @@ _Run = tuple["Array", "Array", str, str]
 
 
 def _make_solution(
-    system: System, parameters: Array, driving: Driving, run: _Run, settings: dict[str, Any]
+    system: System, parameters: Array, driving: Driving, run: _Run, request: Request
 ) -> Solution:
     """The Solution of a run, the state apart from what was reconstructed below it."""
     times, states, status, reason = run
-    n = system.STATE.size
+    n, start = system.STATE.size, None
+    if request.samples == 1:
+        steady = driving.is_constant
+        given = driving.over(times[:1]).get("inputs")
+        start = Start(request.start, states[:n, 0].copy(), given, not steady)
+        times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
+    course = Course(
+        method=request.method,
+        order=None,
+        rtol=request.rtol,
+        atol=request.atol,
+        step=None,
+        start=start,
+    )
     return Solution(
-        system=system,
-        time=times,
-        state=states[:n],
-        parameters=parameters,
-        status=status,
-        message=reason,
-        reconstructed=followed,
-        inputs=inputs,
-        settings=settings,
+        system, times, states[:n], parameters, status, reason, followed, inputs, course=course
     )
 
 
@@ -228,26 +298,6 @@ def _make_slopes(system: System, parameters: Array, target: Any, driving: Drivin
     return jacobian
 
 
-def _check_initial(system: System, state: Any) -> Array:
-    """One finite state."""
-    initial = pack(state, system.STATE, "state").copy()
-    if initial.shape != (system.STATE.size,):
-        raise KernelArgumentError(
-            f"simulate follows one trajectory; the state has the shape {initial.shape}, expected "
-            f"({system.STATE.size},): {', '.join(system.STATE.components)}. "
-            "For a batch, call it for each member.",
-            found=list(initial.shape),
-            expected=[system.STATE.size],
-        )
-    if not np.isfinite(initial).all():
-        bad = system.STATE.components[int(np.argmin(np.isfinite(initial)))]
-        raise KernelArgumentError(
-            f"the initial {bad} is {initial[system.STATE.rows(bad)]}; expected a finite number.",
-            found=bad,
-        )
-    return initial
-
-
 def _pack_shared(system: System, parameters: Any) -> Array:
     """One set of parameters."""
     packed = pack_parameters(system, parameters).copy()
@@ -258,39 +308,3 @@ def _pack_shared(system: System, parameters: Any) -> Array:
             found=list(packed.shape),
         )
     return packed
-
-
-def _check_method(method: str) -> str:
-    """The name of SciPy's class."""
-    name = "DOP853" if method == "auto" else method
-    if name not in EXPLICIT + IMPLICIT:
-        raise KernelArgumentError(
-            f"method is {method!r}; expected 'auto' or one of {', '.join(EXPLICIT + IMPLICIT)}.",
-            found=method,
-            expected=["auto", *EXPLICIT, *IMPLICIT],
-        )
-    return name
-
-
-def _check_positive(**numbers: float) -> None:
-    """Tolerances and bounds: a tolerance of zero has SciPy divide by it and never end."""
-    for name, value in numbers.items():
-        if not 0 < value < np.inf:
-            raise KernelArgumentError(
-                f"{name} is {value}; expected a positive number.", found=value, name=name
-            )
-
-
-def _list_times(t: Any, samples: int) -> Array:
-    """Sample times from a pair or a sequence."""
-    times = as_float64(t, "t")
-    increasing = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) > 0).all())
-    if not increasing or not np.isfinite(times).all():
-        raise KernelArgumentError(
-            f"t is {t!r}; expected (start, end) or increasing finite times.", found=str(t)[:80]
-        )
-    if times.size > 2:
-        return times
-    if samples < 2:
-        raise KernelArgumentError(f"samples is {samples}; expected 2 or more.", found=samples)
-    return np.linspace(times[0], times[1], samples)

@@ -1,11 +1,11 @@
-"""The Solution: one trajectory with names, units, observables and the drift of what is conserved.
+"""The Solution: trajectories with names, units, observables and the drift of what is conserved.
 
-Comes in: times and states. Goes out: a record that people index by name, print, plot and export.
+Comes in: times and states, of one trajectory or of a batch. Goes out: a record that people index by
+name, print, plot and export.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property
 from html import escape
 from os import PathLike
@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.course import UNTOLD, Course, relative, relative_of_each
+from coadjoint.solve.ensemble import Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,22 +27,24 @@ if TYPE_CHECKING:
 
 
 class Solution:
-    """One trajectory.
+    """One trajectory, or a batch of them.
 
     ``solution["Pi"]`` is ``(3, T)``, ``solution["Pi1"]`` and ``solution["energy"]`` are ``(T,)``.
+    Of a batch they are ``(3, *batch, T)`` and ``(*batch, T)``.
 
     Attributes:
         system: The System that was simulated.
-        time: Sample times, ``(T,)``, up to where the integration came.
-        state: States, ``(n, T)``.
-        parameters: Packed parameters, ``(k,)``.
+        time: Sample times, ``(T,)``; of one trajectory up to where the integration came.
+        state: States, ``(n, T)`` or ``(n, *batch, T)``; NaN where one of a batch did not come.
+        parameters: Packed parameters, ``(k,)`` or ``(k, *batch)``.
+        course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
             the last point inside), ``NONFINITE`` (the rates stopped being finite),
             ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
-        message: Where it stopped and why, empty if all is well.
+        message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
-        inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``; None if there are none.
-        settings: How it was made: method, tolerances and target, plain JSON values by name.
+        inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
+            each trajectory has constants of its own; None if there are none.
     """
 
     def __init__(
@@ -53,17 +57,18 @@ class Solution:
         message: str,
         reconstructed: Array | None = None,
         inputs: Array | None = None,
-        settings: Mapping[str, Any] | None = None,
+        *,
+        course: Course | None = None,
     ) -> None:
         self.system = system
         self.time = time
         self.state = np.ascontiguousarray(state)
         self.parameters = parameters
-        self.status = status
+        self.course = course or UNTOLD
+        self._status = status
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
         self.inputs = inputs
-        self.settings = dict(settings or {})
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: all but what is computed from the rest on demand."""
@@ -75,6 +80,101 @@ class Solution:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    @property
+    def batch(self) -> tuple[int, ...]:
+        """The shape of the batch; empty for one trajectory."""
+        return self.state.shape[1:-1]
+
+    @property
+    def status(self) -> Any:
+        """How the trajectory ended; of a batch an array of that."""
+        if not self.batch:
+            return self._status
+        names = np.array([each.name for each in Status])
+        return names[self.course.codes]
+
+    @property
+    def method(self) -> str:
+        """The method that computed it: ``taylor``, ``dop853``, ``rk4`` or ``scipy:NAME``."""
+        return self.course.method
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """How it was made: method, order, tolerances and step, as far as they apply."""
+        course = self.course
+        names = ("method", "order", "rtol", "atol", "step")
+        told = {name: getattr(course, name) for name in names}
+        return {name: value for name, value in told.items() if value not in (None, "")}
+
+    @property
+    def steps(self) -> Any:
+        """Steps that were taken, of a batch an array; None where SciPy took them."""
+        return None if self.course.steps is None else self.course.steps[()]
+
+    @property
+    def rejected(self) -> Any:
+        """Steps that were tried in vain, of a batch an array; None where SciPy took them."""
+        return None if self.course.rejected is None else self.course.rejected[()]
+
+    def member(self, *place: int) -> Solution:
+        """One trajectory of a batch, as long as it came.
+
+        Args:
+            place: Its place in the batch, one number for each axis.
+
+        Raises:
+            KernelArgumentError: There is no such member.
+        """
+        batch = self.batch
+        good = len(place) == len(batch) > 0
+        if not good or not all(-n <= p < n for p, n in zip(place, batch, strict=True)):
+            raise KernelArgumentError(
+                f"member {place} is not in a batch of the shape {batch}; expected "
+                f"{len(batch)} numbers within it."
+                if batch
+                else "this solution is one trajectory.",
+                found=list(place),
+                expected=list(batch),
+            )
+        come = self.course.take(place)
+        at: Any = (slice(None), *place)
+        end = float(self.time[-1] if come.reached is None else come.reached)
+        reached = ~np.isnan(self.state[at][0]) & (self.time <= end)
+        times, states = self.time[reached], self.state[at][:, reached]
+        if come.last is not None and (not times.size or times[-1] < end):
+            times, states = np.append(times, end), np.column_stack([states, come.last])
+        shared, inputs = self.parameters.ndim == 1, self.inputs
+        if inputs is not None and inputs.ndim > 2:
+            inputs = inputs[at][:, 0]
+        elif inputs is not None and inputs.ndim == 2 and times.size != self.time.size:
+            inputs = np.column_stack([inputs[:, : reached.sum()], inputs[:, reached.sum()]])
+            inputs = inputs[:, : times.size]
+        return Solution(
+            self.system,
+            times,
+            states,
+            self.parameters if shared else self.parameters[at],
+            come.status,
+            "" if come.status == "OK" else f"it stopped at t = {end:.6g}",
+            None,
+            inputs,
+            course=come,
+        )
+
+    def _check_alone(self, what: str) -> None:
+        """Refuse what is of one trajectory.
+
+        Raises:
+            KernelArgumentError: This is a batch.
+        """
+        if self.batch:
+            first = ", ".join("0" for _ in self.batch)
+            raise KernelArgumentError(
+                f"{what} is of one trajectory, and this solution has a batch of the shape "
+                f"{self.batch}; expected one of them. Take solution.member({first}).",
+                found=list(self.batch),
+            )
 
     def __getitem__(self, name: str) -> Array:
         if name in ("t", "time"):
@@ -120,10 +220,16 @@ class Solution:
 
     @property
     def _inputs_over_time(self) -> Array:
-        """The inputs at every sample, ``(m, T)``."""
+        """The inputs at every sample, ``(m, T)`` or ``(m, *batch, T)``."""
         assert self.inputs is not None, "asked for only where there are some"
-        whole = self.inputs[:, np.newaxis] if self.inputs.ndim == 1 else self.inputs
-        return np.broadcast_to(whole, (len(whole), len(self)))
+        return self._over_samples(self.inputs)
+
+    def _over_samples(self, rows: Array) -> Array:
+        """Constants ``(m,)``, series ``(m, T)`` or ``(m, *batch, 1)`` at every sample of each."""
+        given = rows.shape[1:] or (1,)
+        lead = (1,) * (len(self.batch) + 1 - len(given))
+        whole = rows.reshape(len(rows), *lead, *given)
+        return np.broadcast_to(whole, (len(rows), *self.batch, len(self)))
 
     @cached_property
     def attitude_drift(self) -> dict[str, float]:
@@ -144,53 +250,83 @@ class Solution:
             return self.state[:0]
         return self.evaluate("observables", self.state)
 
-    def evaluate(self, function: str, state: Array) -> Array:
+    def evaluate(self, function: str, state: Array, time: Array | None = None) -> Array:
         """A function of the System at states on the way, with the parameters, inputs and times.
 
         Args:
             function: Its name.
             state: What it takes, ``(n, *batch, T)``.
+            time: When they are, if not at the samples.
         """
-        batch = state.shape[1:]
-        parameters, inputs = self.parameters, self.inputs
-        if parameters.ndim > 1:  # of each member, at all its samples
-            parameters = np.broadcast_to(parameters[..., np.newaxis], (len(parameters), *batch))
-        if inputs is not None and inputs.ndim == state.ndim - 1 > 1:
-            inputs = np.broadcast_to(inputs[..., np.newaxis], (len(inputs), *batch))
-        time = np.broadcast_to(self.time, batch) if self.system.TIME else None
-        return self.system.evaluate(function, state, parameters, inputs, time=time)
+        shape, inputs, parameters = state.shape[1:], self.inputs, self.parameters
+        if self.batch:
+            inputs = None if inputs is None else self._over_samples(inputs)[..., : shape[-1]]
+            if parameters.ndim > 1:
+                wide = parameters[..., np.newaxis]
+                parameters = np.broadcast_to(wide, (len(parameters), *shape))
+        now = self.time if time is None else time
+        times = np.broadcast_to(now, shape) if self.system.TIME else None
+        return self.system.evaluate(function, state, parameters, inputs, time=times)
 
     @cached_property
-    def drift(self) -> dict[str, float]:
+    def _at_start(self) -> Any:
+        """The Solution of the initial states alone, where no sample has them; else None."""
+        start = self.course.start
+        if start is None:
+            return None
+        state, time = start.state[..., np.newaxis], np.array([start.time])
+        return Solution(self.system, time, state, self.parameters, "", "", None, start.inputs)
+
+    @cached_property
+    def drift(self) -> dict[str, Any]:
         """Largest change of each conserved observable, relative to its largest size.
 
-        ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout.
+        ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout. Of a batch it is an
+        array; what a trajectory did not reach is left out.
         """
-        return {name: _relative(self.change(name), self[name]) for name in self.conserved}
+        if not self.batch:
+            return {name: relative(self.change(name), self._sizes(name)) for name in self.conserved}
+        return {
+            name: relative_of_each(self.change(name), self._sizes(name), len(self.batch))
+            for name in self.conserved
+        }
+
+    def _sizes(self, name: str) -> Array:
+        """The values of a quantity, that of the start among them."""
+        values = self[name]
+        if self._at_start is None:
+            return values
+        return np.concatenate([self._at_start[name], values], axis=-1)
 
     @property
     def conserved(self) -> tuple[str, ...]:
         """Names of the observables that the motion conserves; some only if inputs are constant."""
         inputs = self.inputs
-        steady = inputs is None or inputs.ndim == 1 or bool((inputs == inputs[:, :1]).all())
+        steady = inputs is None or inputs.ndim == 1 or bool((inputs == inputs[..., :1]).all())
+        if self.course.start is not None:
+            steady = not self.course.start.varies
         quantities = self.system.OBSERVABLES.values()
         return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
 
     def change(self, name: str) -> Array:
-        """``q(t) - q(0)`` of an observable or state component, ``(T,)``."""
+        """``q(t) - q(0)`` of an observable or state component, ``(T,)`` or ``(*batch, T)``."""
         values = self[name]
+        first = values[..., :1] if self._at_start is None else self._at_start[name]
         with np.errstate(invalid="ignore"):  # infinite values give NaN, as they should
-            return values - values[..., :1]
+            return values - first
 
     @property
-    def time_reached(self) -> float:
-        """The last time that was reached."""
-        return float(self.time[-1])
+    def time_reached(self) -> Any:
+        """The last time that was reached; of a batch an array."""
+        return self.course.reached if self.batch else float(self.time[-1])
 
     @property
-    def final(self) -> dict[str, float]:
-        """The last state by component."""
+    def final(self) -> dict[str, Any]:
+        """The last state by component; of a batch arrays, of what could be followed to there."""
         names = self.system.STATE.components
+        if self.batch:
+            assert self.course.last is not None
+            return dict(zip(names, self.course.last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
     @property
@@ -200,7 +336,8 @@ class Solution:
         return dict(zip(names, self._inputs_over_time[:, -1].tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
-        """Final state and drift as plain JSON values."""
+        """Final state and drift as plain JSON values, of one trajectory."""
+        self._check_alone("a summary")
         parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
         return {
             "system": self.system.name,
@@ -299,6 +436,7 @@ class Solution:
         """
         from coadjoint.solve.plot import plot
 
+        self._check_alone("a picture")
         return plot(self, path)
 
     def trace(self, path: str | PathLike[str] | None = None) -> Any:
@@ -309,24 +447,28 @@ class Solution:
         """
         from coadjoint.solve.trace import trace
 
+        self._check_alone("a picture")
         return trace(self, path)
 
     def __repr__(self) -> str:
-        lines = [
-            f"<Solution of {self.system.name}: {self.status}, {len(self)} samples, "
-            f"t = {self.time[0]:g} .. {self.time_reached:g}>"
-        ]
-        lines += [f"  drift of {name}: {value:.1e}" for name, value in self.drift.items()]
+        span = f"{len(self)} samples, t = {self.time[0]:g} .. {self.time[-1]:g}>"
+        span = span if len(self) > 1 else f"1 sample, t = {self.time[0]:g}>"
+        if self.batch:
+            whole = "x".join(map(str, self.batch))
+            lines = [f"<Solution of {self.system.name}: {whole} trajectories, {span}"]
+            lines += [f"  {self.message}"] if self.message else []
+            return "\n".join([*lines, *self._describe_drift()])
+        lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
+        lines += self._describe_drift()
         lines += [f"  |{name}|^2 - 1: {value:.1e}" for name, value in self.attitude_drift.items()]
         return "\n".join(lines)
+
+    def _describe_drift(self) -> list[str]:
+        """A line for each conserved observable; of a batch the largest drift."""
+        most = " up to" if self.batch else ""
+        values = ((name, float(np.max(value))) for name, value in self.drift.items())
+        return [f"  drift of {name}:{most} {value:.1e}" for name, value in values]
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
         return f"<pre>{escape(repr(self))}</pre>"
-
-
-def _relative(change: Array, values: Array) -> float:
-    """Largest change over largest size."""
-    size = float(np.abs(values).max())
-    with np.errstate(invalid="ignore"):
-        return float(np.abs(change).max() / size) if size else 0.0

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
     from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
+    from coadjoint.solve.ode import Ode
     from coadjoint.solve.solution import Solution
+    from coadjoint.solve.solvers import Solvers
 
     Array = NDArray[Any]
 
@@ -182,32 +184,45 @@ class System(Functions):
         inputs: Any = None,
         *,
         method: str = "auto",
-        rtol: float = 1e-10,
-        atol: float = 1e-12,
+        rtol: float | None = None,
+        atol: float | None = None,
+        step: float | None = None,
         samples: int = 1001,
         max_steps: int = 1_000_000,
         target: Target = "c",
+        threads: int | None = None,
+        progress: bool | Callable[[float], object] = True,
         reconstruct: bool | Mapping[str, ArrayLike] = False,
     ) -> Solution:
-        """Integrate one trajectory.
+        """Integrate one trajectory, or many at a time.
 
         Args:
-            state: Initial state, ``(n,)`` or by name.
+            state: Initial state, ``(n,)`` or by name; of many members ``(n, *batch)``.
             t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
-            parameters: As in `rhs`, shared.
-            inputs: Constants, ``(m,)`` or by name; samples over time as ``(times, values,
-                "previous")``, each of which holds until the next one, or ``(times, values,
-                "linear")``, with values ``(m, T)`` or by name, over the whole of the run; or a
-                function of time that returns ``(m,)`` or values by name. No step crosses a jump
-                of samples. None for the defaults.
-            method: A method of `scipy.integrate`; ``"auto"`` is ``"DOP853"``, order 8. Where
-                constraints are kept, one-step methods go on from the `projection` of each step;
-                BDF and LSODA remember steps and are left alone.
-            rtol: Relative tolerance of a step.
-            atol: Absolute tolerance of a step.
-            samples: Number of evenly spaced samples when ``t`` is a pair.
-            max_steps: After so many steps the trajectory ends with the status ``MAX_STEPS``.
-            target: Kernel that computes the rates.
+            parameters: As in `rhs`, shared, or of each member.
+            inputs: Constants, ``(m,)`` or by name, of a batch also ``(m, *batch)``; samples over
+                time as ``(times, values, "previous")``, each of which holds until the next one,
+                or ``(times, values, "linear")``, with values ``(m, T)`` or by name, over the whole
+                of the run; or a function of time that returns ``(m,)`` or values by name. No step
+                crosses a jump of samples. None for the defaults.
+            method: ``"taylor"``, of an order that follows from ``rtol``, ``"dop853"`` or ``"rk4"``,
+                which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
+                `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
+                ``"dop853"``. Where generated solvers do not apply it is ``"scipy:DOP853"``: where
+                a System keeps constraints or has a ``[domain]``, with ``reconstruct``, inputs that
+                are a function, or the target ``"python"``. `Solution.method` says which it was.
+            rtol: Relative tolerance of a step; 1e-10 if none is given.
+            atol: Absolute tolerance of a step; 1e-12 if none is given.
+            step: A fixed step for a generated method, in the place of tolerances; the order of
+                ``"taylor"`` still follows from ``rtol``. The last step before a sample of inputs
+                or the end is shorter, or longer by up to a millionth.
+            samples: Number of evenly spaced samples when ``t`` is a pair; 1 for the end alone.
+            max_steps: After so many steps a trajectory ends with the status ``MAX_STEPS``.
+            target: Kernel that computes the rates, or language of the generated solver.
+            threads: How many threads share a batch, at the most; None for one on each processor.
+                Their number changes no bit.
+            progress: Whether to show a bar on a terminal where a generated solver runs for longer
+                than a second; or a function that is told the part that is done, from 0 to 1.
             reconstruct: Whether to integrate ``RECONSTRUCTED`` with the state, to the same
                 tolerances: attitude and place of a body, for instance. A mapping says where some
                 of it begins, as ``{"x": 1.0}``. Otherwise the rest begins at its default, else at
@@ -215,15 +230,18 @@ class System(Functions):
                 shortest way. Methods with a Jacobian find it by differences then.
 
         Returns:
-            The labelled trajectory, with observables and the drift of what is conserved. One that
-            could not be followed to the end has a status other than ``OK`` and ends before. Each
-            sample is on the constraints to rounding, whatever the method. Where
-            it leaves the domain it ends with the last point inside, found to 1e-12 of a step;
-            points between the samples and the ends of steps are not tried.
+            The labelled trajectory or trajectories, with observables and the drift of what is
+            conserved. One that could not be followed to the end has a status other than ``OK``: a
+            single one ends before; in a batch its samples are NaN from there on, and its
+            neighbours go on. Where constraints are kept, one-step methods go on from the
+            `projection` of each step, BDF and LSODA remember steps and are left alone, and each
+            sample is on the constraints to rounding. Where a trajectory leaves the domain it ends
+            with the last point inside, found to 1e-12 of a step; points between the samples and
+            the ends of steps are not tried.
 
         Raises:
-            KernelArgumentError: The state is a batch, outside the domain or off the constraints,
-                times do not increase, or a name is unknown.
+            KernelArgumentError: The state is outside the domain or off the constraints, times do
+                not increase, a shape or name cannot be right, or the method does not apply.
         """
         from coadjoint.solve.simulate import simulate
 
@@ -236,11 +254,36 @@ class System(Functions):
             method=method,
             rtol=rtol,
             atol=atol,
+            step=step,
             samples=samples,
             max_steps=max_steps,
             target=target,
+            threads=threads,
+            progress=progress,
             reconstruct=reconstruct,
         )
+
+    def ode(
+        self,
+        parameters: Values | None = None,
+        inputs: Values | Callable[[float], Values] | None = None,
+        *,
+        target: Target = "c",
+    ) -> Ode:
+        """The equations of motion as ``fun(t, y)`` and ``jac(t, y)``, for integrators of others.
+
+        Args:
+            parameters: As in `rhs`, shared.
+            inputs: As in `simulate`; samples are taken at the time of each call.
+            target: Kernel that computes both.
+
+        >>> from coadjoint.systems.rigid_body import system
+        >>> system.ode({"I": [1, 2, 3]}).fun(0.0, [1.0, 3.0, 1.0]).tolist()
+        [-0.5, 0.6666666666666667, -1.5]
+        """
+        from coadjoint.solve.ode import Ode
+
+        return Ode(self, parameters, inputs, target)
 
     # -- what is known about it -------------------------------------------------------------------
 
@@ -276,6 +319,12 @@ class System(Functions):
         from coadjoint.solve.kernels import Kernels
 
         return Kernels(self)
+
+    @cached_property
+    def _solvers(self) -> Solvers:
+        from coadjoint.solve.solvers import Solvers
+
+        return Solvers(self)
 
     @cached_property
     def certificate(self) -> Mapping[str, Any]:

@@ -1,0 +1,113 @@
+"""The course of a simulation: the method, its tolerances, and how each trajectory ended.
+
+Comes in: what a solver knows at its end. Goes out: a record that a `Solution` holds, and the drift
+of what is conserved. Read next: `coadjoint.solve.solution`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.solve.ensemble import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Place = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where trajectories began, if no sample has it.
+
+    Attributes:
+        time: When.
+        state: Where, ``(n, *batch)``.
+        inputs: Inputs then, as a Solution of one sample has them.
+        varies: Whether inputs change later.
+    """
+
+    time: float
+    state: Array
+    inputs: Array | None
+    varies: bool
+
+
+@dataclass(frozen=True)
+class Course:
+    """How a Solution was computed; what is of each trajectory has the shape of the batch.
+
+    Attributes:
+        method: ``taylor``, ``dop853``, ``rk4``, or ``scipy:NAME``.
+        order: Of a generated method.
+        rtol: Relative tolerance; None if the method does not look at it.
+        atol: Absolute tolerance; likewise.
+        step: The fixed step, if there was one.
+        codes: How each trajectory ended, as `Status`; None from SciPy.
+        steps: Steps that were taken; likewise.
+        rejected: Steps that were tried in vain; likewise.
+        reached: The time that each trajectory reached; likewise.
+        last: The state there, ``(n, *batch)``; likewise.
+        start: Where the trajectories began, if no sample has it.
+    """
+
+    method: str
+    order: int | None
+    rtol: float | None
+    atol: float | None
+    step: float | None
+    codes: NDArray[np.int8] | None = None
+    steps: NDArray[np.uint64] | None = None
+    rejected: NDArray[np.uint64] | None = None
+    reached: Array | None = None
+    last: Array | None = None
+    start: Start | None = None
+
+    @property
+    def status(self) -> str:
+        """How one trajectory ended."""
+        assert self.codes is not None, "asked for only where a generated solver told it"
+        return Status(int(self.codes)).name
+
+    def take(self, place: Place) -> Course:
+        """The course of one trajectory of a batch."""
+        at: Any = (slice(None), *place)
+        start = self.start
+        if start is not None:
+            inputs = start.inputs
+            if inputs is not None and inputs.ndim > 2:
+                inputs = inputs[at][:, 0]
+            start = replace(start, state=start.state[at], inputs=inputs)
+        of_each = {
+            name: np.asarray(values[place])
+            for name in ("codes", "steps", "rejected", "reached")
+            if (values := getattr(self, name)) is not None
+        }
+        last = None if self.last is None else self.last[at]
+        return replace(self, **of_each, last=last, start=start)
+
+
+#: Of a Solution that was put together by hand.
+UNTOLD = Course(method="", order=None, rtol=None, atol=None, step=None)
+
+
+def relative(change: Array, values: Array) -> float:
+    """Largest change over largest size."""
+    size = float(np.abs(values).max())
+    with np.errstate(invalid="ignore"):
+        return float(np.abs(change).max() / size) if size else 0.0
+
+
+def relative_of_each(change: Array, values: Array, axes: int) -> Array:
+    """Largest change over largest size, of each trajectory of a batch of so many axes.
+
+    NaN, where a trajectory did not come, is left out; the first sample of each is a number.
+    """
+    lead = tuple(range(values.ndim - axes - 1))
+    most = np.fmax.reduce(np.abs(change), axis=-1, initial=0.0).max(axis=lead)
+    size = np.fmax.reduce(np.abs(values), axis=-1, initial=0.0).max(axis=lead)
+    return np.asarray(np.divide(most, size, out=np.zeros(np.shape(most)), where=size > 0))

@@ -1,0 +1,253 @@
+"""Simulation of one trajectory or many with the generated solvers of a System.
+
+Comes in: states, times and parameters of one member or of a batch. Goes out: a `Solution`. All that
+can be is checked before the first step. Read next: `coadjoint.solve.march`.
+"""
+
+from __future__ import annotations
+
+import math
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.arrays import pack_inputs, pack_parameters
+from coadjoint.solve.course import Course, Start
+from coadjoint.solve.driving import Linear, Previous, Signal, make_signal
+from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.march import count_threads, march, progress_bar
+from coadjoint.solve.solution import Solution
+from coadjoint.solve.solvers import FILES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.request import Request
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+
+def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) -> str:
+    """Why generated solvers do not apply to a run, as a clause; "" where they do.
+
+    Args:
+        system: The System.
+        inputs: As `System.simulate` takes them.
+        target: Likewise.
+        reconstruct: Likewise.
+    """
+    if not all((system.folder / file).is_file() for file in FILES):
+        return "its folder was generated without them: run `coadjoint regenerate`"
+    if "projection" in system.functions:
+        return "it keeps constraints, onto which each step has to be projected"
+    if system.DOMAIN:
+        return "it has a [domain], whose border has to be looked for at each step"
+    if reconstruct is not False and reconstruct is not None:
+        return "reconstruct integrates more than the state"
+    if callable(inputs):
+        return "inputs are a function of Python; samples over time can be followed"
+    if target == "python":
+        return "they are written for the targets c, c-fast and numpy"
+    return ""
+
+
+def simulate(system: System, request: Request) -> Solution:
+    """Integrate a trajectory or many by a generated solver.
+
+    Args:
+        system: The System.
+        request: What is to be done, its times, method and tolerances checked.
+    """
+    batch = request.state.shape[1:]
+    run, driven = _gather(system, request)
+    stepper = system._solvers.get(request.choice, request.target)
+    run.begin(request.start)
+    _end_undefined(system, run)
+    with ExitStack() as stack:
+        told = request.progress if callable(request.progress) else None
+        if request.progress is True:
+            told = stack.enter_context(progress_bar())
+        march(stepper, run, request.threads or count_threads(), told)
+    course = Course(
+        method=request.choice.name,
+        order=request.choice.order,
+        rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
+        atol=None if request.step else request.atol,
+        step=request.step,
+        codes=run.status.reshape(batch),
+        steps=run.steps.reshape(batch),
+        rejected=run.rejected.reshape(batch),
+        reached=run.time.reshape(batch),
+        last=run.state.reshape(-1, *batch),
+        start=_find_start(request, driven) if request.samples == 1 else None,
+    )
+    return _make_solution(system, request, run, course, driven)
+
+
+# -- before the first step ----------------------------------------------------------------------
+
+
+def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array | None]:
+    """The ensemble of a request, and its inputs."""
+    n, batch = system.STATE.size, request.state.shape[1:]
+    members = math.prod(batch)
+    parameters = pack_parameters(system, request.parameters)
+    check_batch(parameters, batch, "parameters")
+    if parameters.ndim > 1:
+        parameters = parameters.reshape(-1, members)
+    signal = _find_signal(system, request, batch)
+    times = request.times
+    run = Ensemble(
+        state=request.state.reshape(n, members).copy(),
+        parameters=parameters,
+        inputs=_lay_out(signal, system.INPUTS.size, members, request.start),
+        has_time=bool(system.TIME),
+        samples=times,
+        out=None if request.samples == 1 else np.full((n, members, times.size), np.nan),
+        rtol=request.rtol,
+        atol=request.atol,
+        size=request.step or 0.0,
+        max_steps=request.max_steps,
+    )
+    return run, signal
+
+
+def check_batch(array: Array, batch: tuple[int, ...], name: str) -> None:
+    """What is given for each member has to be so for the members of the state.
+
+    Raises:
+        KernelArgumentError: It is of another batch, or not finite.
+    """
+    if array.shape[1:] not in ((), batch):
+        alone = "simulate follows one trajectory for a state without a batch; " if not batch else ""
+        raise KernelArgumentError(
+            f"{alone}{name} have the batch shape {array.shape[1:]}, the state {batch}; expected "
+            f"the same, or {name} shared by all members.",
+            found=list(array.shape[1:]),
+            expected=list(batch),
+        )
+    if not np.isfinite(array).all():
+        place = np.argwhere(~np.isfinite(array))[0]
+        raise KernelArgumentError(
+            f"{name} have {array[tuple(place)]} in row {place[0]}; expected finite numbers.",
+            found=str(array[tuple(place)]),
+        )
+
+
+def _find_signal(system: System, request: Request, batch: tuple[int, ...]) -> Signal | Array | None:
+    """Inputs over time, or constants of each member; None where a system has none."""
+    given = request.inputs
+    sampled = isinstance(given, tuple) and any(np.ndim(part) for part in given)
+    if batch and system.INPUTS and not sampled:
+        packed = pack_inputs(system, given)
+        check_batch(packed, batch, "inputs")
+        if packed.ndim > 1:
+            return packed
+    return make_signal(system, given, request.start, float(request.times[-1]))
+
+
+def _lay_out(signal: Signal | Array | None, rows: int, members: int, start: float) -> Inputs:
+    """Inputs as straight lines between knots."""
+    knots = np.array([start])
+    if isinstance(signal, np.ndarray):
+        values = signal.reshape(rows, members).copy()
+        return Inputs(knots, values, np.zeros(values.shape), own=True)
+    if isinstance(signal, Previous):
+        values = signal.values
+        first = np.append(True, (values[:, 1:] != values[:, :-1]).any(axis=0))
+        held = np.ascontiguousarray(values[:, first])
+        return Inputs(signal.times[first].copy(), held, np.zeros(held.shape))
+    if isinstance(signal, Linear):
+        slopes = np.diff(signal.values) / np.diff(signal.times)
+        return Inputs(signal.times[:-1].copy(), signal.values[:, :-1].copy(), slopes)
+    values = np.zeros((rows, 1)) if signal is None else signal.values[:, np.newaxis].copy()
+    return Inputs(knots, values, np.zeros(values.shape))
+
+
+def _end_undefined(system: System, run: Ensemble) -> None:
+    """Members whose rates are not finite at the start end there."""
+    inputs, driving = run.inputs, dict[str, Any]()
+    if system.INPUTS:
+        piece = int(np.searchsorted(inputs.knots[1:], run.time[0], side="right"))
+        after = run.time[0] - inputs.knots[piece]
+        here = slice(None) if inputs.own else piece
+        driving["inputs"] = inputs.values[:, here] + after * inputs.slopes[:, here]
+    if system.TIME:
+        driving["time"] = run.time[0]
+    rates = system.rhs(run.state, run.parameters, target="numpy", **driving)
+    run.status[~np.isfinite(rates).all(axis=0)] = Status.NONFINITE
+
+
+# -- after the last step ------------------------------------------------------------------------
+
+
+def _make_solution(
+    system: System,
+    request: Request,
+    run: Ensemble,
+    course: Course,
+    signal: Signal | Array | None,
+) -> Solution:
+    """The Solution of a run."""
+    batch, times = request.state.shape[1:], request.times
+    states = run.state[..., np.newaxis] if run.out is None else run.out
+    states = states.reshape(-1, *batch, times.size)
+    if not batch:
+        times, states = _cut(times, states, run)
+    parameters = run.parameters
+    if parameters.ndim > 1:
+        parameters = parameters.reshape(-1, *batch)
+    if isinstance(signal, np.ndarray):
+        inputs: Array | None = signal[..., np.newaxis]
+    else:
+        inputs = None if signal is None else signal.over(times)
+    status = "" if batch else Status(int(run.status[0])).name
+    message = _explain_batch(run) if batch else _explain(run, request.max_steps)
+    return Solution(
+        system, times, states, parameters.copy(), status, message, None, inputs, course=course
+    )
+
+
+def _find_start(request: Request, signal: Signal | Array | None) -> Start:
+    """Where a run began."""
+    varies = isinstance(signal, Previous | Linear)
+    if isinstance(signal, np.ndarray):
+        inputs: Array | None = signal[..., np.newaxis]
+    else:
+        inputs = None if signal is None else signal.over(np.array([request.start]))
+    return Start(request.start, request.state.copy(), inputs, varies)
+
+
+def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
+    """The samples that one trajectory reached, then where it came if that is not the end."""
+    if run.status[0] == Status.OK:
+        return times, states
+    reached, came = 0 if run.out is None else int(run.next[0]), float(run.time[0])
+    times, states = times[:reached], states[:, :reached]
+    if not reached or times[-1] < came:
+        times, states = np.append(times, came), np.column_stack([states, run.state[:, 0]])
+    return times, states
+
+
+def _explain(run: Ensemble, max_steps: int) -> str:
+    """Where one trajectory stopped and why; "" at its end."""
+    place = f"near t = {run.time[0]:.6g}"
+    return {
+        Status.NONFINITE: f"the rates are not finite {place}",
+        Status.STEP_UNDERFLOW: f"no step was small enough {place}",
+        Status.MAX_STEPS: f"{max_steps} steps came only {place}; raise max_steps",
+    }.get(Status(int(run.status[0])), "")
+
+
+def _explain_batch(run: Ensemble) -> str:
+    """How many trajectories stopped before the end, and why; "" if none did."""
+    counts = {status.name: int((run.status == status).sum()) for status in Status}
+    ended = [f"{count} {name}" for name, count in counts.items() if count and name != "OK"]
+    total = run.status.size
+    short = total - counts["OK"]
+    return f"{short} of {total} trajectories did not reach the end: {', '.join(ended)}" * bool(
+        ended
+    )

@@ -1,0 +1,153 @@
+"""The march: an ensemble to its end, by one thread or several.
+
+Comes in: an `Ensemble` and a solver. Goes out: the same ensemble, every member at its end or where
+it came. Members do not know of each other, so that the number of threads changes no bit. Each call
+of a solver is short, so that Ctrl-C is heard and progress is told. Read next:
+`coadjoint.solve.generated`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from threading import Event
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coadjoint.solve.ensemble import Status
+
+if TYPE_CHECKING:
+    from coadjoint.solve.ensemble import Ensemble
+    from coadjoint.solve.solvers import Stepper
+
+#: Told now and then: the part of the way that is done, from 0 to 1.
+Progress = Callable[[float], object]
+#: Seconds that one call of a solver is to take, and those between two reports.
+CALL_SECONDS, REPORT_SECONDS = 0.05, 0.1
+#: Seconds after which a bar appears.
+BAR_SECONDS = 1.0
+#: Members of a slice, at the least, where threads share a batch: the last ones of a slice leave
+#: lanes idle.
+SLICE = 256
+#: Steps of a block in the first call, and how much more a later call may try than the one before.
+FIRST_WORK, GROWTH = 16, 4.0
+
+
+def count_threads() -> int:
+    """Processors that this process may use."""
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def march(stepper: Stepper, run: Ensemble, threads: int, progress: Progress | None = None) -> None:
+    """Advance an ensemble to its end.
+
+    Args:
+        stepper: Who advances it.
+        run: Its members, begun.
+        threads: How many threads share it, at the most.
+        progress: Told how far it is; None for nobody.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C; members stand where they came.
+    """
+    slices = _cut(run.state.shape[1], threads)
+    begun, stop = run.time.copy() if progress else run.time, Event()
+
+    def report() -> None:
+        if progress is not None:
+            progress(_find_part(run, begun))
+
+    if len(slices) == 1:
+        reported = time.monotonic()
+        for _ in _advance(stepper, run, *slices[0], stop):
+            if time.monotonic() - reported > REPORT_SECONDS:
+                report()
+                reported = time.monotonic()
+    else:
+        _share(stepper, run, slices, threads, stop, report)
+    report()
+
+
+def _share(
+    stepper: Stepper,
+    run: Ensemble,
+    slices: list[tuple[int, int]],
+    threads: int,
+    stop: Event,
+    report: Callable[[], None],
+) -> None:
+    """Have threads take one slice after the other; each ends soon where this one is interrupted."""
+
+    def work(first: int, last: int) -> None:
+        for _ in _advance(stepper, run, first, last, stop):
+            pass
+
+    with ThreadPoolExecutor(min(threads, len(slices))) as pool:
+        try:
+            left = {pool.submit(work, *each) for each in slices}
+            while left:
+                done, left = wait(left, REPORT_SECONDS, FIRST_EXCEPTION)
+                for each in done:
+                    each.result()
+                report()
+        except BaseException:  # Ctrl-C among them
+            stop.set()
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _advance(stepper: Stepper, run: Ensemble, first: int, last: int, stop: Event) -> Iterator[None]:
+    """Advance a slice, one short call after the other."""
+    work = FIRST_WORK
+    while not stop.is_set():
+        begun = time.perf_counter()
+        if not stepper.advance(run, first, last, work):
+            return
+        took = max(time.perf_counter() - begun, 1e-9)
+        work = max(1, int(work * min(GROWTH, CALL_SECONDS / took)))
+        yield
+
+
+def _cut(members: int, threads: int) -> list[tuple[int, int]]:
+    """Slices of a batch: some for each thread, of whole blocks."""
+    if threads == 1 or members < 2 * SLICE:
+        count = 1 if threads == 1 else min(threads, -(-members // 8))
+    else:
+        count = max(threads, min(4 * threads, members // SLICE))
+    size = max(1, -(-members // count))
+    size = -(-size // 8) * 8 if count > 1 else size
+    return [(first, min(first + size, members)) for first in range(0, members, size)]
+
+
+def _find_part(run: Ensemble, begun: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+    """The part of the way that is done, from 0 to 1."""
+    span = np.maximum(run.end - begun, np.finfo(float).tiny)
+    part = np.where(run.status == Status.GOES_ON, (run.time - begun) / span, 1.0)
+    return float(part.mean())
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress | None]:
+    """A bar on standard error for runs that take longer than a second, if it is a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress as Bar
+
+    begun = time.monotonic()
+    with Bar(console=Console(stderr=True), transient=True, auto_refresh=False) as bar:
+        task = bar.add_task("simulating", total=1.0, visible=False)
+
+        def tell(part: float) -> None:
+            late = time.monotonic() - begun > BAR_SECONDS
+            bar.update(task, completed=part, visible=late, refresh=late)
+
+        yield tell

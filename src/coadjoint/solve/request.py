@@ -1,0 +1,250 @@
+"""The request: what `System.simulate` was asked for, checked, and the method that will do it.
+
+Comes in: arguments of a person. Goes out: a `Request`, or an error before any work starts. Read
+next: `coadjoint.solve.generated`, and `coadjoint.solve.simulate` for the methods of SciPy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.arrays import as_float64, pack
+from coadjoint.solve.solvers import GENERATED, Choice, choose_order
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: Explicit methods of SciPy, then those that use the Jacobian; each is ``scipy:NAME``.
+EXPLICIT, IMPLICIT = ("DOP853", "RK45", "RK23"), ("Radau", "BDF", "LSODA")
+SCIPY = "scipy:"
+#: Tolerances where none are given.
+RTOL, ATOL = 1e-10, 1e-12
+#: Orders of the generated methods whose order is fixed.
+_ORDER = {"dop853": 8, "rk4": 4}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is to be done.
+
+    Attributes:
+        state: ``(n, *batch)``.
+        start: When it begins.
+        times: Sample times; the last is the end.
+        samples: 1 where the end alone is wanted.
+        parameters: As given.
+        inputs: As given.
+        method: ``scipy:NAME``, or one of `GENERATED`.
+        rtol: Relative tolerance.
+        atol: Absolute tolerance.
+        step: A fixed step; None to have steps follow the tolerances.
+        max_steps: The most of a trajectory.
+        target: Who computes.
+        reconstruct: As given.
+        threads: How many threads, at the most; None for all processors.
+        progress: Whether to show a bar, or whom to tell.
+    """
+
+    state: Array
+    start: float
+    times: Array
+    samples: int
+    parameters: Any
+    inputs: Any
+    method: str
+    rtol: float
+    atol: float
+    step: float | None
+    max_steps: int
+    target: str
+    reconstruct: Any
+    threads: int | None
+    progress: bool | Callable[[float], object]
+
+    @property
+    def choice(self) -> Choice:
+        """The generated method."""
+        return Choice(self.method, _ORDER.get(self.method) or choose_order(self.rtol))
+
+
+def check_state(system: System, state: Any) -> Array:
+    """Finite states, ``(n, *batch)``.
+
+    Raises:
+        KernelArgumentError: Another shape, or a number that is not finite.
+    """
+    packed, n = pack(state, system.STATE, "state"), system.STATE.size
+    if packed.ndim == 0 or packed.shape[0] != n:
+        turned = packed.ndim > 1 and packed.shape[-1] == n
+        advice = " It looks transposed: pass state.T." if turned else ""
+        raise KernelArgumentError(
+            f"the state of {system.name} has the shape {packed.shape}; expected ({n},) or "
+            f"({n}, *batch), the rows being {', '.join(system.STATE.components)}.{advice}",
+            found=list(packed.shape),
+            expected=[n],
+        )
+    if not packed.size:
+        raise KernelArgumentError(
+            f"the state has the shape {packed.shape}, which holds no member; expected one or more.",
+            found=list(packed.shape),
+        )
+    finite = np.isfinite(packed)
+    if not finite.all():
+        row, *member = (int(each) for each in np.argwhere(~finite)[0])
+        where = f" of member {member[0] if len(member) == 1 else tuple(member)}" if member else ""
+        raise KernelArgumentError(
+            f"the initial {system.STATE.components[row]}{where} is {packed[(row, *member)]}; "
+            "expected a finite number.",
+            found=system.STATE.components[row],
+        )
+    return packed
+
+
+def list_times(t: Any, samples: Any) -> tuple[float, Array]:
+    """The start and the sample times from a pair or a sequence.
+
+    Raises:
+        KernelArgumentError: They do not increase, or there are to be too few samples.
+    """
+    times = as_float64(t, "t")
+    increasing = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) > 0).all())
+    if not increasing or not np.isfinite(times).all():
+        raise KernelArgumentError(
+            f"t is {str(t)[:80]}; expected (start, end) or increasing finite times.",
+            found=str(t)[:80],
+        )
+    start = float(times[0])
+    if times.size > 2:
+        return start, times.copy()
+    check_count(samples=samples)
+    if samples == 1:
+        return start, times[1:].copy()
+    return start, np.linspace(times[0], times[1], int(samples))
+
+
+def check_positive(**numbers: Any) -> None:
+    """Tolerances and steps.
+
+    Raises:
+        KernelArgumentError: One is no positive number.
+    """
+    for name, value in numbers.items():
+        good = isinstance(value, Real) and not isinstance(value, bool)
+        if not good or not 0 < value < math.inf:
+            raise KernelArgumentError(
+                f"{name} is {value!r}; expected a positive number.", found=str(value), name=name
+            )
+
+
+def check_count(**numbers: Any) -> None:
+    """Numbers of things.
+
+    Raises:
+        KernelArgumentError: One is no integer, or less than 1.
+    """
+    for name, value in numbers.items():
+        if not isinstance(value, Integral) or isinstance(value, bool) or value < 1:
+            raise KernelArgumentError(
+                f"{name} is {value!r}; expected a whole number, 1 or more.",
+                found=str(value),
+                name=name,
+            )
+
+
+def choose_method(
+    system: System, method: Any, step: float | None, obstacle: str, *, tolerances: bool
+) -> str:
+    """The method that does it: ``scipy:NAME``, or one of `GENERATED`.
+
+    Args:
+        system: The System.
+        method: As given.
+        step: As given.
+        obstacle: Why generated solvers do not apply, or "".
+        tolerances: Whether some were given.
+
+    Raises:
+        KernelArgumentError: There is no such method, or it does not apply.
+    """
+    name = _normal(method)
+    if name == "auto":
+        adaptive = SCIPY + "DOP853" if obstacle else "taylor"
+        name = adaptive if step is None else "dop853"
+    if name in GENERATED and obstacle:
+        asked = f"method {method!r}" if step is None else f"method {method!r} with a fixed step"
+        raise KernelArgumentError(
+            f"{asked} is a generated solver, which does not apply to {system.name} here: "
+            f"{obstacle}. Expected {_list(obstacle)} without step.",
+            found=str(method),
+            reason=obstacle,
+        )
+    if name not in GENERATED and name not in _scipy():
+        raise KernelArgumentError(
+            f"method is {method!r}; expected one of {_list(obstacle)} for {system.name}."
+            + _suggest(name),
+            found=str(method)[:80],
+            expected=["auto", *GENERATED, *_scipy()],
+        )
+    _check_step(name, step, tolerances=tolerances)
+    return name
+
+
+def _normal(method: Any) -> str:
+    """The name of a method as it is listed; letters of either case are the same."""
+    if not isinstance(method, str):
+        return str(method)
+    listed = ("auto", *GENERATED, *_scipy())
+    return next((each for each in listed if each.lower() == method.lower()), method)
+
+
+def _scipy() -> tuple[str, ...]:
+    """The methods of SciPy."""
+    return tuple(SCIPY + each for each in EXPLICIT + IMPLICIT)
+
+
+def _list(obstacle: str) -> str:
+    """The methods that fit."""
+    fit = ("auto", *(() if obstacle else GENERATED), *_scipy())
+    return ", ".join(repr(each) for each in fit)
+
+
+def _suggest(name: str) -> str:
+    """The spelling of a method of SciPy."""
+    meant = [each for each in _scipy() if each.lower() == (SCIPY + name).lower()]
+    return f" Write method={meant[0]!r} for that of SciPy." if meant else ""
+
+
+def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:
+    """A fixed step where a method needs one, and none where it takes none.
+
+    Raises:
+        KernelArgumentError: It is missing, or does not go with the method.
+    """
+    if step is None and name == "rk4":
+        raise KernelArgumentError(
+            "method 'rk4' has no estimate of its error; expected step=, the length of its steps.",
+            found=None,
+        )
+    if step is not None and name.startswith(SCIPY):
+        raise KernelArgumentError(
+            f"step is {step!r}, and method {name!r} chooses its steps by the tolerances; expected "
+            "step=None, or one of the methods " + ", ".join(map(repr, GENERATED)) + ".",
+            found=str(step),
+        )
+    if step is not None and tolerances and name != "taylor":
+        raise KernelArgumentError(
+            f"step is {step!r}, and tolerances are given, which method {name!r} does not look at "
+            "with a fixed step; expected one or the other.",
+            found=str(step),
+        )

@@ -1,0 +1,346 @@
+"""The solvers of a System, one for each method, order and target, loaded when first asked for.
+
+Comes in: an `Ensemble`. Goes out: the same further on, advanced by the generated ``solver.c``, or
+by its NumPy twin where that is asked for or no compiler is there. A fresh object is compared with
+the twin before it is used.
+Read next: `coadjoint.solve.march`, which shares an ensemble among threads.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from functools import partial
+from math import ceil, log
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+import numpy as np
+
+from coadjoint.build.compiler import HOW_TO_GET_ONE, Source
+from coadjoint.build.library import Library, load_library
+from coadjoint.errors import CompilerError, CrossCheckError
+from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
+from coadjoint.render.targets.modules import KernelModule
+from coadjoint.render.targets.numpy.loader import NumpyKernel
+from coadjoint.render.targets.protocol import Call
+from coadjoint.solve.ensemble import Ensemble, Inputs
+from coadjoint.solve.kernels import say_once
+from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: Methods that are generated.
+GENERATED: Final = ("taylor", "dop853", "rk4")
+#: Files that a folder has where its solvers were generated.
+FILES: Final = ("solver.c", "solver.h", "solver.py")
+#: The least and the greatest order of the method of Taylor.
+ORDERS: Final = (4, 40)
+#: Members by which a fresh object is compared with its twin: they fill no whole number of vectors.
+PROBES: Final = 11
+
+
+def choose_order(rtol: float) -> int:
+    """The order of the method of Taylor that a relative tolerance asks for.
+
+    >>> choose_order(1e-10), choose_order(2e-16), choose_order(1e-2)
+    (13, 20, 4)
+    """
+    return min(max(ORDERS[0], ceil(1.0 - log(rtol) / 2.0)), ORDERS[1])
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A method of integration.
+
+    Attributes:
+        name: One of `GENERATED`.
+        order: Of the method.
+    """
+
+    name: str
+    order: int
+
+    @property
+    def defines(self) -> tuple[str, ...]:
+        """What chooses it in ``solver.c``."""
+        return (f"-DORDER={self.order}" if self.name == "taylor" else f"-D{self.name.upper()}",)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class Stepper(Protocol):
+    """Whoever advances members of an ensemble."""
+
+    def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
+        """Go on with the members ``first <= n < last``, by at most ``work`` steps of a block.
+
+        Returns:
+            How many of them still go on.
+        """
+        ...
+
+
+class Solvers:
+    """The solvers of one System."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self._loaded: dict[tuple[Choice, str], Stepper] = {}
+
+    def get(self, choice: Choice, target: str) -> Stepper:
+        """The solver of a method; its NumPy twin, which is said, where a compiler cannot make it.
+
+        Args:
+            choice: The method.
+            target: ``"c"``, ``"c-fast"`` or ``"numpy"``.
+        """
+        if (choice, target) not in self._loaded:
+            self._loaded[choice, target] = self._find(choice, target)
+        return self._loaded[choice, target]
+
+    def _find(self, choice: Choice, target: str) -> Stepper:
+        twin = NumpyStepper(self.system, choice)
+        if target == "numpy":
+            return twin
+        try:
+            return load(self.system, choice, target)
+        except (CompilerError, CrossCheckError) as error:
+            advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
+            say_once(f"{error} The NumPy solvers are used instead. {advice}".rstrip())
+            return twin
+
+
+def load(system: System, choice: Choice, target: str) -> CStepper:
+    """The C solver of a method itself: what is missing or wrong is an error.
+
+    Args:
+        system: Whose solver it is.
+        choice: The method.
+        target: ``"c"`` or ``"c-fast"``.
+
+    Raises:
+        CompilerError: It cannot be compiled.
+        CrossCheckError: It differs from its NumPy twin.
+        OutputError: A file of it cannot be read.
+    """
+    kind = Source("solver", choice.defines, is_loops=False)
+    verify = partial(_verify, system, choice, target)
+    library = load_library(system.folder, system.name, system.id, FLAGS[target], verify, kind)
+    return CStepper(library)
+
+
+# -- C ------------------------------------------------------------------------------------------
+
+_SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
+
+
+class _Run(ctypes.Structure):
+    """``NAME_run`` of ``solver.h``, field by field."""
+
+    _fields_ = (
+        ("members", _SIZE),
+        ("first", _SIZE),
+        ("last", _SIZE),
+        ("state", _PLACE),
+        ("time", _PLACE),
+        ("step", _PLACE),
+        ("next", _PLACE),
+        ("steps", _PLACE),
+        ("rejected", _PLACE),
+        ("status", _PLACE),
+        ("parameters", _PLACE),
+        ("parameters_stride", _SIZE),
+        ("knots", _PLACE),
+        ("inputs", _PLACE),
+        ("slopes", _PLACE),
+        ("pieces", _SIZE),
+        ("inputs_stride", _SIZE),
+        ("samples", _PLACE),
+        ("sample_count", _SIZE),
+        ("out", _PLACE),
+        ("rtol", _DOUBLE),
+        ("atol", _DOUBLE),
+        ("size", _DOUBLE),
+        ("max_steps", _SIZE),
+        ("work", _SIZE),
+    )
+
+
+class CStepper:
+    """A solver in C.
+
+    Args:
+        library: Its object.
+    """
+
+    def __init__(self, library: Library) -> None:
+        self.source = library.source
+        self._advance = library.take("advance")
+
+    def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
+        """As `Stepper.advance`; other threads run meanwhile."""
+        run = _describe(ensemble)
+        run.first, run.last, run.work = first, last, work
+        return self._advance(ctypes.byref(run))
+
+
+def _describe(ensemble: Ensemble) -> _Run:
+    """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
+    members, inputs = ensemble.state.shape[1], ensemble.inputs
+    arrays = {
+        name: getattr(ensemble, name)
+        for name in ("state", "time", "step", "next", "steps", "rejected", "status")
+    }
+    arrays |= {"parameters": ensemble.parameters, "samples": ensemble.samples}
+    arrays |= {"knots": inputs.knots, "inputs": inputs.values, "slopes": inputs.slopes}
+    assert all(array.flags.c_contiguous for array in arrays.values())
+    return _Run(
+        members=members,
+        parameters_stride=0 if ensemble.parameters.ndim == 1 else members,
+        pieces=inputs.pieces,
+        inputs_stride=members if inputs.own else 0,
+        sample_count=len(ensemble.samples),
+        out=None if ensemble.out is None else ensemble.out.ctypes.data,
+        rtol=ensemble.rtol,
+        atol=ensemble.atol,
+        size=ensemble.size,
+        max_steps=ensemble.max_steps,
+        **{name: array.ctypes.data for name, array in arrays.items()},
+    )
+
+
+# -- NumPy --------------------------------------------------------------------------------------
+
+
+class NumpyStepper:
+    """The twin of a solver.
+
+    Args:
+        system: Whose solver it is.
+        choice: The method.
+
+    Raises:
+        OutputError: ``solver.py`` or ``kernel.py`` cannot be loaded.
+    """
+
+    def __init__(self, system: System, choice: Choice) -> None:
+        self._system, self._choice = system, choice
+        if choice.name == "taylor":
+            self._expansion = KernelModule(system, "solver.py").function("expand")
+        else:
+            self._kernel = NumpyKernel(system, "kernel.py")
+
+    def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
+        """As `Stepper.advance`; a block is all of the members."""
+        return ensemble.advance(self._method(ensemble), work, slice(first, last))
+
+    def _method(self, run: Ensemble) -> Method:
+        """The method for the tolerances and the step of an ensemble."""
+        if self._choice.name == "taylor":
+            return Taylor(self._expand, self._choice.order, run.rtol, run.atol, run.size)
+        if self._choice.name == "dop853":
+            return DormandPrince8(self._rates, run.rtol, run.atol, run.size)
+        return RungeKutta4(self._rates, run.size)
+
+    def _expand(self, lanes: Lanes, order: int) -> Array:
+        """Coefficients of the motion."""
+        path: Array = self._expansion(
+            lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order
+        )
+        return path
+
+    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """Rates some time after that of the lanes."""
+        driving, inputs = lanes.driving + after * lanes.slopes, self._system.INPUTS.size
+        named = {"inputs": driving[:inputs]} if inputs else {}
+        if self._system.TIME:
+            named["time"] = driving[inputs:]
+        call = Call(np.ascontiguousarray(state), lanes.parameters, np.empty(state.shape), named)
+        return self._kernel.values("rhs", call)
+
+
+# -- comparison ---------------------------------------------------------------------------------
+
+
+def _verify(system: System, choice: Choice, target: str, library: Library) -> None:
+    """Compare a fresh object with its NumPy twin by a few steps of a few members.
+
+    Steps that follow tolerances are compared where bits are promised; elsewhere a rounding may
+    decide whether a step is accepted, so that steps are fixed.
+
+    Raises:
+        CrossCheckError: They differ.
+        OutputError: The NumPy twin does not run.
+    """
+    exact = target == "c" and not system.elementary
+    fresh, twin = CStepper(library), NumpyStepper(system, choice)
+    for size in (0.0, 2.0**-7) if exact and choice.name != "rk4" else (2.0**-7,):
+        found, expected = (_probe(system, size) for _ in range(2))
+        while fresh.advance(found, 0, PROBES, 2):
+            pass  # calls that break off now and then, so that this is compared as well
+        twin.advance(expected, 0, PROBES, 1000)
+        if not _agree(found, expected, exact=exact):
+            raise CrossCheckError(
+                f"a wrong solver was compiled: {choice} of {system.name} for the target {target} "
+                "differs from its NumPy twin. Set CC to another compiler, or run `coadjoint "
+                "crosscheck` to see whether the files are at fault.",
+                rung=5,
+                system=system.name,
+                function=choice.name,
+                target=target,
+            )
+
+
+def _probe(system: System, size: float) -> Ensemble:
+    """A few members at the start of a few steps, driven by two lines, with four samples."""
+    source = np.random.default_rng(0)
+    samples = np.array([0.0, 2.0**-8, 2.0**-6, 5 * 2.0**-8])
+
+    def draw(*shape: int) -> Array:
+        return source.uniform(0.5, 2.0, shape)
+
+    run = Ensemble(
+        state=draw(system.STATE.size, PROBES),
+        parameters=draw(system.PARAMETERS.size, PROBES),
+        inputs=Inputs(
+            knots=np.array([0.0, 3 * 2.0**-8]),
+            values=draw(system.INPUTS.size, 2),
+            slopes=draw(system.INPUTS.size, 2),
+        ),
+        has_time=bool(system.TIME),
+        samples=samples,
+        out=np.full((system.STATE.size, PROBES, samples.size), np.nan),
+        rtol=1e-9,
+        atol=1e-9,
+        size=size,
+        max_steps=4,
+    )
+    run.begin(0.0)
+    return run
+
+
+def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
+    """Whether two ensembles went the same way: to the bit, or but for roundings."""
+    counts = ("status", "steps", "rejected", "next")
+    if not all(np.array_equal(getattr(found, n), getattr(expected, n)) for n in counts):
+        return False
+    pairs: Any = [(getattr(found, n), getattr(expected, n)) for n in ("state", "time", "step")]
+    pairs.append((found.out, expected.out))
+    if exact:
+        return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
+    return all(_are_close(a, b) for a, b in pairs)
+
+
+def _are_close(found: Array, expected: Array) -> bool:
+    """Whether arrays are equal but for roundings; NaN equals NaN."""
+    with np.errstate(all="ignore"):
+        size = np.abs(expected[np.isfinite(expected)]).max(initial=0.0)
+        close = np.abs(found - expected) <= ROUNDINGS * size
+    same = (found == expected) | (np.isnan(found) & np.isnan(expected))
+    return bool((close | same).all())
