@@ -82,7 +82,7 @@ class Course:
             if inputs is not None and inputs.ndim > 2:
                 inputs = inputs[at][:, 0]
             start = replace(start, state=start.state[at], inputs=inputs)
-        of_each = {
+        of_each: dict[str, Any] = {
             name: np.asarray(values[place])
             for name in ("codes", "steps", "rejected", "reached")
             if (values := getattr(self, name)) is not None
