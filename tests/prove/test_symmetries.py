@@ -66,7 +66,7 @@ def test_the_eccentricity_vector_is_a_hidden_symmetry():
     """L comes from turning positions; the flow of A commutes with the motion, and moves q by p."""
     found = statements(prove_claims(spec(KEPLER)).require())
     assert "the flow of L takes motions to motions, a transformation of positions" in found
-    hidden = "a hidden symmetry: its flow is no transformation of positions alone"
+    hidden = "a hidden symmetry: its flow is not a transformation of positions alone"
     assert f"the flow of A takes motions to motions, {hidden}" in found
     assert "reversal takes the motion to its reverse" in found
 
@@ -110,7 +110,7 @@ def test_a_map_that_cannot_be_found_is_asked_for():
     text = ('\nmap = "dot(cross(r, v) - lam*r/norm(r), xi)"', "")
     with pytest.raises(DerivationError, match=r"symmetries.L|generators.r") as caught:
         prove_claims(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, text))
-    assert "expected the momentum map beside it" in str(caught.value)
+    assert "expected the momentum map together with it" in str(caught.value)
 
 
 def test_a_generator_that_leaves_the_form_is_refused():

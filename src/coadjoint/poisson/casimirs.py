@@ -64,7 +64,7 @@ class SummandSearch:
         if not number:
             return ""
         if self.obstacle is not None:
-            return f"{number} not looked for: {self.obstacle}"
+            return f"{number} not searched for: {self.obstacle}"
         where = " and ".join([", ".join(self.searched[:-1])] * (len(self.searched) > 1))
         text = f"{number} not found among {where}{' and ' * bool(where)}{self.searched[-1]}"
         return f"{text}; {self.skipped}" if self.skipped else text
@@ -137,7 +137,7 @@ def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearc
 
     Raises:
         AlgebraError: An entry of the tensor is not a polynomial over the rationals, or a structure
-            constant is no number.
+            constant is not a number.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> casimirs(algebra_by_name("se(3)"), 2).generators
@@ -201,7 +201,7 @@ def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:
                 pair = f"[{algebra.basis[i]}, {algebra.basis[j]}]"
                 raise AlgebraError(
                     f"{algebra.name}: {pair} has the coefficient {constant}; expected rational "
-                    "numbers. Put numbers for the parameters.",
+                    "numbers. Replace the parameters by numbers.",
                     pair=[algebra.basis[i], algebra.basis[j]],
                     found=str(constant),
                 )

@@ -3,7 +3,7 @@ r"""Integrals of a motion up to a degree: all of them, by an exact linear solve.
 A function F that is a polynomial of the velocities and of the positions has unknown numbers as
 coefficients; ``dF/dt = 0`` at random points modulo a prime is linear in them. Functions that agree
 where the constraints hold, and where vectors have the length 1, count as one. Where the motion may
-run backwards, even and odd parts of an integral in the velocities are integrals, and looked for
+run backwards, even and odd parts of an integral in the velocities are integrals, and searched for
 apart.
 
 What is certain. Let b be the dimension of the space of all combinations of the monomials, as
@@ -49,18 +49,18 @@ from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
 from coadjoint.spec.spatial import spatial_momenta
 
-#: Degrees in the velocities and in the positions up to which integrals are looked for: those of
+#: Degrees in the velocities and in the positions up to which integrals are searched for: those of
 #: Jellett and Routh have the degrees (1, 1) and (2, 2).
 DEGREES = (2, 2)
-#: Monomials among which integrals are looked for; 200 take about a second.
+#: Monomials among which integrals are searched for; 200 take about a second.
 MONOMIALS = 200
 #: Products of known integrals that are tried.
 PRODUCTS = 1000
 #: How a function that a search has found is called.
 FOUND = "those found"
 #: How likely it is that more is wrong than what is certain.
-LUCK = "an error has a chance below 1e-9"
-#: Degrees in the order in which new integrals are looked for, so that generators come first.
+LUCK = "an error has a probability below 1e-9"
+#: Degrees in the order in which new integrals are searched for, so that generators come first.
 STEPS = ((1, 0), (1, 1), (2, 1), (2, 2))
 
 
@@ -253,9 +253,9 @@ def _at_defaults(motion: Motion) -> str:
 
 
 def _pass_over(search: CandidateSearch) -> Examined:
-    """That nothing was looked for, and why."""
+    """That nothing was searched for, and why."""
     names = ", ".join(each.text for each in search.known) or "constants"
-    text = f"integrals beside {names} were not looked for: {search.samples.obstacle}"
+    text = f"integrals other than {names} were not searched for: {search.samples.obstacle}"
     return text, "integrals", lambda: Discovery("no search")
 
 

@@ -36,9 +36,9 @@ from coadjoint.prove.zero import Decision, Discovery, decide_zero, random_points
 #: How the dimension of an image is decided.
 RANK = "rank of the map's derivative"
 ON_QUADRIC = "at rational points of the relation"
-#: Points of a relation of degree two at which ranks are taken, and how often they are looked for.
+#: Points of a relation of degree two at which ranks are taken, and how often they are searched for.
 POINTS, TRIES = 2, 20
-#: Points beyond as many as there are monomials, at which polynomials that vanish are looked for.
+#: Points beyond as many as there are monomials, at which polynomials that vanish are searched for.
 SPARE = 5
 
 

@@ -66,7 +66,7 @@ class Examination:
         applies: Whether it has a meaning for a motion.
         of_routes: Whether it is about the routes and not about one motion.
         kind: Of a search, which ends after some work, the kind of its findings; else "".
-        subject: Of a search, what is looked for.
+        subject: Of a search, what is searched for.
     """
 
     about: Callable[[Any], Iterator[Examined]]

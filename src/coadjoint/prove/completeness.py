@@ -26,8 +26,8 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import casimir_defects
 from coadjoint.prove.zero import Decision, Discovery, decide_zero
 
-#: Casimirs are looked for up to this degree unless told otherwise: every algebra of dimension 11 or
-#: less that books treat has all of its polynomial ones there.
+#: Casimirs are searched for up to this degree unless told otherwise: every algebra of dimension 11
+#: or less that books treat has all of its polynomial ones there.
 DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120

@@ -9,7 +9,7 @@ The left side is affine in the velocities, so the right side has to be, and with
 These conditions have a solution near almost every point if and only if the brackets of the fields
 :math:`V_k - \theta_k \partial_u`, u standing for :math:`\ln\rho`, never hold a multiple of
 :math:`\partial_u`: their rank is that of the fields :math:`V_k` and their brackets (Frobenius). At
-a random point modulo a prime both ranks are exact but for a chance of 1e-17.
+a random point modulo a prime both ranks are exact but for a probability of 1e-17.
 
 With kept constraints :math:`A\eta = b` the field X is that of the equations with multipliers, on
 all velocities. It has the residuals as integrals, so its divergence on their zero set is that of

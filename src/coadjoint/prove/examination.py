@@ -230,7 +230,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
 
     Args:
         algebra: Named or declared; constants may hold parameters.
-        degree: Up to which degree polynomial Casimirs are looked for.
+        degree: Up to which degree polynomial Casimirs are searched for.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> found = examine(algebra_by_name("se(3)"))
@@ -322,7 +322,7 @@ def _examine(
 
 
 def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
-    """Whether a function commutes with all; the point where it does not is looked for if so."""
+    """Whether a function commutes with all; the point where it does not is searched for if so."""
     if structure.is_casimir(function):
         return prove_by_normal_form(structure.field)
     return decide_zero(structure.casimir_defects(function), structure.field)

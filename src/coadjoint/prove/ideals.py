@@ -338,7 +338,7 @@ class Ideal:
         return None
 
     def _may_vanish(self, factor: Element) -> bool:
-        """Whether a factor is no relation between parameters that only the others bring about."""
+        """Whether a factor is not a relation of parameters that only the others bring about."""
         if self._declared is not None and self._is_generic(factor, self._declared):
             self._exclude(factor)
             return False

@@ -3,7 +3,7 @@ r"""Invariant measures :math:`\rho(z)\, d\eta\, dz` of motions, or that there is
 The conditions on a density are those of `coadjoint.prove.densities`: their ranks show that there is
 none, or that there is one near almost every point.
 
-Closed forms are looked for among products of powers of the minors of the matrix that the kernel
+Closed forms are searched for among products of powers of the minors of the matrix that the kernel
 solves with, and of their factors (Chaplygin 1903: the ball; Veselov and Veselova 1986; Fedorov and
 Jovanovic 2004; Borisov and Mamaev 2002: bodies of revolution). Kozlov (1987) shows that most
 systems with constraints have none.
@@ -44,7 +44,7 @@ SIZE = 6
 
 #: Characters of a factor with velocities that a statement shows; a longer one is described.
 LONGEST = 240
-#: Among what densities are looked for that depend on velocities.
+#: Among what densities are searched for that depend on velocities.
 SEARCHED = (
     "products of powers of invariant factors: {}, the common divisor of rates of up to "
     f"{COMMON} terms, and in up to {SYMBOLS} symbols of the state and {TERMS} terms the factors of "
@@ -70,7 +70,7 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
         obstacle = f"{coupled} unknowns are solved for together, more than {SIZE}"
     if obstacle:
         skipped = Discovery("no search")
-        yield f"an invariant measure was not looked for: {obstacle}", "measure", lambda: skipped
+        yield f"an invariant measure was not searched for: {obstacle}", "measure", lambda: skipped
         return
     points = list(islice(samples.points(), POINTS))
     assert points, "a motion without an obstacle has points"
@@ -104,7 +104,7 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     found, rank = contradiction
     names = [each.name for each in found if each.name != REST]
     places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(found))
-    text = f"what it asks for {' and '.join(places)} contradicts itself"
+    text = f"the conditions {' and '.join(places)} have no solution"
     count = f"{rank + 1} conditions" if rank else "1 condition"
     method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
     if _is_certain(motion, measure, samples, found, rank):

@@ -53,8 +53,8 @@ def about_reversal(motion: Motion) -> Iterator[Examined]:
     yield finding(
         "transformation",
         decision,
-        f"the motion is time reversible: it runs back with {_map_text(motion, motion.fibre)}",
-        f"the motion is not time reversible by {_map_text(motion, motion.fibre)}{scope}: {name}",
+        f"the motion is time reversible under {_map_text(motion, motion.fibre)}",
+        f"the motion is not time reversible under {_map_text(motion, motion.fibre)}{scope}: {name}",
     )
 
 
@@ -148,7 +148,7 @@ def _other_signs(motion: Motion) -> Examined | None:
     found = decide_zero(defects, field)
     if found.verdict is not Verdict.PROVED:
         return None
-    text = f"the motion is time reversible: it runs back with {_map_text(motion, signs)}"
+    text = f"the motion is time reversible under {_map_text(motion, signs)}"
     return text, "transformation", lambda: found
 
 
@@ -156,7 +156,7 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
     """The equations of the signs, and whether every solution must satisfy them.
 
     Arguments of functions, and denominators, may keep their sign or turn it; only what keeps it is
-    looked for, so that a contradiction says nothing where there are such.
+    searched for, so that a contradiction says nothing where there are such.
     """
     field, state = motion.field, {*motion.setting.state}
     found, is_complete = list[Parity](), True

@@ -1,7 +1,7 @@
 """Deciding that elements are zero: by normal form, and where that cannot tell, at points.
 
 Comes in: elements that should be zero, everywhere or where relations hold. Goes out: a verdict, a
-method, and a counter-example point for what is not zero. Points lie in the domain that is declared
+method, and a counterexample point for what is not zero. Points lie in the domain that is declared
 and on the zero set of the relations. A value refutes if interval arithmetic keeps it from zero.
 Where no point is found, nothing is decided and an error says so. Points are the same in every run,
 so that every run gives the same certificate.
@@ -341,7 +341,7 @@ def _look(
             if value:
                 written = (element, *branch.solved.values())
                 exact = not branch.rest and all(map(ring.is_function_free, written))
-                method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
+                method = f"{'exact' if exact else f'{DIGITS}-digit'} counterexample{where}"
                 shown = show_point(points, point)
                 return Decision(Verdict.REFUTED, method, shown, value)
             # without functions the element is not zero, and another point shows it

@@ -120,7 +120,7 @@ class Kernels:
 
 
 def _check_target(target: str) -> None:
-    """Refuse what is no target.
+    """Refuse what is not a target.
 
     Raises:
         KernelArgumentError: No such target.

@@ -1,7 +1,7 @@
 """The reader: a spec file to a `Spec`, the first step of all.
 
 Comes in: a path, or a text. Goes out: a frozen, checked `Spec`; or an error with file, line,
-column, source line and likely fix. Faults are looked for in the order in which they are worth
+column, source line and likely fix. Faults are searched for in the order in which they are worth
 reporting: the file (`files`), its form (`validate`), the variables and what they need, the routes
 (`consistency`), then every table (`tables`).
 Read next: `coadjoint.derive.setting`.

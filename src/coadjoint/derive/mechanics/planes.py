@@ -162,7 +162,7 @@ def _inertia(setting: Setting, planes: Sequence[tuple[Plane, Element]]) -> dict[
                 ROUTE,
                 f"the kinetic energy of {name} depends on {guilty}"
                 if coupled or moving
-                else f"the kinetic energy is no square of {name}",
+                else f"the kinetic energy is not a square of {name}",
                 guilty,
                 "a sum over the planes of a square times a function of parameters",
                 "Choose axes that decouple the planes, or declare a pair under [lax].",

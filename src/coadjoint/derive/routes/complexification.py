@@ -39,7 +39,7 @@ def derive(setting: Setting) -> Equations:
     """Equations of motion as real and imaginary parts of complex ones.
 
     Raises:
-        DerivationError: The algebra is no complexification, something is advected, or the
+        DerivationError: The algebra is not a complexification, something is advected, or the
             Hamiltonian calls functions that complex numbers here do not have.
     """
     real = real_algebra(setting)

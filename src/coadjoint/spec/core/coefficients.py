@@ -109,7 +109,7 @@ class Scalars:
         self._terms += terms
         if self._terms > PARAMETRIC_TERMS:
             problem = f"with this one, coefficients have {self._terms} terms that hold parameters"
-            hint = "Put numbers for some of the parameters."
+            hint = "Replace some of the parameters by numbers."
             raise ExpressionError(
                 problem, tree.start, tree.end, str(self._terms), hint=hint, limit="PARAMETRIC_TERMS"
             )

@@ -106,7 +106,7 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
     elif output:
         body.outputs.append((int(output[1]), read_expression(output[2], name)))
     elif line:
-        raise failure(f"kernel.c: {line!r} is no line of our template", name)
+        raise failure(f"kernel.c: {line!r} is not a line of our template", name)
 
 
 def read_expression(text: str, name: str) -> Node:
@@ -138,7 +138,7 @@ class _Reader:
             if token.lastgroup:
                 yield token.lastgroup, token[0]
         if end != len(self.text):
-            raise failure(f"kernel.c: {self.text[end:]!r} is no form of a Program", self.name)
+            raise failure(f"kernel.c: {self.text[end:]!r} is not a form of a Program", self.name)
         yield "end", ""
 
     def whole(self) -> Node:
@@ -171,7 +171,7 @@ class _Reader:
     def atom(self) -> Node:
         kind, text = self.tokens[self.at]
         self.at += 1
-        # An integer would divide as integers do, and 1e999 is no number.
+        # An integer would divide as integers do, and 1e999 is not a number.
         if kind == "number" and not text.isdigit() and isfinite(float(text)):
             return Number(Fraction(float(text)))
         if kind == "name" and self.tokens[self.at][1] != "(":
@@ -189,4 +189,4 @@ class _Reader:
         return self.tokens[self.at - 1][1]
 
     def refusal(self) -> CrossCheckError:
-        return failure(f"kernel.c: {self.text!r} is no form of a Program", self.name)
+        return failure(f"kernel.c: {self.text!r} is not a form of a Program", self.name)
