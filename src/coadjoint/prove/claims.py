@@ -83,17 +83,17 @@ def has_frame(motion: Motion) -> bool:
 
 def has_fixed_constraints(motion: Motion) -> bool:
     """Whether there are constraints that are the same at all times."""
-    found = motion.equations.distribution
-    if found is None or not found.equations:
+    distribution = motion.equations.distribution
+    if distribution is None or not distribution.equations:
         return False
-    reached = (motion.field.reach(equation.residual) for equation in found.equations)
+    reached = (motion.field.reach(equation.residual) for equation in distribution.equations)
     return not frozenset[str]().union(*reached) & {*motion.setting.driving}
 
 
 def has_linear_constraints(motion: Motion) -> bool:
     """Whether the distribution has no affine term, so that the motion has a bracket."""
-    found = motion.equations.distribution
-    return found is not None and found.is_linear
+    distribution = motion.equations.distribution
+    return distribution is not None and distribution.is_linear
 
 
 def is_free(motion: Motion) -> bool:
@@ -199,9 +199,9 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     _check_domain(spec.name, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
-        found = _examine(spec, statement, examine, field)
+        result = _examine(spec, statement, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
-        entry = make_entry(statement, kind, found, seconds)
+        entry = make_entry(statement, kind, result, seconds)
         if isinstance(entry, Claim):
             claims.append(entry)
         else:
@@ -232,8 +232,8 @@ def _examine(
         UndecidedError: No point is found at which it could fail; with the claim.
     """
     try:
-        found = examine()
-        return found if isinstance(found, Decision | Discovery) else decide_zero(found, field)
+        result = examine()
+        return result if isinstance(result, Decision | Discovery) else decide_zero(result, field)
     except UndecidedError as error:
         raise UndecidedError(
             f"{spec.name}: undecided: {statement}: {error}", system=spec.name, found=statement

@@ -135,21 +135,22 @@ def completeness(
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
     given = [setting.formula(function) for function in declared]
     given = [function for function in given if is_proved_casimir(equations, function)]
-    found = select_independent(structure, [*known, *given])[len(known) :]
+    further = select_independent(structure, [*known, *given])[len(known) :]
     missing, reached = "", 0
     generating: Sequence[int] = range(structure.dimension)
-    if len(known) + len(found) < expected:
-        search = _search(equations, structure, degree, [*known, *found])
-        found = select_independent(structure, [*known, *found, *search.generators])[len(known) :]
+    if len(known) + len(further) < expected:
+        search = _search(equations, structure, degree, [*known, *further])
+        together = select_independent(structure, [*known, *further, *search.generators])
+        further = together[len(known) :]
         missing, reached = search.missing, search.degree
         generating = _generating(structure) if search.generators else generating
-    whole = len(known) + len(found)
+    whole = len(known) + len(further)
     if whole == expected:
         missing, reached = "", 0
-    source, error = _source(structure, (*known, *found), expected)
-    scope = scope_of(structure, (*known, *found))
+    source, error = _source(structure, (*known, *further), expected)
+    scope = scope_of(structure, (*known, *further))
     return Completeness(
-        tuple(found), whole, expected, missing, tuple(generating), source, error, reached, scope
+        tuple(further), whole, expected, missing, tuple(generating), source, error, reached, scope
     )
 
 

@@ -74,9 +74,9 @@ class Measure:
     @cached_property
     def divergence(self) -> Element:
         """``div X`` in velocities and positions, which is asked for only where it is known."""
-        found = self.motion.divergence
-        assert found is not None, self.motion.equations.route
-        return found
+        divergence = self.motion.divergence
+        assert divergence is not None, self.motion.equations.route
+        return divergence
 
     @cached_property
     def allowed(self) -> Mapping[str, Element]:

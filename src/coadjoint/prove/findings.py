@@ -42,8 +42,8 @@ def finding(kind: str, decision: Decision, zero: str, nonzero: str) -> Examined:
     if decision.verdict is Verdict.REFUTED:
         proof = Decision(Verdict.PROVED, nonzero_at(decision.defect, decision.point))
         return nonzero, kind, lambda: proof
-    found = decision if decision.verdict is Verdict.PROVED else guess(decision)
-    return zero, kind, lambda: found
+    result = decision if decision.verdict is Verdict.PROVED else guess(decision)
+    return zero, kind, lambda: result
 
 
 def guess(decision: Decision) -> Discovery:

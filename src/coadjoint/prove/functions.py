@@ -160,7 +160,7 @@ class Functions:
 
     def _vector(self, argument: Element) -> dict[Any, Fraction] | None:
         """The coefficients of an argument by its products of powers; None with sums below a bar."""
-        found = dict[Any, Fraction]()
+        numbers = dict[Any, Fraction]()
         for quotient in self.field.quotients(self.field.normal(argument)):
             powers = dict[str, int]()
             for divisor, exponent in quotient.divisors:
@@ -173,8 +173,8 @@ class Functions:
                 for name, exponent in monomial.powers:
                     whole[name] = whole.get(name, 0) + exponent
                 key = tuple(sorted((name, e) for name, e in whole.items() if e))
-                found[key] = found.get(key, Fraction(0)) + monomial.number
-        return {key: x for key, x in found.items() if x}
+                numbers[key] = numbers.get(key, Fraction(0)) + monomial.number
+        return {key: x for key, x in numbers.items() if x}
 
     def _reduce(self, vectors: Sequence[Mapping[Any, Fraction]]) -> Lattice:
         """The arguments in a basis whose last members are those that do not move.
@@ -358,8 +358,8 @@ def _inverse(a: Turn) -> Turn:
 
 
 def _distinct(arguments: Iterable[Element]) -> list[Element]:
-    found = list[Element]()
+    distinct = list[Element]()
     for argument in arguments:
-        if argument not in found:
-            found.append(argument)
-    return found
+        if argument not in distinct:
+            distinct.append(argument)
+    return distinct

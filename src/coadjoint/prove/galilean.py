@@ -66,9 +66,9 @@ def _decision(
     changes: Sequence[Element],
 ) -> Decision:
     """Whether accelerations are carried along; a counterexample has the names of the spec."""
-    found = decide_zero([*transformation_defects(system, laws, g), *changes], system.field)
+    decision = decide_zero([*transformation_defects(system, laws, g), *changes], system.field)
     spoken = {inner: name for name, inner in names.items()}
-    return replace(found, point={spoken.get(n, n): value for n, value in found.point.items()})
+    return replace(decision, point={spoken.get(n, n): value for n, value in decision.point.items()})
 
 
 def _changes(

@@ -56,10 +56,10 @@ def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
             "lax",
             decide,
         )
-    found = lax_integrals(first.setting)
-    if found is not None:
-        of_pair = decisions[" ".join(found.pair.texts)]
-        yield from _about_integrals(first, found, of_pair)
+    integrals = lax_integrals(first.setting)
+    if integrals is not None:
+        of_pair = decisions[" ".join(integrals.pair.texts)]
+        yield from _about_integrals(first, integrals, of_pair)
 
 
 def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
@@ -83,27 +83,28 @@ def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
 
 
 def _about_integrals(
-    first: Equations, found: Integrals, of_pair: Callable[[], Decision]
+    first: Equations, integrals: Integrals, of_pair: Callable[[], Decision]
 ) -> Iterator[Examined]:
     """How many integrals there are, that they are conserved, and in involution."""
-    spec, names = first.spec, [name for name, _ in found.named]
-    rank = _rank(first, [each.value for each in found.coefficients])
+    spec, names = first.spec, [name for name, _ in integrals.named]
+    rank = _rank(first, [each.value for each in integrals.coefficients])
     casimirs = [f"casimir{n}" for n in range(1, len(spec.casimirs) + 1)]
     whole = ", ".join([*casimirs, *["energy"] * first.setting.has_energy, *names])
     yield (
-        f"{rank} independent integrals: the coefficients of tr L^k, k = 1 to {len(found.pair.L)}, "
-        f"are functions of {whole}",
+        f"{rank} independent integrals: the coefficients of tr L^k, "
+        f"k = 1 to {len(integrals.pair.L)}, are functions of {whole}",
         "conserved",
-        partial(_complete, first, found, rank),
+        partial(_complete, first, integrals, rank),
     )
-    again = cache(lambda: list(expanded_traces(first.setting, found.pair)))
-    for name, each in zip(names, found.emitted, strict=True):
+    again = cache(lambda: list(expanded_traces(first.setting, integrals.pair)))
+    for name, each in zip(names, integrals.emitted, strict=True):
+        power = f"{integrals.pair.spectral}^{each.power}"
         yield (
-            f"{name}, from tr L^{each.trace} at {found.pair.spectral}^{each.power}, is conserved",
+            f"{name}, from tr L^{each.trace} at {power}, is conserved",
             "conserved",
             partial(_decide_conserved, first, name, each, of_pair, again),
         )
-    pairs = list(combinations(found.emitted, 2))
+    pairs = list(combinations(integrals.emitted, 2))
     length = first.setting.field.terms
     if first.exact.poisson_tensor is not None and pairs:
         sizes = (len(length(a.value)) * len(length(b.value)) for a, b in pairs)
@@ -121,7 +122,7 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
     return generic_rank(first.setting.field, rows)
 
 
-def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Discovery:
+def _complete(first: Equations, integrals: Integrals, rank: int) -> Decision | Discovery:
     """Every coefficient depends on what is emitted, which is independent.
 
     That the emitted ones are independent is certain, that the others depend on them is not.
@@ -129,11 +130,11 @@ def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Disco
     emitted = dict(first.exact.observables)
     known = known_integrals(first.setting)
     before = _rank(first, known)
-    known += [emitted[name] for name, _ in found.named]
+    known += [emitted[name] for name, _ in integrals.named]
     own = _rank(first, known)
-    values = [each.value for each in found.coefficients]
+    values = [each.value for each in integrals.coefficients]
     together = _rank(first, [*known, *values])
-    if own == together == before + len(found.named):
+    if own == together == before + len(integrals.named):
         gradients = [slope_row(first.setting, f) for f in (*known, *values)]
         source = source_of_ranks(first.setting.field, (gradients, own))
         error = error_of_ranks(first.setting.field, gradients)
@@ -143,7 +144,7 @@ def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Disco
         Verdict.REFUTED,
         f"gradients of rank {own}, with all coefficients of rank {together}",
         {},
-        str(together - own or before + len(found.named) - own),
+        str(together - own or before + len(integrals.named) - own),
     )
 
 

@@ -77,8 +77,8 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
     refusal = _refusal(motion, measure, samples, points[0])
     if refusal is not None:
         yield refusal
-    found = _of_positions(motion, measure, samples, points) if refusal is None else None
-    yield found or _of_velocities(motion, measure, samples)
+    examined = _of_positions(motion, measure, samples, points) if refusal is None else None
+    yield examined or _of_velocities(motion, measure, samples)
 
 
 def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -> Examined | None:
@@ -101,13 +101,13 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     contradiction = measure.contradiction(point)
     if contradiction is None:
         return None
-    found, rank = contradiction
-    names = [each.name for each in found if each.name != REST]
-    places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(found))
+    conditions, rank = contradiction
+    names = [each.name for each in conditions if each.name != REST]
+    places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(conditions))
     text = f"the conditions {' and '.join(places)} have no solution"
     count = f"{rank + 1} conditions" if rank else "1 condition"
     method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
-    if _is_certain(motion, measure, samples, found, rank):
+    if _is_certain(motion, measure, samples, conditions, rank):
         proof = Decision(Verdict.PROVED, method)
         return f"{none}: {text}", "measure", lambda: proof
     guess = Discovery(method, _generic(motion).lstrip(", "), CHANCE)
@@ -118,7 +118,7 @@ def _is_certain(
     motion: Motion,
     measure: Measure,
     samples: Samples,
-    found: Sequence[Condition],
+    conditions: Sequence[Condition],
     rank: int,
 ) -> bool:
     """Whether the fields of contradicting conditions have no larger rank at other points.
@@ -128,7 +128,7 @@ def _is_certain(
     if rank == len(measure.positions) - len(samples.unit):
         return True
     whole = {each.name: each for each in measure_of(motion).conditions} if rank == 0 else {}
-    last = whole.get(found[-1].name)
+    last = whole.get(conditions[-1].name)
     return last is not None and all(map(motion.field.is_zero, last.parts[:-1]))
 
 
@@ -141,9 +141,9 @@ def _of_positions(
     were looked at for one value of the inputs.
     """
     powers = measure.exponents(_factors_of_minors(motion, measure), points)
-    found = None if powers is None else _state(motion, powers)
-    if found is not None or not measure.is_affine or motion.setting.driving:
-        return found
+    examined = None if powers is None else _state(motion, powers)
+    if examined is not None or not measure.is_affine or motion.setting.driving:
+        return examined
     search = Discovery(
         f"ranks of brackets at a random point modulo {samples.prime}",
         f"near almost every point{_generic(motion)}",
@@ -166,9 +166,9 @@ def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examin
         for search in (whole.short, whole.all):
             tried = search()
             powers = measure.powers_along([*others, *tried], samples)
-            found = None if powers is None else _state(motion, powers)
-            if found is not None:
-                return found
+            examined = None if powers is None else _state(motion, powers)
+            if examined is not None:
+                return examined
     names = ", ".join(describe(motion.field, factor) for factor in tried)
     word = motion.fibre_word
     text = f" that is a product of powers of {names}" if names else f" that depends on {word}"
@@ -212,14 +212,14 @@ def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     With numbers for the parameters it shows at once whether there are factors; the others are not
     tried, since to find that a polynomial of many symbols is irreducible may take minutes.
     """
-    whole, found = measure_of(motion), list[Element]()
+    whole, factors = measure_of(motion), list[Element]()
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
         reducible = len(find_factors(measure.field, short)) > 1
-        own = find_factors(measure.field, minor, found) if reducible else [minor]
+        own = find_factors(measure.field, minor, factors) if reducible else [minor]
         (written,) = motion.field.quotients(minor.combine())
-        found = [*own, *(divisor for divisor, _ in written.divisors), *found]
+        factors = [*own, *(divisor for divisor, _ in written.divisors), *factors]
     known = list[Element]()
-    for element in found:
+    for element in factors:
         factor = -element if leading(element) < 0 else element
         moving = motion.field.reach(motion.field.normal(factor)) & set(measure.positions)
         if moving and factor not in known:

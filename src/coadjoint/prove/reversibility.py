@@ -45,9 +45,9 @@ def about_reversal(motion: Motion) -> Iterator[Examined]:
         values = rate_defects(motion)
         name, decision = nonzero_at_a_point(values, motion.field, motion.where)
     if name and motion.is_explicit and not isinstance(motion, ConstrainedRates):
-        found = _other_signs(motion)
-        if found is not None:
-            yield found
+        examined = _other_signs(motion)
+        if examined is not None:
+            yield examined
             return
     scope = for_parameters(motion.setting, [values.get(name, motion.field.zero)])
     yield finding(
@@ -145,11 +145,11 @@ def _other_signs(motion: Motion) -> Examined | None:
         (-rate if name in signs else rate) + field.substitute(rate, back)
         for name, rate in motion.rates.items()
     ]
-    found = decide_zero(defects, field)
-    if found.verdict is not Verdict.PROVED:
+    decision = decide_zero(defects, field)
+    if decision.verdict is not Verdict.PROVED:
         return None
     text = f"the motion is time reversible under {_map_text(motion, signs)}"
-    return text, "transformation", lambda: found
+    return text, "transformation", lambda: decision
 
 
 def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
@@ -159,7 +159,7 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
     searched for, so that a contradiction says nothing where there are such.
     """
     field, state = motion.field, {*motion.setting.state}
-    found, is_complete = list[Parity](), True
+    parities, is_complete = list[Parity](), True
     for name, rate in motion.rates.items():
         if rate == 0:
             continue
@@ -171,13 +171,13 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
         for powers in (dict(each.powers) for each in written.monomials):
             odd = frozenset(n for n, e in powers.items() if e % 2)
             right = (1 + len(odd & time)) % 2
-            found.append(((odd & state) ^ {name}, right))
+            parities.append(((odd & state) ^ {name}, right))
         for element in inside:
             for quotient in field.quotients(field.normal(element).combine()):
                 for powers in (dict(each.powers) for each in quotient.monomials):
                     odd = frozenset(n for n, e in powers.items() if e % 2)
-                    found.append((odd & state, len(odd & time) % 2))
-    return found, is_complete
+                    parities.append((odd & state, len(odd & time) % 2))
+    return parities, is_complete
 
 
 def _solve_parities(parities: Sequence[Parity], state: Sequence[str]) -> list[str] | None:

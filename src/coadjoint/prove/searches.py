@@ -34,18 +34,18 @@ def within_budget(
         examined: The statements; a generator, so that none of its work is done before.
         work: The budget.
     """
-    found = list[Examined]()
+    results = list[Examined]()
     try:
         with field.budget(work):
             for statement, of_kind, examine in examined:
                 result = examine()
                 if not isinstance(result, Decision | Discovery):
                     result = decide_zero(result, field)
-                found.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
+                results.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
     except (BudgetSpent, UndecidedError, OverflowError) as error:
         end = Discovery(_why_ended(error, work), "no statement beyond those above")
-        found.append((f"{subject}: not searched further", kind, lambda: end))
-    yield from found
+        results.append((f"{subject}: not searched further", kind, lambda: end))
+    yield from results
 
 
 def _why_ended(error: Exception, work: int) -> str:

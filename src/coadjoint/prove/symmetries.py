@@ -221,10 +221,10 @@ def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision
 def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Element]:
     """The image of each component of the state, and of time and rates of inputs."""
     setting, field = motion.setting, motion.field
-    found = {name: field[name] for name in setting.state}
+    images = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
-        found |= {name: -field[name] for name in list_time_reversed(setting)}
-    return found | moved_components(setting, transformation.map)
+        images |= {name: -field[name] for name in list_time_reversed(setting)}
+    return images | moved_components(setting, transformation.map)
 
 
 def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:
