@@ -142,7 +142,15 @@ def crosscheck(
         rungs[4] = rungs[5] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
     if not subject.exact:
         rungs[5] = "not run: nothing to compare with NumPy"
-    report = Report(system.name, rungs, subject.threshold, lines, figures, equal, together)
+    report = Report(
+        system=system.name,
+        rungs=rungs,
+        threshold=subject.threshold,
+        lines=lines,
+        figures=figures,
+        equal=equal,
+        together=together,
+    )
     for name in programs:
         _check_counts(report, name, subject)
     return report

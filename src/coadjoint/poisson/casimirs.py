@@ -174,12 +174,22 @@ def search_summands(
         given = [f for f in known if set(structure.gradient(f)) <= set(places)]
         own = None if algebra is None else restrict_algebra(algebra, places)
         if len(given) >= expected:
-            result.append(SummandSearch(part, len(given), (), expected))
+            result.append(
+                SummandSearch(structure=part, known=len(given), generators=(), expected=expected)
+            )
             continue
         try:
             result.append(_search(part, own, degree, expected, given))
         except AlgebraError as error:
-            result.append(SummandSearch(part, len(given), (), expected, obstacle=error))
+            result.append(
+                SummandSearch(
+                    structure=part,
+                    known=len(given),
+                    generators=(),
+                    expected=expected,
+                    obstacle=error,
+                )
+            )
     return CasimirSearch(structure, tuple(result))
 
 
@@ -264,14 +274,14 @@ def _search(
     if known:  # long functions; these are independent of each other by now
         generators = select_independent(structure, [*known, *generators])[len(known) :]
     return SummandSearch(
-        structure,
-        len(known),
-        tuple(generators),
-        expected,
-        tuple(ways),
-        tuple(searched),
-        reached,
-        skipped,
+        structure=structure,
+        known=len(known),
+        generators=tuple(generators),
+        expected=expected,
+        ways=tuple(ways),
+        searched=tuple(searched),
+        degree=reached,
+        skipped=skipped,
     )
 
 

@@ -30,7 +30,7 @@ def about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield (
         f"the Legendre transform is invertible {invertible.where}",
         "legendre",
-        lambda: Decision(Verdict.PROVED, invertible.method),
+        lambda: Decision(verdict=Verdict.PROVED, method=invertible.method),
     )
     for equations in routes:
         yield from about_duality(equations)

@@ -166,7 +166,9 @@ class ReducedBracket:
                     if value:
                         text = str(value) if plain else mpmath.nstr(mpmath.mpf(value.mid), 15)
                         where = {name: str(x) for name, x in point.items()}
-                        return triple, Decision(Verdict.PROVED, nonzero_at(text, where))
+                        return triple, Decision(
+                            verdict=Verdict.PROVED, method=nonzero_at(text, where)
+                        )
         return None
 
     def _defects_at(self, point: Mapping[str, Fraction], plain: bool) -> dict[Triple, Any]:

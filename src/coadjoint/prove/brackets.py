@@ -53,7 +53,7 @@ def about_algebra(motion: Motion) -> Iterator[Examined]:
 def _constants(algebra: LieAlgebra) -> Decision:
     """Jacobi identity of the structure constants; they were refused if it failed."""
     algebra.check_jacobi()
-    return Decision(Verdict.PROVED, CONSTANTS)
+    return Decision(verdict=Verdict.PROVED, method=CONSTANTS)
 
 
 def about_bracket(motion: Motion) -> Iterator[Examined]:
@@ -77,7 +77,7 @@ def _jacobi(first: Equations) -> Decision:
     structure = bracket_of(first)
     with suppress(AlgebraError):  # the identity fails; the defects below show where
         if structure.lie_algebra is not None:
-            return Decision(Verdict.PROVED, CONSTANTS)
+            return Decision(verdict=Verdict.PROVED, method=CONSTANTS)
     defects = list(structure.jacobi_defects().values())
     if defects:
         return decide_zero(defects, structure.field)

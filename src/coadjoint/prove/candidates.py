@@ -224,7 +224,7 @@ def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     listed = f"polynomials in {', '.join(names)}" if names else "constants"
     size = f"a space of dimension {len(solutions)} with constants"
     if bounded and certain == len(solutions):
-        decision = Decision(Verdict.PROVED, f"{points}, from above and from below")
+        decision = Decision(verdict=Verdict.PROVED, method=f"{points}, from above and from below")
         text = f"{size}, all {listed}" if names else "none but constants"
         return f"{scope}: {text}", "integrals", lambda: decision
     others = len(search.independent(solutions))

@@ -372,7 +372,7 @@ def _decision(chart_map: ChartMap, met: bool) -> Decision | Discovery:
     """What a rank proves, if it meets its bound from the other side."""
     method = f"{RANK} {chart_map.source_of_rank}"
     if met and chart_map.is_certain:
-        return Decision(Verdict.PROVED, method)
+        return Decision(verdict=Verdict.PROVED, method=method)
     if chart_map.is_certain:
         return Discovery(method, "", chart_map.error_of_rank)
     return Discovery(method, "", "that the relations are no more than they seem is not proved")

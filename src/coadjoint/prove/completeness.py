@@ -77,7 +77,7 @@ class Completeness:
         """
         if self.error:
             return Discovery(f"{RANKS} {self.source}", self.scope, self.error)
-        return Decision(Verdict.PROVED, f"{MEET} {self.source}")
+        return Decision(verdict=Verdict.PROVED, method=f"{MEET} {self.source}")
 
     @property
     def statement(self) -> str:
@@ -150,7 +150,15 @@ def completeness(
     source, error = _source(structure, (*known, *further), expected)
     scope = scope_of(structure, (*known, *further))
     return Completeness(
-        tuple(further), whole, expected, missing, tuple(generating), source, error, reached, scope
+        found=tuple(further),
+        known=whole,
+        expected=expected,
+        missing=missing,
+        generating=tuple(generating),
+        source=source,
+        error=error,
+        degree=reached,
+        scope=scope,
     )
 
 

@@ -305,7 +305,7 @@ def _rank(distribution: Distribution) -> tuple[str, Decision]:
     rows = [{k: e for k, e in enumerate(row) if e != 0} for row in distribution.A]
     assert generic_rank(field, rows) == len(rows), "distribution refuses these"
     if not distribution.kept:
-        minor = Decision(Verdict.PROVED, "a minor of A that is 1 or -1")
+        minor = Decision(verdict=Verdict.PROVED, method="a minor of A that is 1 or -1")
         return f"{rank} everywhere, each gives a velocity", minor
     gram = _gram(distribution)
     text = "" if gram is None else element_text(field, gram)
@@ -313,10 +313,10 @@ def _rank(distribution: Distribution) -> tuple[str, Decision]:
         entire = is_entire(field, (entry for row in rows for entry in row.values()))
         where = "almost every point" + ("" if entire else " of a connected part of the domain")
         method = f"rank of A {source_of_ranks(field, (rows, len(rows)))}"
-        return f"{rank} at {where}", Decision(Verdict.PROVED, method)
+        return f"{rank} at {where}", Decision(verdict=Verdict.PROVED, method=method)
     where = "everywhere" if field.as_number(gram) is not None else f"wherever {text} is not 0"
     method = "det(A A^T) of the constraints that give no velocity"
-    return f"{rank} {where}", Decision(Verdict.PROVED, method)
+    return f"{rank} {where}", Decision(verdict=Verdict.PROVED, method=method)
 
 
 def _gram(distribution: Distribution) -> Element | None:

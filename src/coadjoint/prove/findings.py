@@ -40,7 +40,7 @@ def finding(kind: str, decision: Decision, zero: str, nonzero: str) -> Examined:
         nonzero: The statement if it is not, proved by the point that refutes the other.
     """
     if decision.verdict is Verdict.REFUTED:
-        proof = Decision(Verdict.PROVED, nonzero_at(decision.defect, decision.point))
+        proof = Decision(verdict=Verdict.PROVED, method=nonzero_at(decision.defect, decision.point))
         return nonzero, kind, lambda: proof
     result = decision if decision.verdict is Verdict.PROVED else guess(decision)
     return zero, kind, lambda: result

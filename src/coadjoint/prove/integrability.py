@@ -223,5 +223,5 @@ class Growth:
                 return guess(lower)
         decision = decide_zero(self._zeros, self._field)
         if decision.verdict is Verdict.PROVED:
-            return Decision(Verdict.PROVED, "exact minors of the matrix of brackets")
+            return Decision(verdict=Verdict.PROVED, method="exact minors of the matrix of brackets")
         return decision if decision.verdict is Verdict.REFUTED else guess(decision)

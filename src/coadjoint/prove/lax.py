@@ -77,7 +77,12 @@ def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
         if decision.verdict is not Verdict.PROVED:
             where = text_of_entry(equation.entry, equation.power, pair.spectral)
             method = f"{decision.method} in {where} of dL/dt - [L, M]"
-            return Decision(decision.verdict, method, decision.point, decision.defect)
+            return Decision(
+                verdict=decision.verdict,
+                method=method,
+                point=decision.point,
+                defect=decision.defect,
+            )
         everything.append(defect)
     return decide_zero(everything, setting.field)
 
@@ -141,10 +146,10 @@ def _complete(first: Equations, integrals: Integrals, rank: int) -> Decision | D
         scope = ALMOST + for_parameters(first.setting, [*known, *values])
         return Discovery(f"rank of the gradients {source}", scope, error)
     return Decision(
-        Verdict.REFUTED,
-        f"gradients of rank {own}, with all coefficients of rank {together}",
-        {},
-        str(together - own or before + len(integrals.named) - own),
+        verdict=Verdict.REFUTED,
+        method=f"gradients of rank {own}, with all coefficients of rank {together}",
+        point={},
+        defect=str(together - own or before + len(integrals.named) - own),
     )
 
 
@@ -160,11 +165,16 @@ def _decide_conserved(
     if len(first.setting.field.terms(value)) <= LONGEST:
         return drift(first, value)
     if of_pair().verdict is not Verdict.PROVED:
-        return Decision(Verdict.REFUTED, "the Lax equation does not hold", {}, "[L, M] - dL/dt")
+        return Decision(
+            verdict=Verdict.REFUTED,
+            method="the Lax equation does not hold",
+            point={},
+            defect="[L, M] - dL/dt",
+        )
     (same,) = (c for c in again() if (c.trace, c.power) == (each.trace, each.power))
     decision = decide_zero([same.value - value], first.setting.field)
     proved = decision.verdict is Verdict.PROVED
-    return Decision(Verdict.PROVED, TRACE_IDENTITY) if proved else decision
+    return Decision(verdict=Verdict.PROVED, method=TRACE_IDENTITY) if proved else decision
 
 
 def _bracket(first: Equations, f: Element, h: Element) -> Element:

@@ -92,11 +92,15 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
         f"{_where(samples)}{_generic(motion)}"
     )
     if not moved and (value := point.value(measure.divergence)):
-        proof = Decision(Verdict.PROVED, f"{value} at a random point modulo {samples.prime}")
+        proof = Decision(
+            verdict=Verdict.PROVED, method=f"{value} at a random point modulo {samples.prime}"
+        )
         shown_text = show_value(motion.field, measure_of(motion).divergence)
         return f"{none}: div X{shown_text}", "measure", lambda: proof
     if measure.is_affine and any(point.value(second) for second in measure.curved):
-        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
+        decision = Decision(
+            verdict=Verdict.PROVED, method=f"its value at a random point modulo {samples.prime}"
+        )
         return f"{none}: div X is not affine in {motion.fibre_word}", "measure", lambda: decision
     contradiction = measure.contradiction(point)
     if contradiction is None:
@@ -108,7 +112,7 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     count = f"{rank + 1} conditions" if rank else "1 condition"
     method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
     if _is_certain(motion, measure, samples, conditions, rank):
-        proof = Decision(Verdict.PROVED, method)
+        proof = Decision(verdict=Verdict.PROVED, method=method)
         return f"{none}: {text}", "measure", lambda: proof
     guess = Discovery(method, _generic(motion).lstrip(", "), CHANCE)
     return f"{none}: {text}", "measure", lambda: guess

@@ -138,7 +138,9 @@ def _other_signs(motion: Motion) -> Examined | None:
             return None
         scope = for_parameters(motion.setting, motion.rates.values())
         text = f"no change of signs of the state takes the motion to its reverse{scope}"
-        proof = Decision(Verdict.PROVED, "parities of the monomials of the rates, modulo 2")
+        proof = Decision(
+            verdict=Verdict.PROVED, method="parities of the monomials of the rates, modulo 2"
+        )
         return text, "transformation", lambda: proof
     back = {name: -field[name] for name in (*signs, *time)}
     defects = [

@@ -97,7 +97,14 @@ def make_entry(
 ) -> Claim | Finding:
     """The entry of the certificate for a statement: a claim if it was decided, else a finding."""
     if isinstance(result, Discovery):
-        return Finding(statement, kind, result.method, result.scope, result.error, seconds)
+        return Finding(
+            statement=statement,
+            kind=kind,
+            method=result.method,
+            scope=result.scope,
+            error=result.error,
+            seconds=seconds,
+        )
     return Claim(
         statement=statement,
         kind=kind,
@@ -170,7 +177,9 @@ def decide_zero(
     outcome = _look(left, ring, Branch(), "", defined)
     if isinstance(outcome, Decision):
         return outcome
-    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {outcome} random points")
+    return Decision(
+        verdict=Verdict.SUPPORTED, method=f"{DIGITS}-digit values at {outcome} random points"
+    )
 
 
 def refute_at_a_point(element: Element, ring: Field, where: Ideal) -> Decision | None:
@@ -196,7 +205,10 @@ def prove_by_normal_form(ring: Field) -> Decision:
 
     What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
     """
-    return Decision(Verdict.PROVED, NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM)
+    return Decision(
+        verdict=Verdict.PROVED,
+        method=NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM,
+    )
 
 
 def _decide_where(
@@ -220,7 +232,7 @@ def _decide_where(
 
 def _support(count: int, where: Ideal) -> Decision:
     method = f"{DIGITS}-digit values at {count} points where {where.scope}"
-    return Decision(Verdict.SUPPORTED, method)
+    return Decision(verdict=Verdict.SUPPORTED, method=method)
 
 
 def _decide_on_branches(
@@ -274,7 +286,7 @@ def _proof(
             raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
         empty = f"no point is found at which it has a value, where {where.scope}"
         raise UndecidedError(f"{empty}. {ADVICE}")
-    return Decision(Verdict.PROVED, f"normal form {text}{_but_for(poles, where)}")
+    return Decision(verdict=Verdict.PROVED, method=f"normal form {text}{_but_for(poles, where)}")
 
 
 def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:
@@ -343,7 +355,7 @@ def _look(
                 exact = not branch.rest and all(map(ring.is_function_free, written))
                 method = f"{'exact' if exact else f'{DIGITS}-digit'} counterexample{where}"
                 shown = show_point(points, point)
-                return Decision(Verdict.REFUTED, method, shown, value)
+                return Decision(verdict=Verdict.REFUTED, method=method, point=shown, defect=value)
             # without functions the element is not zero, and another point shows it
             seen += value is not None and (bool(branch.rest) or not ring.is_function_free(element))
             if seen == POINTS:

@@ -111,7 +111,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     following = [(each.momentum.name, each.name, each.components) for each in spatial_momenta(spec)]
     following += [(each.velocity.name, each.name, each.components) for each in spec.reduced_momenta]
     for owner, momentum, components in following:
-        reading.declare(Naming(("variables", owner), momentum, components))
+        reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)
     submanifold = REDUCTION.of(reading)
     return spec if submanifold is None else spec.restricted_to(submanifold)

@@ -111,7 +111,7 @@ def body_of(setting: Setting) -> Body:
         )
     symmetric, slopes = _potential(setting, n)
     M, Omega = (_antisymmetric(setting, n, entries) for entries in (momentum, velocity))
-    return Body(n, M, Omega, inertia, symmetric, slopes)
+    return Body(size=n, momentum=M, velocity=Omega, inertia=inertia, field=symmetric, slopes=slopes)
 
 
 def _planes(setting: Setting) -> list[tuple[Plane, Element]]:

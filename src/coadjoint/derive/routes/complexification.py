@@ -76,7 +76,9 @@ def real_algebra(setting: Setting) -> LieAlgebra:
             "complexification, too.",
         )
     inner = {pair: row for pair, row in algebra.constants.items() if max(*pair, *row) < half}
-    real = LieAlgebra(f"real part of {algebra.name}", algebra.basis[:half], inner)
+    real = LieAlgebra(
+        name=f"real part of {algebra.name}", basis=algebra.basis[:half], constants=inner
+    )
     if not same_constants(complexification(real), algebra):
         raise refusal(
             setting,
