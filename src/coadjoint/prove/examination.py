@@ -154,7 +154,7 @@ class Examination:
     def _invariants(self) -> Section:
         """Numbers and words, each with the way it was found."""
         signature = (
-            "not counted, since the constants hold parameters"
+            "not counted, since the constants contain parameters"
             if self.signature is None
             else "{} positive, {} negative, {} zero (squares of its diagonal form)".format(
                 *self.signature

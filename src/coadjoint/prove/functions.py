@@ -113,7 +113,7 @@ class Functions:
         """Why relations may be missed; the bases of arguments are made on the way."""
         for each in self.known:
             if not self.field.reach(each.argument) <= known:
-                return f"{each.function} is taken of more than the state"
+                return f"{each.function} has an argument that depends on more than the state"
             inner = self.field.functions_in(each.argument)
             if each.function != "sqrt" and any(
                 self.field.adjoined[name].function != "sqrt" for name in inner

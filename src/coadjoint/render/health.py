@@ -105,7 +105,7 @@ def _list_unlisted(folder: Path, systems: Collection[str]) -> Iterator[Problem]:
     for path in sorted(folder.iterdir()):
         if path.name not in systems and not path.is_symlink() and path.is_dir() and is_marked(path):
             yield Problem(
-                f"{path} holds a system that {MANIFEST} does not list",
+                f"{path} contains a system that {MANIFEST} does not list",
                 f"{_AGAIN} {path.name}, or remove the folder",
                 regenerates=True,
             )
