@@ -126,7 +126,7 @@ def test_a_false_claim_writes_nothing_and_shows_the_point(tmp_path, cache):
 
 
 def test_the_command_for_a_false_claim_exits_with_one(checkout):
-    """The counter-example stands on standard error, the generated tree as it was."""
+    """The counterexample stands on standard error, the generated tree as it was."""
     before = tree(checkout / "generated")
     spec = checkout / "derivations" / "rigid_body.toml"
     spec.write_text(spec.read_text().replace('"dot(Pi, Pi)"', '"dot(Pi, Pi)", "Pi1"'))

@@ -67,7 +67,7 @@ class DerivationError(CoadjointError):
 
 
 class ClaimError(CoadjointError):
-    """A claim of a spec was refuted; the message shows the counter-example point."""
+    """A claim of a spec was refuted; the message shows the counterexample point."""
 
     exit_status = 1
 

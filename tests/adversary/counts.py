@@ -35,7 +35,8 @@ _FOUND = re.compile(
 )
 #: What says that nothing was counted, and what a claim about one function says.
 _SILENT = re.compile(
-    r"(?:integrals|Casimirs): not searched further|integrals beside .+ were not looked for: .+"
+    r"(?:integrals|Casimirs): not searched further|"
+    r"integrals other than .+ were not searched for: .+"
 )
 _OF_ONE = re.compile(r".+ is (?:a Casimir|conserved)(?: .*| at the default parameters.*)?")
 _SQUARE = re.compile(r"(dot\(\w+, \w+\)) = 1")

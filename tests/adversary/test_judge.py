@@ -323,7 +323,7 @@ def test_the_dimension_of_a_space_of_integrals_is_counted(text, caught):
     [
         ("integrals: not searched further", "integrals", False),
         ("Casimirs: not searched further", "casimir", False),
-        ("integrals beside energy were not looked for: no points", "integrals", False),
+        ("integrals other than energy were not searched for: no points", "integrals", False),
         ("integrals of degree <= 2 in the velocities are all known", "integrals", True),
         ("there is no further integral", "integrals", True),
         ("all Casimirs are known", "casimir", True),
@@ -338,7 +338,7 @@ def test_every_count_is_checked(statement, kind, caught):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"method": "ranks; an error has a chance below 1e-9"}, "proved with luck"),
+        ({"method": "ranks; an error has a probability below 1e-9"}, "proved with luck"),
         ({"error": "1e-9"}, "proved with luck"),
         ({"method": ""}, "no method"),
     ],
@@ -356,7 +356,7 @@ def test_a_proved_claim_has_no_error_probability(changes, words):
         ("the motion is reversible", {"scope": "near almost every point"}, False),
         ("the motion is reversible", {"error": "numbers at some points"}, False),
         ("the motion is reversible", {"error": "numbers", "method": ""}, True),
-        ("an invariant measure was not looked for: no points", {}, False),
+        ("an invariant measure was not searched for: no points", {}, False),
         ("no invariant measure was found with a density that depends on velocities", {}, False),
     ],
 )

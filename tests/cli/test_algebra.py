@@ -188,7 +188,7 @@ def test_algebra_with_parameters_is_proved_for_all_their_values(run, twisted):
     assert found["casimirs"]["expected"] == 1
     assert "parameters" in found["casimirs"]["missing"]
     text = run("algebra", twisted).stdout
-    assert "not counted, since the constants hold parameters" in text
+    assert "not counted, since the constants contain parameters" in text
     assert "semisimple, unimodular, for almost all values of the parameters" in text
 
 

@@ -1,4 +1,4 @@
-"""`coadjoint prove` shows the certificate, and a counter-example of what is false."""
+"""`coadjoint prove` shows the certificate, and a counterexample of what is false."""
 
 from __future__ import annotations
 

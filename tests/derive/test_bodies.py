@@ -92,7 +92,7 @@ def test_complexification_refuses_real_algebras_and_functions():
 @pytest.mark.parametrize(
     ("old", "new", "found"),
     [
-        ("{ y = ", "{ z = ", "'z' is no variable"),
+        ("{ y = ", "{ z = ", "'z' is not a variable"),
         ("dot(w, w))*w", "dot(w, w))", "the value is a scalar"),
         ("dot(w, w))*w", "dot(w, w))*y", "'y'"),
         ('conserved = ["energy"', 'casimirs = ["dot(x, y)"]\nconserved = ["energy"', "'casimirs'"),

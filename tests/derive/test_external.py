@@ -111,7 +111,7 @@ def test_a_force_on_a_symmetric_matrix_pulls_both_entries_beside_the_diagonal():
 def test_noether_needs_forces_without_moment(force, kept):
     """A central force keeps angular momentum whatever its power; drag does not."""
     found = verdicts(PLANAR.replace("FORCE", force))
-    law = "J is conserved by Noether's theorem, since its flow keeps h and nothing"
+    law = "J is conserved by Noether's theorem, since its flow keeps h and forces"
     assert any(law in each for each in found) == kept
     assert set(found.values()) == {Verdict.PROVED}
 
@@ -123,7 +123,7 @@ def test_noether_needs_forces_without_moment(force, kept):
 def test_a_casimir_survives_what_is_tangent_to_its_levels(torque, kept):
     """``d Pi^2/dt = 2 Pi . f``: double brackets keep it, friction does not."""
     found = verdicts(RIGID_BODY, ("[claims]", f'[forces]\nOmega = "{torque}"\n[claims]'))
-    law = "dot(Pi, Pi) is conserved: nothing that acts changes it"
+    law = "dot(Pi, Pi) is conserved: forces and dissipation do not change it"
     assert (law in found) == kept
     assert found["dot(Pi, Pi) is a Casimir"] is Verdict.PROVED
 
@@ -199,7 +199,7 @@ REFUSED = [
         RIGID_BODY,
         ('"lie-poisson"]', '"clebsch"]'),
         '[forces]\nOmega = "-Omega"',
-        "the route clebsch knows no forces",
+        "the route clebsch does not accept [forces]",
     ),
     (
         RIGID_BODY,

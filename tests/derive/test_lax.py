@@ -33,7 +33,7 @@ GAMMA = 'Pi = { role = "momentum" }\n'
     ("changes", "said"),
     [
         ([(KINETIC, f"{KINETIC} + I1*Omega1*Omega2/5")], "Omega1 depends on Omega2"),
-        ([(KINETIC, f"{KINETIC} + I1*Omega3")], "is no square of Omega3"),
+        ([(KINETIC, f"{KINETIC} + I1*Omega3")], "is not a square of Omega3"),
         (
             [(GAMMA, GAMMA + 'Gamma = { role = "advected", representation = "vector" }\n')],
             "by the representation 'vector'",

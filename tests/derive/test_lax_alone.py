@@ -199,7 +199,7 @@ M = "rows(vector(0, 1), vector(-1, 0))/2"
         (TODA, (MOMENTUM,), "no energy to follow from"),
         (TODA, (("[lax]", '[claims]\nconserved = ["energy"]\n[lax]'),), "'energy' is not declared"),
         (TODA, (('"lax"]', '"lax", "poisson"]'),), "the route poisson starts from"),
-        (OSCILLATOR, (), "knows no bracket of coordinates with velocities or momenta"),
+        (OSCILLATOR, (), "has no bracket of coordinates with velocities or momenta"),
     ],
 )
 def test_what_cannot_be_read_is_refused(text, changes, message):

@@ -66,7 +66,7 @@ CHECKS = (
     ),
     *of(
         "measures",
-        "_refusal: rewrite _is_certain(_1, _2, _3, found, _4) -> found",
+        "_refusal: rewrite _is_certain(_1, _2, _3, conditions, _4) -> conditions",
         tests=("tests/prove/test_measures.py -k larger_rank",),
     ),
     *of(
@@ -250,12 +250,12 @@ MUTANTS = (
     *of("summands", "summands: leave reached", "restrict_algebra: then a"),
     *of(
         "measures",
-        "_is_certain: rewrite rank == len(_1) - _2 -> rank == len(_1) - _2 or found",
+        "_is_certain: rewrite rank == len(_1) - _2 -> rank == len(_1) - _2 or conditions",
     ),
     *of("densities", "powers_along: flip divergence"),
     *of("invariant_factors", "is_invariant: rewrite rate != 0 and _1 -> rate == 0 or _1"),
     *of("reversibility", "about_reversal: rewrite name and _1 -> not name"),
-    *of("prove/almost_poisson", "_defects_at: always plain in found"),
+    *of("prove/almost_poisson", "_defects_at: always plain in defects"),
     *of(
         "completeness",
         "completeness: rewrite structure.dimension - _1 -> structure.dimension + 0 * _1",

@@ -29,7 +29,7 @@ def test_what_is_no_polynomial_is_refused():
     """A parameter, a quotient and a function each have their message."""
     field = Field(["x", "m"], slots=1)
     x, m = field["x"], field["m"]
-    wrong = {"'m' is no coordinate": m * x, "a quotient": 1 / x, "'exp'": field.call("exp", x)}
+    wrong = {"'m' is not a coordinate": m * x, "a quotient": 1 / x, "'exp'": field.call("exp", x)}
     for message, element in wrong.items():
         with pytest.raises(AlgebraError, match=message):
             read_terms(field, element, ["x"])

@@ -547,7 +547,7 @@ def test_nothing_is_excluded_that_never_vanishes():
     assert excluded == {"", ", wherever sin(z) is not 0"}  # by which the edge is solved
     (refuted,) = [claim for claim in claims if claim.verdict is REFUTED]
     assert "." in refuted.counterexample["u"]  # u = v cos(z)/sin(z) has no exact value there
-    assert refuted.method == "50-digit counter-example, where edge = 0"
+    assert refuted.method == "50-digit counterexample, where edge = 0"
 
 
 def test_a_power_of_what_is_excluded_is_not_named_again():

@@ -125,7 +125,7 @@ def test_a_count_without_a_proof_is_a_finding_that_says_what_is_certain():
     assert "all are functions of energy, vtheta, vphi" in statement
     assert found.error == (
         "the bound, and that there are so many polynomials, are exact; for the rest an error has a "
-        "chance below 1e-9"
+        "probability below 1e-9"
     )
 
 
@@ -218,7 +218,7 @@ def test_functions_that_may_be_related_are_not_searched():
     change = ("vx == r*cos(phi)*vtheta", "vx == r*exp(sin(phi))*vtheta")
     ((statement, found),) = about("rolling_disk_vertical", change)
     assert found == Discovery("no search")
-    assert "were not looked for: exp is taken of functions" in statement
+    assert "were not searched for: exp is taken of functions" in statement
 
 
 #: Two wheels and a belt that slides where a is 0: u = v, and with d = x - y and E = 3 u^2/2 + k x

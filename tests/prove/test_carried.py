@@ -100,10 +100,12 @@ def test_a_spoiled_bracket_in_velocities_is_caught(monkeypatch):
 def test_drag_leaves_one_casimir_and_the_spin():
     """Gamma is only turned; Pi . Gamma loses, and the torque has no part along the third axis."""
     found = verdicts(TOP, DRAG, ('"energy", "Omega3"', '"Omega3"'), ("reverses_time = true\n", ""))
-    assert found["dot(Gamma, Gamma) is conserved: nothing that acts changes it"]
+    assert found["dot(Gamma, Gamma) is conserved: forces and dissipation do not change it"]
     mixed = "A*Omega1*Gamma1 + A*Omega2*Gamma2 + C*Omega3*Gamma3"
-    assert found[f"{mixed} changes by what acts beside the bracket alone"] is Verdict.PROVED
-    assert any("Noether" in text and "nothing that acts changes it" in text for text in found)
+    assert found[f"{mixed} changes only by forces and dissipation"] is Verdict.PROVED
+    assert any(
+        "Noether" in text and "forces and dissipation do not change it" in text for text in found
+    )
     refuted = {text for text, verdict in found.items() if verdict is Verdict.REFUTED}
     assert refuted == {"back takes the motion to itself"}
 

@@ -65,7 +65,7 @@ def test_every_claim_of_a_shipped_system_is_proved(system):
     ],
 )
 def test_a_false_claim_is_refuted_with_its_point(claim, kind):
-    """The counter-example is a point of the state, and the value there is not zero."""
+    """The counterexample is a point of the state, and the value there is not zero."""
     certificate = prove_claims(spec(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim)))
     (refuted,) = certificate.refuted
     assert refuted.kind == kind

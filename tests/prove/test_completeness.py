@@ -153,12 +153,12 @@ def test_a_casimir_that_a_parameter_hides_is_missing_and_told():
     assert certificate.holds
     (statement,) = about_casimirs(certificate)
     assert statement.startswith(
-        "0 of 1 independent Casimirs are known: 1 not looked for: {mu1, mu3}"
+        "0 of 1 independent Casimirs are known: 1 not searched for: {mu1, mu3}"
     )
-    assert "'a' is no coordinate" in statement
+    assert "'a' is not a coordinate" in statement
     (finding,) = (f for f in certificate.findings if f.kind == "casimir")
     assert finding.scope == f"{ALMOST}, for almost all parameters"
-    assert "chance below" in finding.error
+    assert "probability below" in finding.error
 
 
 def test_a_table_with_parameters_is_not_searched_and_says_so():
@@ -178,8 +178,8 @@ k = { default = 1 }
 h = "x1^2"
 """
     (statement,) = about_casimirs(prove_claims(spec(text)))
-    assert statement.startswith("0 of 1 independent Casimirs are known: 1 not looked for")
-    assert "'k' is no coordinate" in statement
+    assert statement.startswith("0 of 1 independent Casimirs are known: 1 not searched for")
+    assert "'k' is not a coordinate" in statement
     claimed = text + '[claims]\ncasimirs = ["x1^2 + x2^2 + k*x3^2"]\n'
     assert about_casimirs(prove_claims(spec(claimed)))[1:] == [
         f"every Casimir is a function of the one known, {ALMOST}, for almost all parameters"
@@ -274,7 +274,8 @@ def test_a_parameter_hides_the_casimir_of_its_own_summand_alone():
     )
     found = completeness(derive(spec(text)))
     assert (found.known, found.expected) == (1, 2)
-    assert found.missing.startswith("of the direct summand (mu1, mu2, mu3) 1 not looked for: {mu1")
+    start = "of the direct summand (mu1, mu2, mu3) 1 not searched for: {mu1"
+    assert found.missing.startswith(start)
 
 
 def test_a_claim_that_no_search_finds_completes_its_own_summand():

@@ -108,7 +108,7 @@ def test_missing_casimirs_are_told():
     (finding,) = found.certificate.findings
     assert finding.statement.startswith("0 of 2 independent Casimirs are known: 2 not found")
     assert found.casimirs.missing in finding.statement
-    assert "chance below" in finding.error
+    assert "probability below" in finding.error
     assert ("found", finding.statement) in [
         (head, text.partition(", near")[0]) for head, text in found.document().sections[-1].words
     ]

@@ -95,8 +95,8 @@ def test_the_ball_off_centre_has_no_density_of_the_attitude():
     none, other, found = refused(motion("chaplygin_ball"))
     assert none == (
         "no measure rho dOmega dGamma with a smooth positive density rho(Gamma) is invariant on "
-        "any open set of states where dot(Gamma, Gamma) = 1, for almost all parameters: what it "
-        "asks for along Omega1, Omega2, Omega3 contradicts itself"
+        "any open set of states where dot(Gamma, Gamma) = 1, for almost all parameters: the "
+        "conditions along Omega1, Omega2, Omega3 have no solution"
     )
     assert other == "no invariant measure was found with a density that depends on velocities"
     assert isinstance(found, Discovery)
@@ -137,7 +137,7 @@ def test_the_exceptions_have_one(name, changes, volume):
 @pytest.mark.parametrize(
     ("force", "reason", "power"),
     [
-        ("-r*vtheta", "what it asks for at rest contradicts itself", "-1"),
+        ("-r*vtheta", "the conditions at rest have no solution", "-1"),
         ("-r*vtheta^3", "div X is not affine in velocities", "-3"),
     ],
 )
@@ -206,7 +206,7 @@ def test_a_contradiction_of_fields_that_could_have_a_larger_rank_is_found_not_pr
     (none, found), *_ = entries(along)
     assert none.startswith("no measure rho dOmega dGamma")
     assert isinstance(found, Discovery)
-    assert "chance below" in found.error
+    assert "probability below" in found.error
 
 
 def test_what_is_not_looked_for_is_told(monkeypatch):
@@ -214,7 +214,7 @@ def test_what_is_not_looked_for_is_told(monkeypatch):
     monkeypatch.setattr("coadjoint.prove.measures.SIZE", 2)
     ((statement, found),) = entries(motion("chaplygin_ball_centred"))
     assert statement == (
-        "an invariant measure was not looked for: 3 unknowns are solved for together, more than 2"
+        "an invariant measure was not searched for: 3 unknowns are solved for together, more than 2"
     )
     assert isinstance(found, Discovery)
 

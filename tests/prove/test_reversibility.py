@@ -57,5 +57,5 @@ def test_a_force_along_a_constraint_tells_no_direction_of_time():
 def test_that_a_motion_does_not_run_back_has_the_scope_of_its_parameters():
     """With friction k of any value but 0."""
     ((statement, _, _),) = about_reversal(motion(SLEIGH, FRICTION))
-    assert "not time reversible by" in statement
+    assert "not time reversible under" in statement
     assert ", for almost all parameters: " in statement

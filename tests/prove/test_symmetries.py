@@ -66,7 +66,7 @@ def test_the_eccentricity_vector_is_a_hidden_symmetry():
     """L comes from turning positions; the flow of A commutes with the motion, and moves q by p."""
     found = statements(prove_claims(spec(KEPLER)).require())
     assert "the flow of L takes motions to motions, a transformation of positions" in found
-    hidden = "a hidden symmetry: its flow is no transformation of positions alone"
+    hidden = "a hidden symmetry: its flow is not a transformation of positions alone"
     assert f"the flow of A takes motions to motions, {hidden}" in found
     assert "reversal takes the motion to its reverse" in found
 

@@ -82,7 +82,7 @@ def test_the_engine_tells_the_wrong_derivation_from_the_motion():
     differences = [a - b for a, b in zip(ours, theirs, strict=True)]
     decision = decide_zero(differences[:3], field)
     assert decision.verdict is Verdict.REFUTED
-    assert decision.method == "exact counter-example"
+    assert decision.method == "exact counterexample"
     assert {"Omega1", "Gamma1", "m", "r"} & decision.point.keys()
     assert decide_zero(differences[3:], field).verdict is Verdict.PROVED
 

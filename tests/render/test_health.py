@@ -73,7 +73,7 @@ STATES = {
     "a lock that is none": (lambda t: pipe(t / LOCK), r"\.lock is not a file"),
     "a system of no manifest": (
         lambda t: put(t / "other" / "kernel.py", TEXTS["kernel.py"]),
-        r"other holds a system that manifest\.json does not list",
+        r"other contains a system that manifest\.json does not list",
     ),
 }
 

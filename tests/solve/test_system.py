@@ -111,7 +111,7 @@ def test_a_mixed_tree_is_refused(tmp_path):
 
 def test_a_folder_without_a_system_is_refused(tmp_path):
     """The message names the folder."""
-    with pytest.raises(OutputError, match="holds no generated system"):
+    with pytest.raises(OutputError, match="contains no generated system"):
         load_folder(tmp_path)
 
 

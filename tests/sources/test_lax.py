@@ -215,7 +215,7 @@ def test_2_4_5_the_count_of_integrals_is_found_with_its_scope():
     (finding,) = prove_claims(shipped("manakov_so4")).findings
     assert finding.statement.startswith("4 independent integrals: the coefficients of tr L^k")
     assert finding.scope == "near almost every point, for almost all parameters"
-    assert "chance below" in finding.error
+    assert "probability below" in finding.error
 
 
 def test_2_4_5_manakov_integrals_in_seven_dimensions():

@@ -615,7 +615,7 @@ ELSEWHERE = {
     "Rename the file to ": "test_names.py",
     "Give the file that it points to: ": "test_reader.py",
     "Write one with: coadjoint new NAME.": "tests/cli/test_new.py",
-    "Put numbers for some of the parameters.": "more than PARAMETRIC_TERMS terms",
+    "Replace some of the parameters by numbers.": "more than PARAMETRIC_TERMS terms",
     "Declare the algebra by its brackets.": "more than MATRIX_ENTRIES numbers",
     "Larger systems are solved inside the kernels": "a route that solves for velocities",
     "Leave form out, or declare the algebra by these matrices.": "needs 6 dimensions",

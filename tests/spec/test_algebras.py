@@ -351,7 +351,7 @@ def test_misfit_in_a_product_is_refused_at_its_place(algebra, key, found, said):
         (
             'extension = { algebra = "g(3)", cocycle = { "[K1, P1]" = 1, "[K2, P2]" = -1 } }',
             "algebra.extension.cocycle",
-            ["no 2-cocycle", "omega(J1, [K2, P3])", "-1"],
+            ["not a 2-cocycle", "omega(J1, [K2, P3])", "-1"],
         ),
         (
             'subalgebra = { algebra = "so(3)", basis = { a = "J1", b = "J2 + J1" } }',

@@ -90,7 +90,7 @@ FAULTS = [
         (ROUTES, 'routes = ["euler-lagrange"]'),
         "routes[1]",
         "euler-lagrange",
-        "knows no constraints",
+        "does not accept [constraints]",
     ),
     (
         ('"nonholonomic-hamilton-pontryagin"]', '"euler-lagrange"]'),

@@ -105,7 +105,7 @@ def test_a_new_table_is_one_record_in_the_list(gains):
         ([ALONE, ('"2*I1"', '"2*Omega1"')], "gains.gain", "'Omega1' is not declared"),
         ([ALONE, ('"2*I1"', "{ valu = 'I1' }")], "gains.gain.valu", "Did you mean 'value'?"),
         ([ALONE, ("[gains]", "[gain]")], "gain", "Did you mean 'gains'?"),
-        ([], "routes[2]", "the route lie-poisson knows no gains"),
+        ([], "routes[2]", "the route lie-poisson does not accept [gains]"),
     ],
 )
 def test_every_check_knows_the_new_table(gains, changes, key, said):

@@ -59,24 +59,38 @@ def _family(
     letters = form.partition("(")[0]
     real = "(?:,R)?" if form.endswith(",R)") else ""
     pattern = rf"{letters}\((\d{{1,6}}){real}\)"
-    return Family(form, pattern, lambda n: n >= least, f"n >= {least}", dimension, build)
+    return Family(
+        form=form,
+        pattern=pattern,
+        accepts=lambda n: n >= least,
+        sizes=f"n >= {least}",
+        dimension=dimension,
+        build=build,
+    )
 
 
 def _single(form: str, dimension: int, build: Callable[[], LieAlgebra]) -> Family:
     """A family of one."""
     pattern = re.escape(form)
-    return Family(form, pattern, lambda: True, "", lambda: dimension, build)
+    return Family(
+        form=form,
+        pattern=pattern,
+        accepts=lambda: True,
+        sizes="",
+        dimension=lambda: dimension,
+        build=build,
+    )
 
 
 FAMILIES = (
     _family("so(n)", 2, lambda n: n * (n - 1) // 2, families.so),
     Family(
-        "so(p,q)",
-        r"so\((\d{1,6}),(\d{1,6})\)",
-        lambda p, q: p >= 1 and q >= 1,
-        "p >= 1 and q >= 1",
-        lambda p, q: (p + q) * (p + q - 1) // 2,
-        families.so_indefinite,
+        form="so(p,q)",
+        pattern=r"so\((\d{1,6}),(\d{1,6})\)",
+        accepts=lambda p, q: p >= 1 and q >= 1,
+        sizes="p >= 1 and q >= 1",
+        dimension=lambda p, q: (p + q) * (p + q - 1) // 2,
+        build=families.so_indefinite,
     ),
     _family("se(n)", 2, lambda n: n * (n + 1) // 2, families.se),
     _family("su(n)", 2, lambda n: n * n - 1, families.su),
@@ -84,15 +98,22 @@ FAMILIES = (
     _family("sl(n,R)", 2, lambda n: n * n - 1, families.sl),
     _family("gl(n,R)", 1, lambda n: n * n, families.gl),
     Family(
-        "sp(2n,R)",
-        r"sp\((\d{1,6})(?:,R)?\)",
-        lambda size: size >= 2 and size % 2 == 0,
-        "an even size of at least 2",
-        lambda size: size * (size + 1) // 2,
-        families.sp,
+        form="sp(2n,R)",
+        pattern=r"sp\((\d{1,6})(?:,R)?\)",
+        accepts=lambda size: size >= 2 and size % 2 == 0,
+        sizes="an even size of at least 2",
+        dimension=lambda size: size * (size + 1) // 2,
+        build=families.sp,
     ),
     _family("h(n)", 1, lambda n: 2 * n + 1, families.heisenberg),
-    Family("R^n", r"R\^(\d{1,6})", lambda n: n >= 1, "n >= 1", lambda n: n, families.translations),
+    Family(
+        form="R^n",
+        pattern=r"R\^(\d{1,6})",
+        accepts=lambda n: n >= 1,
+        sizes="n >= 1",
+        dimension=lambda n: n,
+        build=families.translations,
+    ),
     _single("g(3)", 10, families.galilei),
     _single("bargmann", 11, families.bargmann),
     _single("aff(1)", 2, families.affine),

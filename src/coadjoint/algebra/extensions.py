@@ -54,7 +54,7 @@ def central_extension(
         # The algebra satisfies the Jacobi identity, so the defect is along Z: it is the coboundary.
         x, y, z = (algebra.basis[i] for i in error.triple)
         raise AlgebraError(
-            f"{title}: the form is no 2-cocycle: omega({x}, [{y}, {z}]) {center} + cyclic = "
+            f"{title}: the form is not a 2-cocycle: omega({x}, [{y}, {z}]) {center} + cyclic = "
             f"{error.defect}; expected 0. Check its values on the brackets of {x}, {y} and {z}.",
             triple=[x, y, z],
             defect=error.defect,

@@ -77,7 +77,7 @@ class Invariants:
                 raise AlgebraError(
                     f"{self.name}: {pair} has the coefficient {c} of {self.basis[k]}, so the "
                     "signature of the Killing form has no definite value; expected rational "
-                    "constants. Put numbers for the parameters with `over`.",
+                    "constants. Replace the parameters by numbers with `over`.",
                     found=str(c),
                 )
         return signature(self.killing_form())

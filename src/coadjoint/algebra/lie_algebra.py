@@ -102,7 +102,14 @@ class LieAlgebra(Invariants):
         constants = {pair: convert_entries(row, convert) for pair, row in self.constants.items()}
         matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
         elements = tuple(convert_entries(matrix, convert) for matrix in self.elements)
-        return LieAlgebra(self.name, self.basis, constants, self.blocks, matrices, elements)
+        return LieAlgebra(
+            name=self.name,
+            basis=self.basis,
+            constants=constants,
+            blocks=self.blocks,
+            matrices=matrices,
+            elements=elements,
+        )
 
     def bracket(self, xi: Sequence[Any], eta: Sequence[Any]) -> tuple[Any, ...]:
         """``[xi, eta]^k = c_ij^k xi^i eta^j``."""
@@ -273,7 +280,9 @@ def from_brackets(
                 pair=[basis[i], basis[j]],
             )
         constants[pair] = {k: sign * c for k, c in row.items()}
-    return LieAlgebra(name, tuple(basis), constants, blocks or {}, matrices)
+    return LieAlgebra(
+        name=name, basis=tuple(basis), constants=constants, blocks=blocks or {}, matrices=matrices
+    )
 
 
 def from_matrices(

@@ -152,7 +152,11 @@ def _check_action(
 def with_matrices(algebra: LieAlgebra, matrices: Sequence[SparseMatrix]) -> LieAlgebra:
     """The same algebra carrying matrices."""
     return LieAlgebra(
-        algebra.name, algebra.basis, algebra.constants, algebra.blocks, tuple(matrices)
+        name=algebra.name,
+        basis=algebra.basis,
+        constants=algebra.constants,
+        blocks=algebra.blocks,
+        matrices=tuple(matrices),
     )
 
 

@@ -264,7 +264,7 @@ def _make_folder(folder: Path) -> None:
     """A folder of the cache; what else stands in its place is somebody's, and stays.
 
     Raises:
-        OSError: It is no folder, or a link to one.
+        OSError: It is not a folder, or a link to one.
     """
     folder.mkdir(mode=0o700, exist_ok=True)
     if folder.is_symlink():

@@ -162,7 +162,7 @@ def find_compiler() -> Compiler:
     """The compiler of ``CC``, or the first of cc, gcc, clang and the one of the extra ``c``.
 
     Raises:
-        CompilerError: ``CC`` is no plain program name or is not there, or no compiler is found.
+        CompilerError: ``CC`` is not a plain program name or is not there, or no compiler is found.
     """
     compiler = _find(os.environ.get("CC", ""), os.environ.get("PATH", ""))
     if isinstance(compiler, CompilerError):

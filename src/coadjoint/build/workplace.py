@@ -108,7 +108,7 @@ def _is_free(path: Path) -> bool:
 
 
 def _make_and_lock(base: Path, *, folder: bool) -> tuple[Path, int]:
-    """A new file or folder and its lock; one that a sweep took before it was locked is no loss."""
+    """A new file or folder and its lock; a sweep may take it before it is locked, without loss."""
     while True:
         path = base / f"{PREFIX}{secrets.token_hex(8)}"
         if folder:

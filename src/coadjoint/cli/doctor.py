@@ -228,9 +228,7 @@ def _cache_state() -> Iterator[Finding]:
         yield Finding("cache", "heals", problem, "repaired at its next use")
     folder = chosen_folder()
     for path in list_kept(folder / SYSTEMS) if folder is not None else ():
-        for finding in _tree("own system", path, is_shipped=False):
-            heals = finding.remedy.startswith("coadjoint regenerate")
-            yield Finding(finding.what, "heals", finding.found, _RELOAD) if heals else finding
+        yield from _tree("own system", path, is_shipped=False, reloads=True)
 
 
 def _tree_state() -> Iterator[Finding]:
@@ -243,13 +241,14 @@ def _tree_state() -> Iterator[Finding]:
         yield Finding("generated", "ok", f"{folder}: unchanged since it was written")
 
 
-def _tree(what: str, folder: Path, *, is_shipped: bool) -> Iterator[Finding]:
-    """Findings about a generated tree."""
+def _tree(what: str, folder: Path, *, is_shipped: bool, reloads: bool = False) -> Iterator[Finding]:
+    """Findings about a generated tree; one that ``reloads`` is regenerated with its spec."""
     from coadjoint.render.health import tree_problems
 
     try:
         for problem in tree_problems(folder, is_shipped=is_shipped):
-            status = "heals" if problem.heals else "failed"
-            yield Finding(what, status, problem.found, problem.remedy)
+            again = reloads and problem.regenerates
+            status = "heals" if problem.heals or again else "failed"
+            yield Finding(what, status, problem.found, _RELOAD if again else problem.remedy)
     except OSError as error:
         yield Finding(what, "failed", f"{folder} cannot be read: {error.strerror or error}")

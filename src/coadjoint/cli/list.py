@@ -8,7 +8,7 @@ are read in a bounded child.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -84,16 +84,25 @@ def _entry(path: Path, output: Path, declared: Mapping[str, Any] | CoadjointErro
     """What is known of one system."""
     certificate = read_certificate(output / path.stem / "certificate.json")
     verdicts = [claim["verdict"] for claim in certificate.get("claims", [])]
-    counts = verdicts.count("proved"), verdicts.count("numerically supported"), len(verdicts)
+    entry = Entry(
+        system=path.stem,
+        dimension=0,
+        routes=(),
+        title="",
+        proved=verdicts.count("proved"),
+        supported=verdicts.count("numerically supported"),
+        claims=len(verdicts),
+        state="spec unreadable",
+    )
     if isinstance(declared, CoadjointError):
-        return Entry(path.stem, 0, (), "", *counts, "spec unreadable")
-    return Entry(
-        declared["name"],
-        len(declared["state"]),
-        tuple(declared["routes"]),
-        declared["title"],
-        *counts,
-        _state(path, output, declared["sha256"]),
+        return entry
+    return replace(
+        entry,
+        system=declared["name"],
+        dimension=len(declared["state"]),
+        routes=tuple(declared["routes"]),
+        title=declared["title"],
+        state=_state(path, output, declared["sha256"]),
     )
 
 

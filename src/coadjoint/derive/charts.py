@@ -54,9 +54,15 @@ def in_chart(
         energy: In terms of these, if it is known.
     """
     state = tuple(image.get(name, setting.field[name]) for name in setting.state)
-    chart = Chart(tuple(rates), state, through, tuple(relations))
-    exact = Exact(tuple(definitions), tuple(rates.values()), energy, (), None)
-    return Equations(setting, route, exact, (), chart)
+    chart = Chart(variables=tuple(rates), state=state, through=through, relations=tuple(relations))
+    exact = Exact(
+        definitions=tuple(definitions),
+        rates=tuple(rates.values()),
+        energy=energy,
+        emitted=(),
+        poisson_tensor=None,
+    )
+    return Equations(setting=setting, route=route, exact=exact, steps=(), chart=chart)
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:

@@ -80,7 +80,13 @@ def document(equations: Equations) -> Document:
     if equations.chart is None and equations.route == spec.routes[0]:
         sections += [part for chart in declared_charts(equations) for part in _chart(chart)]
     about = f"System {spec.name}, route {equations.route}."
-    return Document(spec.title, about, spec.source, spec.description, tuple(sections))
+    return Document(
+        title=spec.title,
+        about=about,
+        source=spec.source,
+        description=spec.description,
+        sections=tuple(sections),
+    )
 
 
 def _observables(equations: Equations) -> Iterator[Section]:
@@ -98,7 +104,13 @@ def _observables(equations: Equations) -> Iterator[Section]:
         for name, value in zip(each.components, each.values, strict=True)
     ]
     if words or lines:
-        yield Section("Observables", "emitted with the motion", "", tuple(lines), tuple(words))
+        yield Section(
+            title="Observables",
+            law="emitted with the motion",
+            law_latex="",
+            lines=tuple(lines),
+            words=tuple(words),
+        )
 
 
 def _chart(chart: Equations) -> Iterator[Section]:
@@ -108,20 +120,24 @@ def _chart(chart: Equations) -> Iterator[Section]:
     pairs = zip(chart.setting.state, own.state, strict=True)
     lines = tuple(formula_line(field, symbol(name), value) for name, value in pairs)
     where = tuple((each.text, "throughout") for each in own.relations)
-    yield Section(f"Chart {own.name}", "x = x(y)", "x = x(y)", lines, where)
+    yield Section(
+        title=f"Chart {own.name}", law="x = x(y)", law_latex="x = x(y)", lines=lines, words=where
+    )
     yield from (_section(chart, step) for step in chart.steps)
 
 
 def _definitions(definitions: Sequence[Definition]) -> Section:
     """The short names of a spec; the steps below show what they stand for in its place."""
     words = tuple((each.signature, f"= {each.in_one_line}") for each in definitions)
-    return Section("Definitions", "short names in the spec", "", (), words)
+    return Section(
+        title="Definitions", law="short names in the spec", law_latex="", lines=(), words=words
+    )
 
 
 def _section(equations: Equations, step: Step) -> Section:
     field = equations.setting.field
     lines = tuple(formula_line(field, left, right) for left, right in step.lines)
-    return Section(step.title, step.text, step.latex, lines)
+    return Section(title=step.title, law=step.text, law_latex=step.latex, lines=lines)
 
 
 def formula(field: Field, element: Element) -> Line:

@@ -46,7 +46,14 @@ def list_emitted(
 
 def emitted_energy(setting: Setting, energy: Element) -> Emitted:
     """The energy of a route."""
-    return Emitted("energy", (), ("energy",), units.of_energy(setting), (energy,), Kept.AS_ENERGY)
+    return Emitted(
+        name="energy",
+        shape=(),
+        components=("energy",),
+        unit=units.of_energy(setting),
+        values=(energy,),
+        kept=Kept.AS_ENERGY,
+    )
 
 
 @once
@@ -57,14 +64,34 @@ def _list_first(setting: Setting) -> tuple[Emitted, ...]:
     for n, casimir in enumerate(spec.casimirs, 1):
         name, unit = f"casimir{n}", units.of_formula(setting, casimir)
         names, values = component_names(name, casimir.shape), setting.components(casimir)
-        emitted.append(Emitted(name, casimir.shape, names, unit, values, Kept.UNLESS_WORKED_ON))
+        emitted.append(
+            Emitted(
+                name=name,
+                shape=casimir.shape,
+                components=names,
+                unit=unit,
+                values=values,
+                kept=Kept.UNLESS_WORKED_ON,
+            )
+        )
     for v in spec.defined:
         values, form = elements(v.components), setting.values[v.name]
-        emitted.append(Emitted(v.name, v.shape, v.components, v.unit, values, form=form))
+        emitted.append(
+            Emitted(
+                name=v.name,
+                shape=v.shape,
+                components=v.components,
+                unit=v.unit,
+                values=values,
+                form=form,
+            )
+        )
     for each in spec.constraints:
         name, unit = each.reaction, units.of_reaction(setting, each)
         names, values = each.reactions, elements(each.reactions)
-        emitted.append(Emitted(name, each.shape, names, unit, values))
+        emitted.append(
+            Emitted(name=name, shape=each.shape, components=names, unit=unit, values=values)
+        )
     return tuple(emitted)
 
 
@@ -73,11 +100,24 @@ def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterato
     for each in setting.spec.reduced_momenta:
         unit = units.of_momentum(setting, each.velocity)
         parts = tuple(values[name] for name in each.components)
-        yield Emitted(each.name, each.velocity.shape, each.components, unit, parts)
+        yield Emitted(
+            name=each.name,
+            shape=each.velocity.shape,
+            components=each.components,
+            unit=unit,
+            values=parts,
+        )
     values |= section_momenta(setting)
     for section in setting.spec.sections:
         name, kept = section.name, _find_claim(setting, section.name)
-        yield Emitted(name, (), (name,), section.unit, (values[name],), kept)
+        yield Emitted(
+            name=name,
+            shape=(),
+            components=(name,),
+            unit=section.unit,
+            values=(values[name],),
+            kept=kept,
+        )
 
 
 @once
@@ -85,12 +125,12 @@ def _declared_observables(setting: Setting) -> tuple[Emitted, ...]:
     """The observables of the spec."""
     return tuple(
         Emitted(
-            each.name,
-            each.shape,
-            each.components,
-            each.unit,
-            in_parts(setting, each.formula),
-            _find_claim(setting, each.name),
+            name=each.name,
+            shape=each.shape,
+            components=each.components,
+            unit=each.unit,
+            values=in_parts(setting, each.formula),
+            kept=_find_claim(setting, each.name),
         )
         for each in setting.spec.observables
     )
@@ -102,7 +142,15 @@ def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted
     for each in setting.spec.symmetries:
         parts, kept = values[each.name], _find_claim(setting, each.name)
         whole = in_formulas(each, parts)
-        yield Emitted(each.name, each.shape, each.components, each.unit, parts, kept, whole)
+        yield Emitted(
+            name=each.name,
+            shape=each.shape,
+            components=each.components,
+            unit=each.unit,
+            values=parts,
+            kept=kept,
+            form=whole,
+        )
 
 
 @once
@@ -111,12 +159,30 @@ def _list_last(setting: Setting) -> tuple[Emitted, ...]:
     emitted, pair = [], lax_integrals(setting)
     for name, value in () if pair is None else pair.named:
         unit = units.of_value(setting, value)
-        emitted.append(Emitted(name, (), (name,), unit, (value,), Kept.ALWAYS))
+        emitted.append(
+            Emitted(
+                name=name,
+                shape=(),
+                components=(name,),
+                unit=unit,
+                values=(value,),
+                kept=Kept.ALWAYS,
+            )
+        )
     for each in spatial_momenta(setting.spec):
         inner, kept = each.momentum, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
         seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
         parts = tuple(seen[name] for name in inner.components)
-        emitted.append(Emitted(each.name, inner.shape, each.components, inner.unit, parts, kept))
+        emitted.append(
+            Emitted(
+                name=each.name,
+                shape=inner.shape,
+                components=each.components,
+                unit=inner.unit,
+                values=parts,
+                kept=kept,
+            )
+        )
     return tuple(emitted)
 
 

@@ -164,7 +164,7 @@ class Emitted:
         unit: Unit text, "" where the declared units do not tell.
         values: The components.
         kept: When it is conserved.
-        form: What it is in formulas, where that is no array of its components.
+        form: What it is in formulas, where that is not an array of its components.
     """
 
     name: str

@@ -76,8 +76,16 @@ def restrict(setting: Setting, route: str) -> Equations:
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
     defined = (*restriction.section.items(), *restriction.velocities.items())
-    exact = Exact(defined, kept, energy, list_emitted(setting, energy), None)
-    return Equations(setting, whole.route, exact, _steps(restriction, energy, kept))
+    exact = Exact(
+        definitions=defined,
+        rates=kept,
+        energy=energy,
+        emitted=list_emitted(setting, energy),
+        poisson_tensor=None,
+    )
+    return Equations(
+        setting=setting, route=whole.route, exact=exact, steps=_steps(restriction, energy, kept)
+    )
 
 
 def _check_regular(restriction: Restriction, energy: Element) -> None:

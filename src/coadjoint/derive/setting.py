@@ -321,7 +321,9 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         more += 2
     room = len(_list_calls(spec)) * (1 + more)
     field = Field([*names, *symbols], room, positive)
-    field.region = Region(frozenset(list_components(spec.parameters)), _defaults(quantities))
+    field.region = Region(
+        parameters=frozenset(list_components(spec.parameters)), defaults=_defaults(quantities)
+    )
     values: dict[str, Value] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = assemble(quantity, values)

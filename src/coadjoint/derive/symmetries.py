@@ -76,7 +76,9 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
         generators.append(X)
     algebra = symmetry.algebra.over(setting.take_constant)
     sign = 1 if symmetry.side == "left" else -1
-    return MomentumMap(algebra, structure, tuple(generators), values, sign)
+    return MomentumMap(
+        algebra=algebra, structure=structure, generators=tuple(generators), values=values, sign=sign
+    )
 
 
 def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:

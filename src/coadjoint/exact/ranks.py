@@ -10,10 +10,10 @@ elementary functions are taken at a real point where they are defined, with boun
 every point of the connected set around it on which the entries are analytic.
 
 From above nothing is certain. Rational minors of degree d that are not zero vanish at a random
-point with a chance below d/p, about 1e-15, and not at both of two points with two primes; values of
-functions bound no such chance. A caller that needs the rank itself bounds it from above by other
-means, as Casimirs do for a bracket, or says how likely it is wrong (`error_of_ranks`). Points and
-primes are the same in every run.
+point with a probability below d/p, about 1e-15, and not at both of two points with two primes;
+values of functions bound no such probability. A caller that needs the rank itself bounds it from
+above by other means, as Casimirs do for a bracket, or says how likely it is wrong
+(`error_of_ranks`). Points and primes are the same in every run.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ from coadjoint.exact.witness import (
 Matrix = Sequence[Sequence[Element]]
 #: Points at which a rank is taken; the largest counts.
 POINTS = 2
-#: Points without a pole are looked for that often, each modulo another prime.
+#: Points without a pole are searched for that often, each modulo another prime.
 TRIES = 50
 #: How ranks are known, in words.
 MODULO = "at random points modulo a prime"
 ENCLOSED = "at a real point, with bounds that exclude zero"
 #: How likely it is that a rank is larger than the one found, in words.
-CHANCE = "the ranks are certain from below; that one is larger has a chance below 1e-12"
+CHANCE = "the ranks are certain from below; each is too small with a probability below 1e-12"
 NO_CHANCE = (
-    "the ranks are certain from below; that one is larger is excluded by values alone, which bound "
-    "no chance"
+    "the ranks are certain from below; that none is larger rests on computed values, and no "
+    "bound on the probability of an error is known"
 )
 #: Characters of an entry that a message shows.
 SHOWN = 60

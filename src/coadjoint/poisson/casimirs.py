@@ -64,7 +64,7 @@ class SummandSearch:
         if not number:
             return ""
         if self.obstacle is not None:
-            return f"{number} not looked for: {self.obstacle}"
+            return f"{number} not searched for: {self.obstacle}"
         where = " and ".join([", ".join(self.searched[:-1])] * (len(self.searched) > 1))
         text = f"{number} not found among {where}{' and ' * bool(where)}{self.searched[-1]}"
         return f"{text}; {self.skipped}" if self.skipped else text
@@ -137,7 +137,7 @@ def casimirs(of: PoissonStructure | LieAlgebra, degree: int = 4) -> CasimirSearc
 
     Raises:
         AlgebraError: An entry of the tensor is not a polynomial over the rationals, or a structure
-            constant is no number.
+            constant is not a number.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> casimirs(algebra_by_name("se(3)"), 2).generators
@@ -174,12 +174,22 @@ def search_summands(
         given = [f for f in known if set(structure.gradient(f)) <= set(places)]
         own = None if algebra is None else restrict_algebra(algebra, places)
         if len(given) >= expected:
-            result.append(SummandSearch(part, len(given), (), expected))
+            result.append(
+                SummandSearch(structure=part, known=len(given), generators=(), expected=expected)
+            )
             continue
         try:
             result.append(_search(part, own, degree, expected, given))
         except AlgebraError as error:
-            result.append(SummandSearch(part, len(given), (), expected, obstacle=error))
+            result.append(
+                SummandSearch(
+                    structure=part,
+                    known=len(given),
+                    generators=(),
+                    expected=expected,
+                    obstacle=error,
+                )
+            )
     return CasimirSearch(structure, tuple(result))
 
 
@@ -201,7 +211,7 @@ def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:
                 pair = f"[{algebra.basis[i]}, {algebra.basis[j]}]"
                 raise AlgebraError(
                     f"{algebra.name}: {pair} has the coefficient {constant}; expected rational "
-                    "numbers. Put numbers for the parameters.",
+                    "numbers. Replace the parameters by numbers.",
                     pair=[algebra.basis[i], algebra.basis[j]],
                     found=str(constant),
                 )
@@ -264,14 +274,14 @@ def _search(
     if known:  # long functions; these are independent of each other by now
         generators = select_independent(structure, [*known, *generators])[len(known) :]
     return SummandSearch(
-        structure,
-        len(known),
-        tuple(generators),
-        expected,
-        tuple(ways),
-        tuple(searched),
-        reached,
-        skipped,
+        structure=structure,
+        known=len(known),
+        generators=tuple(generators),
+        expected=expected,
+        ways=tuple(ways),
+        searched=tuple(searched),
+        degree=reached,
+        skipped=skipped,
     )
 
 

@@ -257,7 +257,7 @@ def _degree(field: Field, term: Element, names: Sequence[str]) -> int:
     bottom = frozenset[str]().union(*(field.reach(divisor) for divisor, _ in written.divisors))
     if not field.is_function_free(term) or bottom & set(names):
         raise AlgebraError(
-            f"the generator with {term} is no polynomial of the coordinates; expected the "
+            f"the generator with {term} is not a polynomial of the coordinates; expected the "
             "momentum map together with it.",
             found=str(term),
         )

@@ -60,14 +60,14 @@ def read_terms(field: Field, element: Element, names: Sequence[str]) -> dict[Exp
     other = sorted(field.reach(element) - set(names))
     if other:
         raise AlgebraError(
-            f"{other[0]!r} is no coordinate; a search for polynomials needs rational coefficients. "
-            "Put numbers for the parameters.",
+            f"{other[0]!r} is not a coordinate; a search for polynomials needs rational "
+            "coefficients. Replace the parameters by numbers.",
             found=other[0],
         )
     for generator in sorted(field.functions_in(element)):
         function = field.adjoined[generator].function
         raise AlgebraError(
-            f"the function {function!r} is no polynomial; a search needs polynomials.",
+            f"the function {function!r} is not a polynomial; a search needs polynomials.",
             found=function,
         )
     terms: dict[Exponents, Number] = {}

@@ -26,7 +26,7 @@ from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.polynomials import Number, primitive, slopes_modulo
 from coadjoint.poisson.structure import PoissonStructure
 
-#: Primes modulo which independence is looked for.
+#: Primes modulo which independence is searched for.
 PRIMES = 2
 
 #: Monomials of one weight, with the character by which the scaling coordinates act on them.

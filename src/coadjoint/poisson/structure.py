@@ -189,7 +189,7 @@ class PoissonStructure:
                     constants[i, j] = result
         central = any(self.dimension in row for row in constants.values())
         basis = (*self.names, "1") if central else self.names
-        return LieAlgebra(self.label, basis, constants)
+        return LieAlgebra(name=self.label, basis=basis, constants=constants)
 
     def _affine(self, entry: Element) -> dict[int, Fraction | Element] | None:
         """Coefficients of an entry by the place of their coordinate, the constant one last."""

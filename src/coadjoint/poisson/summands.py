@@ -70,7 +70,9 @@ def restrict_algebra(algebra: LieAlgebra, places: Sequence[int]) -> LieAlgebra:
             constants[min(a, b), max(a, b)] = turned
     basis = tuple(algebra.basis[n] for n in places)
     matrices = [algebra.matrices[n] for n in places] if algebra.matrices else []
-    return LieAlgebra(algebra.name, basis, constants, {}, _trim(matrices))
+    return LieAlgebra(
+        name=algebra.name, basis=basis, constants=constants, blocks={}, matrices=_trim(matrices)
+    )
 
 
 def _trim(matrices: Sequence[SparseMatrix]) -> tuple[SparseMatrix, ...]:

@@ -26,11 +26,11 @@ from coadjoint.prove.zero import Decision, Examined
 def about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
     """The Legendre transform and its energy, on every route."""
     pulled = LegendreMap(routes[0])
-    found = pulled.invertible
+    invertible = pulled.invertible
     yield (
-        f"the Legendre transform is invertible {found.where}",
+        f"the Legendre transform is invertible {invertible.where}",
         "legendre",
-        lambda: Decision(Verdict.PROVED, found.method),
+        lambda: Decision(verdict=Verdict.PROVED, method=invertible.method),
     )
     for equations in routes:
         yield from about_duality(equations)

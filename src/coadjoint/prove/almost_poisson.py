@@ -67,8 +67,8 @@ class ReducedBracket:
 
     def __init__(self, equations: Equations) -> None:
         assert equations.distribution is not None, equations.route
-        self.equations, self.found = equations, equations.distribution
-        self.basis = Basis(self.found)
+        self.equations, self.distribution = equations, equations.distribution
+        self.basis = Basis(self.distribution)
         self.field = equations.setting.field
         self.names = tuple(n for n in equations.setting.state if n not in self.basis.eliminated)
 
@@ -76,7 +76,7 @@ class ReducedBracket:
     def momenta(self) -> dict[str, Element]:
         """``M_k`` in velocities of the basis and positions, by the velocities that they are of."""
         fields = self.basis.fields
-        along = momenta_along(self.found.setting, list(fields.values()))
+        along = momenta_along(self.distribution.setting, list(fields.values()))
         return dict(zip(fields, map(self.basis.close, along), strict=True))
 
     @cached_property
@@ -84,7 +84,7 @@ class ReducedBracket:
         """The brackets: as emitted, or along the basis if constraints are kept."""
         emitted = self.equations.exact.poisson_tensor
         if emitted is None:
-            emitted = brackets(self.found, self.basis.fields, self.names)
+            emitted = brackets(self.distribution, self.basis.fields, self.names)
         return tuple(tuple(map(self.basis.close, row)) for row in emitted)
 
     @cached_property
@@ -115,7 +115,7 @@ class ReducedBracket:
 
         Fields that move themselves, ``dD/dt``, add ``<p, dD/dt>``.
         """
-        setting, velocities = self.found.setting, self.found.frame.velocities
+        setting, velocities = self.distribution.setting, self.distribution.frame.velocities
         forces, momenta = external_forces(setting, velocities), mechanics(setting).momenta
         defects = []
         for name, row in zip(self.names, self.tensor, strict=True):
@@ -166,7 +166,9 @@ class ReducedBracket:
                     if value:
                         text = str(value) if plain else mpmath.nstr(mpmath.mpf(value.mid), 15)
                         where = {name: str(x) for name, x in point.items()}
-                        return triple, Decision(Verdict.PROVED, nonzero_at(text, where))
+                        return triple, Decision(
+                            verdict=Verdict.PROVED, method=nonzero_at(text, where)
+                        )
         return None
 
     def _defects_at(self, point: Mapping[str, Fraction], plain: bool) -> dict[Triple, Any]:
@@ -189,7 +191,7 @@ class ReducedBracket:
             pair: [dot(row, column) for column in zip(*back, strict=True)]
             for pair, row in slopes.items()
         }
-        found = {}
+        defects = {}
         for a, b, c in combinations(range(len(self.names)), 3):
             addends = [
                 sign * x * y
@@ -197,8 +199,8 @@ class ReducedBracket:
                 for x, y in zip(tensor[first], turned[pair], strict=True)
             ]
             total = sum(addends, number(Fraction(0)))
-            found[a, b, c] = total if plain or total > 0 or total < 0 else 0
-        return found
+            defects[a, b, c] = total if plain or total > 0 or total < 0 else 0
+        return defects
 
     def label(self, place: int) -> str:
         """``M_Omega1`` of a momentum, ``Gamma1`` of a position."""
@@ -208,8 +210,8 @@ class ReducedBracket:
 
 def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
     """The bracket in momenta, which is emitted: it gives the motion and is antisymmetric."""
-    first, found = motion.equations, motion.distribution
-    if not found.is_linear:  # then H is not the energy, and the motion not J grad H
+    first, distribution = motion.equations, motion.distribution
+    if not distribution.is_linear:  # then H is not the energy, and the motion not J grad H
         return
     bracket = ReducedBracket(first)
     momenta = ", ".join(map(bracket.label, range(len(bracket.names))))

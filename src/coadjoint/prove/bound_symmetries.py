@@ -102,12 +102,12 @@ class ConstrainedAction:
         """
         if not self.sections:
             return [X.derivative(f) for X in self.generators for _, f in self.motion.kept]
-        found = []
+        rates = []
         for changes in map(self.lift, self.sections):
             names = tuple(changes)
             X = VectorField(self.field, names, tuple(changes.values()))
-            found += [X.derivative(each.residual) for each in self.motion.distribution.equations]
-        return list(map(self.motion.close, found))
+            rates += [X.derivative(each.residual) for each in self.motion.distribution.equations]
+        return list(map(self.motion.close, rates))
 
     def motion_defects(self) -> list[Element]:
         """``[Gamma, X] + dX/dt``."""

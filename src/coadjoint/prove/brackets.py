@@ -53,7 +53,7 @@ def about_algebra(motion: Motion) -> Iterator[Examined]:
 def _constants(algebra: LieAlgebra) -> Decision:
     """Jacobi identity of the structure constants; they were refused if it failed."""
     algebra.check_jacobi()
-    return Decision(Verdict.PROVED, CONSTANTS)
+    return Decision(verdict=Verdict.PROVED, method=CONSTANTS)
 
 
 def about_bracket(motion: Motion) -> Iterator[Examined]:
@@ -77,7 +77,7 @@ def _jacobi(first: Equations) -> Decision:
     structure = bracket_of(first)
     with suppress(AlgebraError):  # the identity fails; the defects below show where
         if structure.lie_algebra is not None:
-            return Decision(Verdict.PROVED, CONSTANTS)
+            return Decision(verdict=Verdict.PROVED, method=CONSTANTS)
     defects = list(structure.jacobi_defects().values())
     if defects:
         return decide_zero(defects, structure.field)
@@ -90,13 +90,13 @@ def about_hamiltonian(motion: Motion) -> Iterator[Examined]:
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
-            f"the motion by {first.route} is {{x, h}}{_beside(first)}",
+            f"the motion by {first.route} is {{x, h}}{_name_added_terms(first)}",
             "equivalence",
             partial(_bracket_defects, first, energy, tensor),
         )
 
 
-def _beside(first: Equations) -> str:
+def _name_added_terms(first: Equations) -> str:
     """What acts in addition to the energy, as the end of a statement."""
     spec, relaxation = first.spec, first.spec.relaxation
     parts = [" + dx/dt at fixed momenta"] * has_moving_momenta(first)
@@ -142,12 +142,12 @@ def _about_survival(motion: Motion, casimir: Formula) -> Iterator[Examined]:
         return
     parts = first.setting.components(casimir)
     if all(first.setting.field.is_zero(first.work(part)) for part in parts):
-        statement = f"{casimir.in_one_line} is conserved: nothing that acts changes it"
+        statement = f"{casimir.in_one_line} is conserved: forces and dissipation do not change it"
         yield statement, "conserved", lambda: [motion.rate(part) for part in parts]
         return
     gained = in_velocities(first, map(first.work, parts))
     pairs = zip(parts, gained, strict=True)
-    statement = f"{casimir.in_one_line} changes by what acts beside the bracket alone"
+    statement = f"{casimir.in_one_line} changes only by forces and dissipation"
     yield statement, "conserved", lambda: [motion.rate(part) - gain for part, gain in pairs]
 
 

@@ -3,7 +3,7 @@ r"""Integrals of a motion up to a degree: all of them, by an exact linear solve.
 A function F that is a polynomial of the velocities and of the positions has unknown numbers as
 coefficients; ``dF/dt = 0`` at random points modulo a prime is linear in them. Functions that agree
 where the constraints hold, and where vectors have the length 1, count as one. Where the motion may
-run backwards, even and odd parts of an integral in the velocities are integrals, and looked for
+run backwards, even and odd parts of an integral in the velocities are integrals, and searched for
 apart.
 
 What is certain. Let b be the dimension of the space of all combinations of the monomials, as
@@ -49,18 +49,18 @@ from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
 from coadjoint.spec.spatial import spatial_momenta
 
-#: Degrees in the velocities and in the positions up to which integrals are looked for: those of
+#: Degrees in the velocities and in the positions up to which integrals are searched for: those of
 #: Jellett and Routh have the degrees (1, 1) and (2, 2).
 DEGREES = (2, 2)
-#: Monomials among which integrals are looked for; 200 take about a second.
+#: Monomials among which integrals are searched for; 200 take about a second.
 MONOMIALS = 200
 #: Products of known integrals that are tried.
 PRODUCTS = 1000
 #: How a function that a search has found is called.
 FOUND = "those found"
 #: How likely it is that more is wrong than what is certain.
-LUCK = "an error has a chance below 1e-9"
-#: Degrees in the order in which new integrals are looked for, so that generators come first.
+LUCK = "an error has a probability below 1e-9"
+#: Degrees in the order in which new integrals are searched for, so that generators come first.
 STEPS = ((1, 0), (1, 1), (2, 1), (2, 2))
 
 
@@ -169,7 +169,7 @@ class CandidateSearch(PolynomialFamily):
     def _is_proved(self, part: Element) -> bool:
         return self.drift(part).verdict is Verdict.PROVED
 
-    def independent(self, found: Sequence[Solution[Exponents]]) -> list[int]:
+    def independent(self, solutions: Sequence[Solution[Exponents]]) -> list[int]:
         """Places of the integrals that are no functions of those before them and of known ones.
 
         Slopes at a random point tell, together with those of the relations that hold there.
@@ -178,7 +178,7 @@ class CandidateSearch(PolynomialFamily):
         parts = (*self.samples.where.relations, *(p for known in self.known for p in known.parts))
         slopes = (map(point.value, self.field.gradient(part, state)) for part in parts)
         span = SpanModulo(self.samples.prime, (dict(enumerate(row)) for row in slopes))
-        return span.add_independent(self.gradient(each) for each in found)
+        return span.add_independent(self.gradient(each) for each in solutions)
 
     def find_new(self, degrees: Degrees) -> Iterator[Element]:
         """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
@@ -187,9 +187,9 @@ class CandidateSearch(PolynomialFamily):
         fractions give functions that no proof holds for, and these are passed over.
         """
         for lower in (d for d in STEPS if d[0] <= degrees[0] and d[1] <= degrees[1]):
-            found = self.find(lower)
-            for place in self.independent(found):
-                numbers = found[place].lift()
+            solutions = self.find(lower)
+            for place in self.independent(solutions):
+                numbers = solutions[place].lift()
                 if numbers is None:
                     continue
                 element = self.write(numbers)
@@ -218,16 +218,16 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
 
 def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     """How many integrals there are: proved where bounds from both sides meet, else found."""
-    found, scope = search.find(degrees), f"integrals {_scope(search, degrees)}{where}"
+    solutions, scope = search.find(degrees), f"integrals {_scope(search, degrees)}{where}"
     (certain, names), bounded = search.polynomials(degrees), search.is_bounded(degrees)
     points = f"ranks at {len(search.drawn)} random points modulo {search.samples.prime}"
     listed = f"polynomials in {', '.join(names)}" if names else "constants"
-    size = f"a space of dimension {len(found)} with constants"
-    if bounded and certain == len(found):
-        decision = Decision(Verdict.PROVED, f"{points}, from above and from below")
+    size = f"a space of dimension {len(solutions)} with constants"
+    if bounded and certain == len(solutions):
+        decision = Decision(verdict=Verdict.PROVED, method=f"{points}, from above and from below")
         text = f"{size}, all {listed}" if names else "none but constants"
         return f"{scope}: {text}", "integrals", lambda: decision
-    others = len(search.independent(found))
+    others = len(search.independent(solutions))
     names_of = ", ".join(dict.fromkeys(each.text for each in search.known)) or "constants"
     every = f"{names_of} and of {others} more of them" if others else names_of
     most, sure = "", "that there are so many polynomials is exact"
@@ -253,9 +253,9 @@ def _at_defaults(motion: Motion) -> str:
 
 
 def _pass_over(search: CandidateSearch) -> Examined:
-    """That nothing was looked for, and why."""
+    """That nothing was searched for, and why."""
     names = ", ".join(each.text for each in search.known) or "constants"
-    text = f"integrals beside {names} were not looked for: {search.samples.obstacle}"
+    text = f"integrals other than {names} were not searched for: {search.samples.obstacle}"
     return text, "integrals", lambda: Discovery("no search")
 
 
@@ -282,12 +282,12 @@ def known_integrals(motion: Motion) -> list[Known]:
         stated[name] = [motion.close(emitted[component]) for component in components]
     pair = lax_integrals(setting)
     stated |= {} if pair is None else {name: [motion.close(x)] for name, x in pair.named}
-    known, found = {*setting.state, *setting.parameters}, list[Known]()
+    known, integrals = {*setting.state, *setting.parameters}, list[Known]()
     for text, parts in stated.items():
         plain = parts and all(motion.field.reach(part) <= known for part in parts)
         if plain and not _changes(motion, parts):
-            found.append(Known(text, tuple(parts)))
-    return found
+            integrals.append(Known(text, tuple(parts)))
+    return integrals
 
 
 def _changes(motion: Motion, parts: Sequence[Element]) -> bool:

@@ -33,7 +33,7 @@ def carry_over(motion: Motion) -> Motion:
     """
     if not isinstance(motion, ConstrainedRates):
         return motion
-    equations, found = motion.equations, motion.distribution
+    equations, distribution = motion.equations, motion.distribution
     if equations.exact.poisson_tensor is None:
         path = str(motion.spec.path)
         raise DerivationError(
@@ -46,13 +46,16 @@ def carry_over(motion: Motion) -> Motion:
     reduced = ReducedBracket(equations)
     back = inverse(reduced.turn)
     tensor = product(product(back, reduced.tensor), transpose(back))
-    acting = external_forces(motion.setting, found.frame.velocities)
-    along = dict(zip(found.independent, apply(transpose(found.B), acting), strict=True))
+    acting = external_forces(motion.setting, distribution.frame.velocities)
+    values = apply(transpose(distribution.B), acting)
+    along = dict(zip(distribution.independent, values, strict=True))
     zero = motion.field.zero
     forces = apply(back, [along.get(name, zero) for name in reduced.names])
     exact = replace(
         equations.exact,
-        definitions=tuple(each for each in equations.exact.definitions if each[0] in found.solved),
+        definitions=tuple(
+            each for each in equations.exact.definitions if each[0] in distribution.solved
+        ),
         rates=tuple(motion.written_rates.values()),
         poisson_tensor=tuple(tuple(map(motion.close, row)) for row in tensor),
         solves=(),

@@ -216,10 +216,10 @@ def failure_text(claim: Claim) -> str:
             f"a proof. {_REWRITE if claim.accepted is None else _ACCEPT}"
         )
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
-    found = f"At {point} the difference" if point else f"By {claim.method} what is left"
+    place = f"At {point} the difference" if point else f"By {claim.method} what is left"
     if claim.leaves:
-        found = f"At {point} {LEAVES}: the rate of a relation"
+        place = f"At {point} {LEAVES}: the rate of a relation"
     return (
-        f"refuted: {claim.statement}. {found} is {claim.defect}; expected 0. "
+        f"refuted: {claim.statement}. {place} is {claim.defect}; expected 0. "
         f"{_FIXES.get(claim.kind, _FIX)}"
     )

@@ -36,9 +36,9 @@ from coadjoint.prove.zero import Decision, Discovery, decide_zero, random_points
 #: How the dimension of an image is decided.
 RANK = "rank of the map's derivative"
 ON_QUADRIC = "at rational points of the relation"
-#: Points of a relation of degree two at which ranks are taken, and how often they are looked for.
+#: Points of a relation of degree two at which ranks are taken, and how often they are searched for.
 POINTS, TRIES = 2, 20
-#: Points beyond as many as there are monomials, at which polynomials that vanish are looked for.
+#: Points beyond as many as there are monomials, at which polynomials that vanish are searched for.
 SPARE = 5
 
 
@@ -128,15 +128,15 @@ class ChartMap:
     @cached_property
     def _solution(self) -> dict[str, Element]:
         """The velocities that the kernel solves for, at the image: by Cramer's rule."""
-        found = dict[str, Element]()
+        solution = dict[str, Element]()
         for solve in self.first.exact.solves:
             rows = [[*row, k] for row, k in zip(solve.matrix, solve.known, strict=True)]
             placed = [[self.pull_back(self.first.close(entry)) for entry in row] for row in rows]
             whole = determinant(tuple(tuple(row[:-1]) for row in placed))
             for n, name in enumerate(solve.names):
                 turned = tuple((*row[:n], row[-1], *row[n + 1 : -1]) for row in placed)
-                found[name] = determinant(turned) / whole
-        return found
+                solution[name] = determinant(turned) / whole
+        return solution
 
     def constraint_defects(self) -> list[Element]:
         """The constraints that the motion keeps, at the image."""
@@ -247,7 +247,7 @@ class ChartMap:
             self.domain.relations[0]
         ):
             return []
-        found = list[dict[str, Fraction]]()
+        zeros = list[dict[str, Fraction]]()
         for start in islice(random_points(self.field.names, self.field.positive), TRIES):
             corner = next(filter(self._is_on, self._corners(start)), None)
             if corner is None:
@@ -260,10 +260,10 @@ class ChartMap:
             if a + b and a - b:
                 turn = (b - a) / (a + b)
                 point = corner | {name: corner[name] + turn * x for name, x in along.items()}
-                found += [point] if self._is_on(point) and self._is_regular(point) else []
-            if len(found) == POINTS:
+                zeros += [point] if self._is_on(point) and self._is_regular(point) else []
+            if len(zeros) == POINTS:
                 break
-        return found
+        return zeros
 
     def _corners(self, start: Mapping[str, Fraction]) -> Iterator[dict[str, Fraction]]:
         """Points with one entry 1 or -1, or two of them, and parameters as given."""
@@ -297,17 +297,17 @@ class ChartMap:
         relations, and where P = 0 they are none.
         """
         state = self.first.setting.state
-        found: list[Relation] = []
+        relations: list[Relation] = []
         slopes: list[dict[int, Element]] = []
         candidates = self._candidates()  # all polynomials, once the Casimirs have been tried
-        while len(found) < len(state) - self.rank and (relation := next(candidates, None)):
+        while len(relations) < len(state) - self.rank and (relation := next(candidates, None)):
             slope = map(self.pull_back, self.field.gradient(relation.element, state))
             placed = map(self.domain.on_zero_set, slope)
             row = {n: value for n, each in enumerate(placed) if (value := self.field.normal(each))}
             if self._rank_on_domain([*slopes, row]) > len(slopes):
-                found.append(relation)
+                relations.append(relation)
                 slopes.append(row)
-        return tuple(found)
+        return tuple(relations)
 
     def _candidates(self) -> Iterator[Relation]:
         """Functions that vanish on the image, the simplest first."""
@@ -372,7 +372,7 @@ def _decision(chart_map: ChartMap, met: bool) -> Decision | Discovery:
     """What a rank proves, if it meets its bound from the other side."""
     method = f"{RANK} {chart_map.source_of_rank}"
     if met and chart_map.is_certain:
-        return Decision(Verdict.PROVED, method)
+        return Decision(verdict=Verdict.PROVED, method=method)
     if chart_map.is_certain:
         return Discovery(method, "", chart_map.error_of_rank)
     return Discovery(method, "", "that the relations are no more than they seem is not proved")

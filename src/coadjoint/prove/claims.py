@@ -66,7 +66,7 @@ class Examination:
         applies: Whether it has a meaning for a motion.
         of_routes: Whether it is about the routes and not about one motion.
         kind: Of a search, which ends after some work, the kind of its findings; else "".
-        subject: Of a search, what is looked for.
+        subject: Of a search, what is searched for.
     """
 
     about: Callable[[Any], Iterator[Examined]]
@@ -83,17 +83,17 @@ def has_frame(motion: Motion) -> bool:
 
 def has_fixed_constraints(motion: Motion) -> bool:
     """Whether there are constraints that are the same at all times."""
-    found = motion.equations.distribution
-    if found is None or not found.equations:
+    distribution = motion.equations.distribution
+    if distribution is None or not distribution.equations:
         return False
-    reached = (motion.field.reach(equation.residual) for equation in found.equations)
+    reached = (motion.field.reach(equation.residual) for equation in distribution.equations)
     return not frozenset[str]().union(*reached) & {*motion.setting.driving}
 
 
 def has_linear_constraints(motion: Motion) -> bool:
     """Whether the distribution has no affine term, so that the motion has a bracket."""
-    found = motion.equations.distribution
-    return found is not None and found.is_linear
+    distribution = motion.equations.distribution
+    return distribution is not None and distribution.is_linear
 
 
 def is_free(motion: Motion) -> bool:
@@ -133,45 +133,45 @@ def has_transform(motion: Motion) -> bool:
 
 #: All that is examined, in the order of the certificate.
 EXAMINATIONS = (
-    Examination(about_algebra),
-    Examination(about_bracket, has_bracket),
-    Examination(about_constraints, has_frame),
-    Examination(about_legendre, has_transform, of_routes=True),
-    Examination(lambda motion: about_reduction(motion.equations)),
-    Examination(about_equality, of_routes=True),
-    Examination(about_hamiltonian, has_bracket),
-    Examination(about_energy, has_energy),
-    Examination(about_kept, has_frame),
-    Examination(lambda motion: about_projection(motion.equations), has_frame),
-    Examination(about_rolling, has_frame),
-    Examination(lambda motion: about_relaxation(motion.equations), is_free),
-    Examination(about_casimirs, has_bracket),
-    Examination(lambda motion: about_casimirs(carry_over(motion)), names_bracket),
-    Examination(about_integrals),
-    Examination(about_galilean),
-    Examination(about_momenta),
-    Examination(about_reduced_bracket, has_linear_constraints),
-    Examination(about_symmetries, has_bracket),
-    Examination(lambda motion: about_symmetries(carry_over(motion)), names_bracket),
-    Examination(about_constrained_symmetries, has_constraints),
-    Examination(about_transformations),
-    Examination(about_spatial),
-    Examination(about_pairs, of_routes=True),
+    Examination(about=about_algebra),
+    Examination(about=about_bracket, applies=has_bracket),
+    Examination(about=about_constraints, applies=has_frame),
+    Examination(about=about_legendre, applies=has_transform, of_routes=True),
+    Examination(about=lambda motion: about_reduction(motion.equations)),
+    Examination(about=about_equality, of_routes=True),
+    Examination(about=about_hamiltonian, applies=has_bracket),
+    Examination(about=about_energy, applies=has_energy),
+    Examination(about=about_kept, applies=has_frame),
+    Examination(about=lambda motion: about_projection(motion.equations), applies=has_frame),
+    Examination(about=about_rolling, applies=has_frame),
+    Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
+    Examination(about=about_casimirs, applies=has_bracket),
+    Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
+    Examination(about=about_integrals),
+    Examination(about=about_galilean),
+    Examination(about=about_momenta),
+    Examination(about=about_reduced_bracket, applies=has_linear_constraints),
+    Examination(about=about_symmetries, applies=has_bracket),
+    Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
+    Examination(about=about_constrained_symmetries, applies=has_constraints),
+    Examination(about=about_transformations),
+    Examination(about=about_spatial),
+    Examination(about=about_pairs, of_routes=True),
     Examination(
-        lambda motion: about_integrability(motion.equations),
-        has_fixed_constraints,
+        about=lambda motion: about_integrability(motion.equations),
+        applies=has_fixed_constraints,
         kind="integrability",
         subject="the growth vector",
     ),
     Examination(
-        about_reduced_jacobi,
-        has_linear_constraints,
+        about=about_reduced_jacobi,
+        applies=has_linear_constraints,
         kind="jacobi",
         subject="the Jacobi identity of the reduced bracket",
     ),
-    Examination(about_reversal, kind="transformation", subject="the reversal of time"),
-    Examination(about_candidates, kind="integrals", subject="integrals"),
-    Examination(about_measure, kind="measure", subject="invariant measures"),
+    Examination(about=about_reversal, kind="transformation", subject="the reversal of time"),
+    Examination(about=about_candidates, kind="integrals", subject="integrals"),
+    Examination(about=about_measure, kind="measure", subject="invariant measures"),
 )
 
 
@@ -199,9 +199,9 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     _check_domain(spec.name, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes):  # what is found out takes its time here
-        found = _examine(spec, statement, examine, field)
+        result = _examine(spec, statement, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
-        entry = make_entry(statement, kind, found, seconds)
+        entry = make_entry(statement, kind, result, seconds)
         if isinstance(entry, Claim):
             claims.append(entry)
         else:
@@ -232,8 +232,8 @@ def _examine(
         UndecidedError: No point is found at which it could fail; with the claim.
     """
     try:
-        found = examine()
-        return found if isinstance(found, Decision | Discovery) else decide_zero(found, field)
+        result = examine()
+        return result if isinstance(result, Decision | Discovery) else decide_zero(result, field)
     except UndecidedError as error:
         raise UndecidedError(
             f"{spec.name}: undecided: {statement}: {error}", system=spec.name, found=statement

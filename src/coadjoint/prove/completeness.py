@@ -26,8 +26,8 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.identities import casimir_defects
 from coadjoint.prove.zero import Decision, Discovery, decide_zero
 
-#: Casimirs are looked for up to this degree unless told otherwise: every algebra of dimension 11 or
-#: less that books treat has all of its polynomial ones there.
+#: Casimirs are searched for up to this degree unless told otherwise: every algebra of dimension 11
+#: or less that books treat has all of its polynomial ones there.
 DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
@@ -77,7 +77,7 @@ class Completeness:
         """
         if self.error:
             return Discovery(f"{RANKS} {self.source}", self.scope, self.error)
-        return Decision(Verdict.PROVED, f"{MEET} {self.source}")
+        return Decision(verdict=Verdict.PROVED, method=f"{MEET} {self.source}")
 
     @property
     def statement(self) -> str:
@@ -135,21 +135,30 @@ def completeness(
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
     given = [setting.formula(function) for function in declared]
     given = [function for function in given if is_proved_casimir(equations, function)]
-    found = select_independent(structure, [*known, *given])[len(known) :]
+    further = select_independent(structure, [*known, *given])[len(known) :]
     missing, reached = "", 0
     generating: Sequence[int] = range(structure.dimension)
-    if len(known) + len(found) < expected:
-        search = _search(equations, structure, degree, [*known, *found])
-        found = select_independent(structure, [*known, *found, *search.generators])[len(known) :]
+    if len(known) + len(further) < expected:
+        search = _search(equations, structure, degree, [*known, *further])
+        together = select_independent(structure, [*known, *further, *search.generators])
+        further = together[len(known) :]
         missing, reached = search.missing, search.degree
         generating = _generating(structure) if search.generators else generating
-    whole = len(known) + len(found)
+    whole = len(known) + len(further)
     if whole == expected:
         missing, reached = "", 0
-    source, error = _source(structure, (*known, *found), expected)
-    scope = scope_of(structure, (*known, *found))
+    source, error = _source(structure, (*known, *further), expected)
+    scope = scope_of(structure, (*known, *further))
     return Completeness(
-        tuple(found), whole, expected, missing, tuple(generating), source, error, reached, scope
+        found=tuple(further),
+        known=whole,
+        expected=expected,
+        missing=missing,
+        generating=tuple(generating),
+        source=source,
+        error=error,
+        degree=reached,
+        scope=scope,
     )
 
 

@@ -51,9 +51,9 @@ class ConstrainedRates(Motion):
     @property
     def distribution(self) -> Distribution:
         """The velocities that the constraints allow."""
-        found = self.equations.distribution
-        assert found is not None, self.equations.route
-        return found
+        distribution = self.equations.distribution
+        assert distribution is not None, self.equations.route
+        return distribution
 
     @cached_property
     def fibre(self) -> tuple[str, ...]:
@@ -175,11 +175,12 @@ class ConstrainedRates(Motion):
     @cached_property
     def _directions(self) -> list[dict[str, Element]]:
         """The velocities and the declared sections, by the names of the accelerations."""
-        found = self.distribution
+        distribution = self.distribution
         sections = (section_components(self.setting, each) for each in self.spec.sections)
-        velocities = self.equations.setting.elements(found.independent)
+        velocities = self.equations.setting.elements(distribution.independent)
+        names = list(map(rate_name, distribution.independent))
         return [
-            dict(zip(map(rate_name, found.independent), map(self.close, values), strict=True))
+            dict(zip(names, map(self.close, values), strict=True))
             for values in (velocities, *sections)
         ]
 
@@ -268,11 +269,11 @@ def motion_of(equations: Equations) -> Motion:
 
 def about_constraints(motion: ConstrainedRates) -> Iterator[Examined]:
     """The constraints, and the solve in the kernel."""
-    found = motion.distribution
-    if found.equations:
-        count = len(found.equations)
+    distribution = motion.distribution
+    if distribution.equations:
+        count = len(distribution.equations)
         text = f"the {count} constraints are" if count > 1 else "the constraint is"
-        rank, decision = _rank(found)
+        rank, decision = _rank(distribution)
         yield f"{text} independent: {rank}", "constraint", lambda: decision
     matrix, factored = "B^T M B", "L D L^T"
     if not all(solve.symmetric for solve in motion.equations.exact.solves):
@@ -298,48 +299,48 @@ def _residual_rate(motion: ConstrainedRates, residual: Element) -> list[Element]
     return [motion.rate(residual)]
 
 
-def _rank(found: Distribution) -> tuple[str, Decision]:
+def _rank(distribution: Distribution) -> tuple[str, Decision]:
     """The rank of A, which the derivation has refused to be less, where it is certain, and how."""
-    field, rank = found.setting.field, f"rank {len(found.equations)}"
-    rows = [{k: e for k, e in enumerate(row) if e != 0} for row in found.A]
+    field, rank = distribution.setting.field, f"rank {len(distribution.equations)}"
+    rows = [{k: e for k, e in enumerate(row) if e != 0} for row in distribution.A]
     assert generic_rank(field, rows) == len(rows), "distribution refuses these"
-    if not found.kept:
-        minor = Decision(Verdict.PROVED, "a minor of A that is 1 or -1")
+    if not distribution.kept:
+        minor = Decision(verdict=Verdict.PROVED, method="a minor of A that is 1 or -1")
         return f"{rank} everywhere, each gives a velocity", minor
-    gram = _gram(found)
+    gram = _gram(distribution)
     text = "" if gram is None else element_text(field, gram)
     if gram is None or len(text) > SHORT:
         entire = is_entire(field, (entry for row in rows for entry in row.values()))
         where = "almost every point" + ("" if entire else " of a connected part of the domain")
         method = f"rank of A {source_of_ranks(field, (rows, len(rows)))}"
-        return f"{rank} at {where}", Decision(Verdict.PROVED, method)
+        return f"{rank} at {where}", Decision(verdict=Verdict.PROVED, method=method)
     where = "everywhere" if field.as_number(gram) is not None else f"wherever {text} is not 0"
     method = "det(A A^T) of the constraints that give no velocity"
-    return f"{rank} {where}", Decision(Verdict.PROVED, method)
+    return f"{rank} {where}", Decision(verdict=Verdict.PROVED, method=method)
 
 
-def _gram(found: Distribution) -> Element | None:
+def _gram(distribution: Distribution) -> Element | None:
     """``det(A A^T)`` of the constraints that are kept, in the velocities of the state.
 
     Over the real numbers it is zero exactly where these depend on each other. None of more than
     three, whose determinant would fill a page.
     """
-    products = _products(found)
+    products = _products(distribution)
     if len(products) > LARGEST_BLOCK:
         return None
-    return found.setting.field.normal(determinant(products))
+    return distribution.setting.field.normal(determinant(products))
 
 
-def _rank_drops(found: Distribution) -> list[Element]:
+def _rank_drops(distribution: Distribution) -> list[Element]:
     """What is zero where the constraints that are kept depend on each other."""
-    products = _products(found)
+    products = _products(distribution)
     rows = [row[n] for n, row in enumerate(products)]
     return [*rows, determinant(products)] if 1 < len(products) <= LARGEST_BLOCK else rows
 
 
-def _products(found: Distribution) -> tuple[Row, ...]:
+def _products(distribution: Distribution) -> tuple[Row, ...]:
     """``A A^T`` of the constraints that are kept, in the velocities of the state."""
-    field, rows = found.setting.field, [row[:-1] for row in found.kept_rows]
+    field, rows = distribution.setting.field, [row[:-1] for row in distribution.kept_rows]
     return tuple(
         tuple(field.sum(x * y for x, y in zip(a, b, strict=True)) for b in rows) for a in rows
     )
@@ -396,9 +397,9 @@ def same_solves(first: Equations, other: Equations) -> list[Element]:
 
 def _linear_equations(equations: Equations) -> dict[tuple[str, str], Element]:
     """A and b of all solves in the state: entries by the names of row and column, "" for b."""
-    found = dict[tuple[str, str], Element]()
+    slopes = dict[tuple[str, str], Element]()
     for solve in equations.exact.solves:
         for name, row, known in zip(solve.names, solve.matrix, solve.known, strict=True):
             entries = zip((*solve.names, ""), (*row, known), strict=True)
-            found |= {(name, by): equations.close(entry) for by, entry in entries}
-    return found
+            slopes |= {(name, by): equations.close(entry) for by, entry in entries}
+    return slopes

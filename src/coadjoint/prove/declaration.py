@@ -73,12 +73,12 @@ def _quantity(declared: Declared) -> Quantity:
     """What is declared as the generated package declares it."""
     default = getattr(declared, "default", None)
     return Quantity(
-        declared.name,
-        declared.shape,
-        declared.unit,
-        declared.components,
-        None if default is None else tuple(map(float, default)),
-        getattr(declared, "positive", False),
+        name=declared.name,
+        shape=declared.shape,
+        unit=declared.unit,
+        components=declared.components,
+        default=None if default is None else tuple(map(float, default)),
+        positive=getattr(declared, "positive", False),
     )
 
 
@@ -86,7 +86,14 @@ def _declare_followed(spec: Spec, each: Reconstructed) -> Quantity:
     """What is reconstructed as the generated package declares it."""
     upright = spec.rolling.normal if spec.rolling and each.attitude and each.of_rolling else ""
     default = None if each.default is None else tuple(map(float, each.default))
-    return Quantity(each.name, each.shape, each.unit, each.components, default, upright=upright)
+    return Quantity(
+        name=each.name,
+        shape=each.shape,
+        unit=each.unit,
+        components=each.components,
+        default=default,
+        upright=upright,
+    )
 
 
 def _observable(equations: Equations, each: Emitted) -> Quantity:

@@ -9,7 +9,7 @@ The left side is affine in the velocities, so the right side has to be, and with
 These conditions have a solution near almost every point if and only if the brackets of the fields
 :math:`V_k - \theta_k \partial_u`, u standing for :math:`\ln\rho`, never hold a multiple of
 :math:`\partial_u`: their rank is that of the fields :math:`V_k` and their brackets (Frobenius). At
-a random point modulo a prime both ranks are exact but for a chance of 1e-17.
+a random point modulo a prime both ranks are exact but for a probability of 1e-17.
 
 With kept constraints :math:`A\eta = b` the field X is that of the equations with multipliers, on
 all velocities. It has the residuals as integrals, so its divergence on their zero set is that of
@@ -74,9 +74,9 @@ class Measure:
     @cached_property
     def divergence(self) -> Element:
         """``div X`` in velocities and positions, which is asked for only where it is known."""
-        found = self.motion.divergence
-        assert found is not None, self.motion.equations.route
-        return found
+        divergence = self.motion.divergence
+        assert divergence is not None, self.motion.equations.route
+        return divergence
 
     @cached_property
     def allowed(self) -> Mapping[str, Element]:

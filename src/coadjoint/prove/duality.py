@@ -34,8 +34,8 @@ def about_duality(equations: Equations) -> Iterator[Examined]:
         return  # with magnetic terms velocities are no derivatives of l by definition
     with suppress(DerivationError):
         momenta = _momenta(equations)
-        found = partial(_defects, equations, momenta)
-        yield "p . v - h(p), at v = dh/dp, is l on the route canonical", "legendre", found
+        examine = partial(_defects, equations, momenta)
+        yield "p . v - h(p), at v = dh/dp, is l on the route canonical", "legendre", examine
 
 
 def _momenta(equations: Equations) -> tuple[Element, ...]:

@@ -30,9 +30,9 @@ from coadjoint.prove.relaxation import is_dissipative
 
 def keeps_energy(equations: Equations) -> bool:
     """Whether nothing changes the energy: forces, double brackets, moving constraints or time."""
-    spec, found = equations.spec, equations.distribution
+    spec, distribution = equations.spec, equations.distribution
     acted_on = spec.is_forced or (spec.relaxation is not None and spec.relaxation.S is None)
-    moved = found is not None and not found.is_linear
+    moved = distribution is not None and not distribution.is_linear
     return not acted_on and not moved and not changes_by_time(equations)
 
 
@@ -113,11 +113,11 @@ class Balance:
 
     @cached_property
     def _velocities(self) -> tuple[str, ...]:
-        found, reduction = self._distribution, self.spec.reduction
+        distribution, reduction = self._distribution, self.spec.reduction
         if reduction is not None:  # R names those of the whole system
             moving = reduction.whole.having_role("velocity")
             return tuple(name for each in moving for name in each.components)
-        return self.setting.velocities if found is None else found.frame.velocities
+        return self.setting.velocities if distribution is None else distribution.frame.velocities
 
     @property
     def _distribution(self) -> Distribution | None:
@@ -146,22 +146,22 @@ class Balance:
 
     def _work_along_velocities(self) -> list[Element]:
         """``<f, xi> - <dR/dxi, xi>``, each force with the velocity that it is declared for."""
-        found = [-self._lost]
+        terms = [-self._lost]
         for variable in self.spec.having_role("velocity"):
             if variable.name in self.spec.forces:
                 force = self.spec.forces[variable.name]
                 parts = self.setting.components(force, self.setting.reactions)
                 moved = self.setting.elements(variable.components)
-                found += [f * xi for f, xi in zip(parts, moved, strict=True)]
-        return found
+                terms += [f * xi for f, xi in zip(parts, moved, strict=True)]
+        return terms
 
     def _work_of_constraints(self) -> list[Element]:
         """``-lambda r`` with the residual r of each constraint at rest."""
-        found = self._distribution
-        if found is None:
+        distribution = self._distribution
+        if distribution is None:
             return []
-        rest = dict.fromkeys(found.frame.velocities, self.field.zero)
+        rest = dict.fromkeys(distribution.frame.velocities, self.field.zero)
         return [
             -self.field.substitute(each.residual, rest) * self.field[each.reaction]
-            for each in found.equations
+            for each in distribution.equations
         ]

@@ -116,10 +116,10 @@ class LegendreMap:
             for defect in solution_defects(
                 self.setting.field,
                 Solve(
-                    matrix,
-                    [known[i] for i in block],
-                    block,
-                    [self.setting.velocities[i] for i in block],
+                    matrix=matrix,
+                    known=[known[i] for i in block],
+                    block=block,
+                    names=[self.setting.velocities[i] for i in block],
                 ),
                 dict(equations.exact.definitions),
             )

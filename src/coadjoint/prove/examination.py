@@ -100,11 +100,11 @@ class Examination:
             if len(members) < algebra.dimension
         )
         return Document(
-            f"Lie algebra {algebra.name}",
-            f"{_count_in_words(algebra.dimension, 'generator')}: {', '.join(algebra.basis)}.",
-            "",
-            f"Blocks: {blocks}." if blocks else "",
-            (self._table(), self._invariants(), self._casimirs(), self._verdicts()),
+            title=f"Lie algebra {algebra.name}",
+            about=f"{_count_in_words(algebra.dimension, 'generator')}: {', '.join(algebra.basis)}.",
+            source="",
+            description=f"Blocks: {blocks}." if blocks else "",
+            sections=(self._table(), self._invariants(), self._casimirs(), self._verdicts()),
         )
 
     # -- sections -------------------------------------------------------------------------
@@ -115,18 +115,28 @@ class Examination:
         latex = r"[e_i, e_j] = c_{ij}^k \, e_k"
         values = self.brackets()
         if not values:
-            return Section(title, law, latex, (), (("abelian", "all brackets are zero"),))
+            return Section(
+                title=title,
+                law=law,
+                law_latex=latex,
+                lines=(),
+                words=(("abelian", "all brackets are zero"),),
+            )
         basis = self.algebra.basis
         cells = {pair: formula(self.field, value) for pair, value in values.items()}
         widest = max(len(cell.text) for cell in (*cells.values(), *map(_head, basis))) + 2
         if (len(basis) + 1) * widest <= TABLE:
             law += ", e_i at the left of a row, e_j above a column"
-            return Section(title, law, latex, (), (), self._rows(cells))
+            return Section(
+                title=title, law=law, law_latex=latex, lines=(), words=(), table=self._rows(cells)
+            )
         lines = tuple(
             formula_line(self.field, algebra_bracket(basis[i], basis[j]), value)
             for (i, j), value in values.items()
         )
-        return Section(title, f"{law}; pairs left out commute", latex, lines)
+        return Section(
+            title=title, law=f"{law}; pairs left out commute", law_latex=latex, lines=lines
+        )
 
     def _rows(self, cells: Mapping[tuple[int, int], Line]) -> tuple[tuple[Line, ...], ...]:
         """Heads, then a row for each member of the basis."""
@@ -144,7 +154,7 @@ class Examination:
     def _invariants(self) -> Section:
         """Numbers and words, each with the way it was found."""
         signature = (
-            "not counted, since the constants hold parameters"
+            "not counted, since the constants contain parameters"
             if self.signature is None
             else "{} positive, {} negative, {} zero (squares of its diagonal form)".format(
                 *self.signature
@@ -163,7 +173,9 @@ class Examination:
         }
         law = "K_ij = tr(ad_e_i ad_e_j) is the Killing form; ad_xi eta = [xi, eta]"
         latex = r"K_{ij} = \operatorname{tr}(\mathrm{ad}_{e_i} \, \mathrm{ad}_{e_j})"
-        return Section("Invariants", law, latex, (), tuple(facts.items()))
+        return Section(
+            title="Invariants", law=law, law_latex=latex, lines=(), words=tuple(facts.items())
+        )
 
     def _rank(self) -> str:
         """The rank: certain where there are as many Casimirs as it leaves room for."""
@@ -190,7 +202,9 @@ class Examination:
                 lines.append(formula_line(self.field, upright, casimir))
         if not self.casimirs.found:
             words.append(("none", self.casimirs.statement))
-        return Section("Casimirs", law, latex, tuple(lines), tuple(words))
+        return Section(
+            title="Casimirs", law=law, law_latex=latex, lines=tuple(lines), words=tuple(words)
+        )
 
     def _verdicts(self) -> Section:
         """The claims with their verdicts, then what was found."""
@@ -203,7 +217,7 @@ class Examination:
             for each in self.certificate.findings
         )
         law = "every claim and how it was decided, and what was found without a proof"
-        return Section("Proofs", law, "", (), (*claims, *findings))
+        return Section(title="Proofs", law=law, law_latex="", lines=(), words=(*claims, *findings))
 
     def _text(self, element: Element) -> str:
         return element_text(self.field, element)
@@ -230,7 +244,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
 
     Args:
         algebra: Named or declared; constants may hold parameters.
-        degree: Up to which degree polynomial Casimirs are looked for.
+        degree: Up to which degree polynomial Casimirs are searched for.
 
     >>> from coadjoint.algebra import algebra_by_name
     >>> found = examine(algebra_by_name("se(3)"))
@@ -243,15 +257,15 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     known = _search(local, structure, degree)
     claims, findings = _entries(local, structure, known)
     return Examination(
-        local,
-        field,
-        None if _parameters(algebra) else local.killing_signature(),
-        _properties(local),
-        tuple(_vector(field, local.basis, dict(enumerate(row))) for row in local.center()),
-        local.derived_series(),
-        structure.generic_rank(),
-        known,
-        Certificate(algebra.name, claims, findings),
+        algebra=local,
+        field=field,
+        signature=None if _parameters(algebra) else local.killing_signature(),
+        properties=_properties(local),
+        center=tuple(_vector(field, local.basis, dict(enumerate(row))) for row in local.center()),
+        derived_series=local.derived_series(),
+        rank=structure.generic_rank(),
+        casimirs=known,
+        certificate=Certificate(algebra.name, claims, findings),
     )
 
 
@@ -261,10 +275,10 @@ def _search(algebra: LieAlgebra, structure: PoissonStructure, degree: int) -> Co
     known = len(search.generators)
     scope = scope_of(structure, search.generators)
     return Completeness(
-        search.generators,
-        known,
-        search.expected,
-        search.missing,
+        found=search.generators,
+        known=known,
+        expected=search.expected,
+        missing=search.missing,
         error=CHANCE if search.missing else "",
         degree=search.degree,
         scope=scope,
@@ -322,7 +336,7 @@ def _examine(
 
 
 def _is_casimir(structure: PoissonStructure, function: Element) -> Decision:
-    """Whether a function commutes with all; the point where it does not is looked for if so."""
+    """Whether a function commutes with all; the point where it does not is searched for if so."""
     if structure.is_casimir(function):
         return prove_by_normal_form(structure.field)
     return decide_zero(structure.casimir_defects(function), structure.field)
@@ -332,5 +346,5 @@ def _time_check(statement: str, check: Callable[[], object]) -> Claim | Finding:
     """A claim about constants whose check raises if it fails."""
     start = perf_counter()
     check()
-    decision = Decision(Verdict.PROVED, CONSTANTS)
+    decision = Decision(verdict=Verdict.PROVED, method=CONSTANTS)
     return make_entry(statement, "algebra", decision, perf_counter() - start)

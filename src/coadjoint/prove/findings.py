@@ -26,7 +26,7 @@ from coadjoint.prove.zero import (
 
 #: Longest value that a statement shows; beyond it a point shows as much.
 SHOWN = 72
-#: How a finding may be wrong that no proof and no counter-example decides.
+#: How a finding may be wrong that no proof and no counterexample decides.
 NUMBERS = "numbers at some points, no proof"
 
 
@@ -40,10 +40,10 @@ def finding(kind: str, decision: Decision, zero: str, nonzero: str) -> Examined:
         nonzero: The statement if it is not, proved by the point that refutes the other.
     """
     if decision.verdict is Verdict.REFUTED:
-        proof = Decision(Verdict.PROVED, nonzero_at(decision.defect, decision.point))
+        proof = Decision(verdict=Verdict.PROVED, method=nonzero_at(decision.defect, decision.point))
         return nonzero, kind, lambda: proof
-    found = decision if decision.verdict is Verdict.PROVED else guess(decision)
-    return zero, kind, lambda: found
+    result = decision if decision.verdict is Verdict.PROVED else guess(decision)
+    return zero, kind, lambda: result
 
 
 def guess(decision: Decision) -> Discovery:
@@ -84,7 +84,7 @@ def first_nonzero(
 def nonzero_at_a_point(
     values: Mapping[str, Element], field: Field, where: Ideal
 ) -> tuple[str, Decision]:
-    """The same, where a point is looked for before any normal form is taken."""
+    """The same, where a point is searched for before any normal form is taken."""
     for name, value in values.items():
         refutation = refute_at_a_point(value, field, where)
         if refutation is not None:

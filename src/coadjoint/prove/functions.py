@@ -7,7 +7,7 @@ the basis has values of its own. By the theorems of Lindemann and Weierstrass an
 Ostrowski (Kolchin 1968) there are no relations but these. Those of the basis that do not move, such
 as a slope alpha of a plane, keep their value from point to point.
 
-A square root is a new number only where it is no combination of those before it, which a point
+A square root is a new number only where it is not a combination of those before it, which a point
 proves at which these exist and it does not: else its sign would matter, and nothing modulo a prime
 has a sign. Of numbers, roots are products of those of their prime factors. What is not known to be
 free of further relations, as the logarithms of x and of x y, is an obstacle that is named.
@@ -30,7 +30,7 @@ from coadjoint.exact.field import Adjoined
 from coadjoint.exact.lattices import coordinates, lattice_basis
 from coadjoint.exact.residues import Residue, residue, square_root
 
-#: Numbers under square roots up to which prime factors are looked for.
+#: Numbers under square roots up to which prime factors are searched for.
 LARGEST = 10**18
 #: Values of functions by their name and by that of their argument.
 Table = dict[tuple[str, int], Residue]
@@ -68,7 +68,7 @@ class Functions:
 
     Attributes:
         obstacle: Why no values are known to satisfy all relations; else empty.
-        roots: The square roots of what is no number.
+        roots: The square roots of what is not a number.
         proper: Those that a point has shown to be new numbers.
     """
 
@@ -113,7 +113,7 @@ class Functions:
         """Why relations may be missed; the bases of arguments are made on the way."""
         for each in self.known:
             if not self.field.reach(each.argument) <= known:
-                return f"{each.function} is taken of more than the state"
+                return f"{each.function} has an argument that depends on more than the state"
             inner = self.field.functions_in(each.argument)
             if each.function != "sqrt" and any(
                 self.field.adjoined[name].function != "sqrt" for name in inner
@@ -122,7 +122,7 @@ class Functions:
         if any(number < 0 for number in self.surds.values()):
             return "a square root of a negative number occurs"
         if any(max(x.numerator, x.denominator) > LARGEST for x in self.surds.values()):
-            return "a square root of a long number occurs, whose factors are not looked for"
+            return "a square root of a long number occurs, which is not factored"
         for group in GROUPS:
             lattice = self._lattice(self.arguments[group])
             if lattice is None:
@@ -136,7 +136,7 @@ class Functions:
         if any(map(self._fixed_number, logarithms)) and any(
             map(self._fixed_number, (a for group in GROUPS for a in self.arguments[group]))
         ):
-            return "logarithms of numbers occur beside other functions of such"
+            return "logarithms of numbers and other functions of numbers both occur"
         return ""
 
     def _fixed_number(self, argument: Element) -> bool:
@@ -160,7 +160,7 @@ class Functions:
 
     def _vector(self, argument: Element) -> dict[Any, Fraction] | None:
         """The coefficients of an argument by its products of powers; None with sums below a bar."""
-        found = dict[Any, Fraction]()
+        numbers = dict[Any, Fraction]()
         for quotient in self.field.quotients(self.field.normal(argument)):
             powers = dict[str, int]()
             for divisor, exponent in quotient.divisors:
@@ -173,8 +173,8 @@ class Functions:
                 for name, exponent in monomial.powers:
                     whole[name] = whole.get(name, 0) + exponent
                 key = tuple(sorted((name, e) for name, e in whole.items() if e))
-                found[key] = found.get(key, Fraction(0)) + monomial.number
-        return {key: x for key, x in found.items() if x}
+                numbers[key] = numbers.get(key, Fraction(0)) + monomial.number
+        return {key: x for key, x in numbers.items() if x}
 
     def _reduce(self, vectors: Sequence[Mapping[Any, Fraction]]) -> Lattice:
         """The arguments in a basis whose last members are those that do not move.
@@ -358,8 +358,8 @@ def _inverse(a: Turn) -> Turn:
 
 
 def _distinct(arguments: Iterable[Element]) -> list[Element]:
-    found = list[Element]()
+    distinct = list[Element]()
     for argument in arguments:
-        if argument not in found:
-            found.append(argument)
-    return found
+        if argument not in distinct:
+            distinct.append(argument)
+    return distinct

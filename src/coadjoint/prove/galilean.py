@@ -65,10 +65,10 @@ def _decision(
     names: Mapping[str, str],
     changes: Sequence[Element],
 ) -> Decision:
-    """Whether accelerations are carried along; a counter-example has the names of the spec."""
-    found = decide_zero([*transformation_defects(system, laws, g), *changes], system.field)
+    """Whether accelerations are carried along; a counterexample has the names of the spec."""
+    decision = decide_zero([*transformation_defects(system, laws, g), *changes], system.field)
     spoken = {inner: name for name, inner in names.items()}
-    return replace(found, point={spoken.get(n, n): value for n, value in found.point.items()})
+    return replace(decision, point={spoken.get(n, n): value for n, value in decision.point.items()})
 
 
 def _changes(

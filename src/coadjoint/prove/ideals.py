@@ -77,10 +77,10 @@ class Ideal:
         self._variables = frozenset(variables or field.names) - parameters
         self._declared: Sequence[Element] | None = None  # relations of parameters, once these split
         self.excluded: list[Element] = []  # factors that nothing declared keeps from zero
-        found = [each for each in map(field.normal, relations) if each != 0]
-        self.given = tuple(found)
-        self._between_parameters = [each for each in found if self._is_generic(each)]
-        self.relations = tuple(map(self._strip, found))
+        normal = [each for each in map(field.normal, relations) if each != 0]
+        self.given = tuple(normal)
+        self._between_parameters = [each for each in normal if self._is_generic(each)]
+        self.relations = tuple(map(self._strip, normal))
         numerators = list(map(numerator, self.relations))
         numerators += map(numerator, self._of_functions())
         self._places = sorted(
@@ -143,15 +143,15 @@ class Ideal:
 
     def _of_functions(self) -> list[Element]:
         """The relations of the functions that the relations have: ``s^2 + c^2 = 1``."""
-        field, found = self.field, list[Element]()
+        field, generators = self.field, list[Element]()
         called = {g for each in self.relations for g in field.functions_in(each)}
         for known in field.adjoined.values():
             own = field[known.generator]
             if known.generator in called and known.function == "sqrt":
-                found.append(own**2 - known.argument)
+                generators.append(own**2 - known.argument)
             if known.function == "sin" and {known.generator, known.partner} & called:
-                found.append(own**2 + field[known.partner] ** 2 - 1)
-        return found
+                generators.append(own**2 + field[known.partner] ** 2 - 1)
+        return generators
 
     def _strip(self, relation: Element) -> Element:
         """A relation without factors that are not zero; those that only we exclude are noted."""
@@ -182,18 +182,18 @@ class Ideal:
         """
         self._count, own = 0, self._between_parameters
         others = [each for each in self.relations if each not in own]
-        found = list[Branch]()
+        branches = list[Branch]()
         for first in tuple(
             self._split_branches(own, Branch())
         ):  # all before what follows is generic
             self._declared = first.rest
             start = Branch(first.solved, (), first.nonzero)
-            found += self._split_branches([*first.rest, *others], start)
-        return tuple(regular for branch in found for regular in self._regular(branch))
+            branches += self._split_branches([*first.rest, *others], start)
+        return tuple(regular for branch in branches for regular in self._regular(branch))
 
     def _regular(self, branch: Branch) -> list[Branch]:
         """A branch with what must not vanish there; none if that vanishes on all of it."""
-        rest, found = Ideal(self.field, branch.rest), list[Element]()
+        rest, regular = Ideal(self.field, branch.rest), list[Element]()
         if rest.contains(self.field.one):  # an empty branch
             return []
         for element in self.nonzero:
@@ -204,9 +204,9 @@ class Ideal:
             if rest.contains(value):
                 self._exclude(self._vanishing_factor(element, branch, rest))
                 return []
-            if self.field.as_number(value) is None and value not in found:
-                found.append(value)
-        return [replace(branch, regular=tuple(found))]
+            if self.field.as_number(value) is None and value not in regular:
+                regular.append(value)
+        return [replace(branch, regular=tuple(regular))]
 
     def _vanishing_factor(self, element: Element, branch: Branch, rest: Ideal) -> Element:
         """The factor that makes an element vanish on a branch; all of it if no factor does."""
@@ -317,7 +317,7 @@ class Ideal:
 
     def _factors(self, relation: Element, nonzero: Sequence[Element] = ()) -> list[Element]:
         """The irreducible factors of a numerator that may vanish, each once."""
-        found = list[Element]()
+        factors = list[Element]()
         if len(numerator(relation)) > FACTORED:
             return [relation]
         for element in all_factors(self.field, relation):
@@ -327,8 +327,8 @@ class Ideal:
                 self._exclude(element)
                 continue
             root = self._radicand(element)  # sqrt(u) = 0 where u = 0
-            found += self._factors(root, nonzero) if root is not None else [element]
-        return [each for n, each in enumerate(found) if each not in found[:n]]
+            factors += self._factors(root, nonzero) if root is not None else [element]
+        return [each for n, each in enumerate(factors) if each not in factors[:n]]
 
     def _radicand(self, element: Element) -> Element | None:
         """The argument of an element that is a square root."""
@@ -338,7 +338,7 @@ class Ideal:
         return None
 
     def _may_vanish(self, factor: Element) -> bool:
-        """Whether a factor is no relation between parameters that only the others bring about."""
+        """Whether a factor is not a relation of parameters that only the others bring about."""
         if self._declared is not None and self._is_generic(factor, self._declared):
             self._exclude(factor)
             return False

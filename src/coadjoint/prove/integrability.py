@@ -44,19 +44,21 @@ class Basis:
     kernels do not.
 
     Attributes:
-        found: The distribution.
+        distribution: Of the constraints.
     """
 
-    found: Distribution
+    distribution: Distribution
 
     @cached_property
     def eliminated(self) -> Mapping[str, Element]:
         """The velocities for which kept constraints are solved, in terms of the others."""
-        field, known = self.found.setting.field, dict[str, Element]()
-        for _, residual in self.found.kept:
+        field, known = self.distribution.setting.field, dict[str, Element]()
+        for _, residual in self.distribution.kept:
             value = field.substitute(self._linear(residual), known)
             name = next(
-                n for n in self.found.independent if is_nonzero(field, field.derivative(value, n))
+                n
+                for n in self.distribution.independent
+                if is_nonzero(field, field.derivative(value, n))
             )
             rest = field.substitute(value, {name: field.zero})
             root = -rest / field.derivative(value, name)
@@ -65,48 +67,49 @@ class Basis:
         return known
 
     def _linear(self, residual: Element) -> Element:
-        field = self.found.setting.field
-        rest = dict.fromkeys(self.found.independent, field.zero)
+        field = self.distribution.setting.field
+        rest = dict.fromkeys(self.distribution.independent, field.zero)
         return residual - field.substitute(residual, rest)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The velocities that stand for the fields."""
-        return tuple(n for n in self.found.independent if n not in self.eliminated)
+        return tuple(n for n in self.distribution.independent if n not in self.eliminated)
 
     @cached_property
     def fields(self) -> dict[str, Row]:
         """The fields by their velocities, components along the frame."""
-        field = self.found.setting.field
-        xi = [self._linear(self.close(value)) for value in self.found.xi]
+        field = self.distribution.setting.field
+        xi = [self._linear(self.close(value)) for value in self.distribution.xi]
         return {name: tuple(field.derivative(x, name) for x in xi) for name in self.names}
 
     def close(self, element: Element) -> Element:
         """An element in the velocities of the fields and the positions alone."""
-        field = self.found.setting.field
-        return field.substitute(field.substitute(element, self.found.solved), self.eliminated)
+        field = self.distribution.setting.field
+        inner = field.substitute(element, self.distribution.solved)
+        return field.substitute(inner, self.eliminated)
 
     def annihilate(self, vector: Sequence[Element]) -> Row:
         """``A v``: zero for vectors of the distribution."""
-        field = self.found.setting.field
+        field = self.distribution.setting.field
         return tuple(
             field.sum(a * x for a, x in zip(row, vector, strict=True) if a and x)
-            for row in self.found.A
+            for row in self.distribution.A
         )
 
 
 def about_integrability(first: Equations) -> Iterator[Examined]:
     """Whether the constraints are integrable, and if not, what their brackets reach."""
-    found = first.distribution
-    assert found is not None, first.route
-    if not found.equations:
+    distribution = first.distribution
+    assert distribution is not None, first.route
+    if not distribution.equations:
         return
-    basis, field = Basis(found), found.setting.field
+    basis, field = Basis(distribution), distribution.setting.field
     values = brackets_of(basis)
     name, decision = first_nonzero(values, field)
-    many = len(found.equations) > 1
+    many = len(distribution.equations) > 1
     subject = "the constraints are" if many else "the constraint is"
-    if not found.is_linear:
+    if not distribution.is_linear:
         subject = f"of the linear parts, {subject}"
     value = values.get(name, field.zero)
     where = "on any open set" if is_entire(field, [value]) else "near some point"
@@ -114,7 +117,7 @@ def about_integrability(first: Equations) -> Iterator[Examined]:
         "integrability",
         decision,
         f"{subject} integrable: [D_i, D_j] stays in the distribution",
-        f"{subject} not integrable {where}{for_parameters(found.setting, [value])}: "
+        f"{subject} not integrable {where}{for_parameters(distribution.setting, [value])}: "
         f"{name}{show_value(field, value)}",
     )
     if name:
@@ -124,10 +127,10 @@ def about_integrability(first: Equations) -> Iterator[Examined]:
 
 def brackets_of(basis: Basis) -> dict[str, Element]:
     """``rolling1([D_Omega1, D_Omega2])`` for all constraints and pairs of fields."""
-    found, values = basis.found, dict[str, Element]()
+    distribution, values = basis.distribution, dict[str, Element]()
     for (a, one), (b, two) in combinations(basis.fields.items(), 2):
-        parts = basis.annihilate(found.frame.bracket(one, two))
-        for equation, part in zip(found.equations, parts, strict=True):
+        parts = basis.annihilate(distribution.frame.bracket(one, two))
+        for equation, part in zip(distribution.equations, parts, strict=True):
             values[f"{equation.name}([D_{a}, D_{b}])"] = part
     return values
 
@@ -145,7 +148,7 @@ class Growth:
         self._minors: list[Element] = []
         self._zeros: list[Element] = []
         fields = list(basis.fields.values())
-        frame, codimension = basis.found.frame, len(basis.found.equations)
+        frame, codimension = basis.distribution.frame, len(basis.distribution.equations)
         rows: list[Row] = []
         newest = [frame.bracket(a, b) for a, b in combinations(fields, 2)]
         while True:
@@ -160,7 +163,7 @@ class Growth:
 
     @property
     def _field(self) -> Field:
-        return self.basis.found.setting.field
+        return self.basis.distribution.setting.field
 
     def _choose_rows(self, rows: Sequence[Row]) -> list[int]:
         """Places of rows that span all of them; what proves so is kept."""
@@ -168,7 +171,7 @@ class Growth:
         chosen = independent_rows(self._field, sparse)
         turned = [
             {i: rows[n][j] for i, n in enumerate(chosen) if rows[n][j] != 0}
-            for j in range(len(self.basis.found.equations))
+            for j in range(len(self.basis.distribution.equations))
         ]
         columns = independent_rows(self._field, turned)
         if not chosen:
@@ -193,7 +196,7 @@ class Growth:
     @property
     def holonomic(self) -> int:
         """How many combinations of the constraints are integrable."""
-        return len(self.basis.found.equations) - self.ranks[-1]
+        return len(self.basis.distribution.equations) - self.ranks[-1]
 
     @property
     def statement(self) -> str:
@@ -201,14 +204,14 @@ class Growth:
 
         It may be smaller where a minor vanishes.
         """
-        count, many = len(self.basis.found.equations), self.holonomic > 1
+        count, many = len(self.basis.distribution.equations), self.holonomic > 1
         text = f"the constraint{' is' if count == 1 else 's are'} completely nonholonomic there"
         if self.holonomic:
             combinations = f"{self.holonomic} independent combinations" if many else "1 combination"
             verb = "are" if many else "is"
             text = f"{combinations} of the {count} constraints {verb} holonomic there, and no more"
         where = ALMOST if is_entire(self._field, self._minors) else IN_PART
-        scope = for_parameters(self.basis.found.setting, self._minors)
+        scope = for_parameters(self.basis.distribution.setting, self._minors)
         return f"growth vector {self.vector} {where}{scope}: {text}"
 
     @cached_property
@@ -218,7 +221,7 @@ class Growth:
             lower = decide_zero([value], self._field)
             if lower.verdict is not Verdict.REFUTED:
                 return guess(lower)
-        found = decide_zero(self._zeros, self._field)
-        if found.verdict is Verdict.PROVED:
-            return Decision(Verdict.PROVED, "exact minors of the matrix of brackets")
-        return found if found.verdict is Verdict.REFUTED else guess(found)
+        decision = decide_zero(self._zeros, self._field)
+        if decision.verdict is Verdict.PROVED:
+            return Decision(verdict=Verdict.PROVED, method="exact minors of the matrix of brackets")
+        return decision if decision.verdict is Verdict.REFUTED else guess(decision)

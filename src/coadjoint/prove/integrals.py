@@ -77,13 +77,13 @@ def _conserved_on(
     where: Ideal, kept: Sequence[Element], rates: Sequence[Element], parts: Sequence[Element]
 ) -> Decision:
     """Whether rates vanish where relations hold, and so do those of the relations themselves."""
-    found = decide_zero([*kept, *rates], where.field, where, parts)
-    if kept and found.verdict is Verdict.REFUTED:
+    decision = decide_zero([*kept, *rates], where.field, where, parts)
+    if kept and decision.verdict is Verdict.REFUTED:
         with suppress(UndecidedError):  # of a branch without points
             left = decide_zero(kept, where.field, where, parts)
             if left.verdict is Verdict.REFUTED:
                 return replace(left, leaves=True)
-    return found
+    return decision
 
 
 def is_conserved(equations: Equations, each: Emitted) -> bool:

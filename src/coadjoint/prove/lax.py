@@ -56,10 +56,10 @@ def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
             "lax",
             decide,
         )
-    found = lax_integrals(first.setting)
-    if found is not None:
-        of_pair = decisions[" ".join(found.pair.texts)]
-        yield from _about_integrals(first, found, of_pair)
+    integrals = lax_integrals(first.setting)
+    if integrals is not None:
+        of_pair = decisions[" ".join(integrals.pair.texts)]
+        yield from _about_integrals(first, integrals, of_pair)
 
 
 def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
@@ -77,33 +77,39 @@ def lax_decision(motion: Equations, pair: LaxPair) -> Decision:
         if decision.verdict is not Verdict.PROVED:
             where = text_of_entry(equation.entry, equation.power, pair.spectral)
             method = f"{decision.method} in {where} of dL/dt - [L, M]"
-            return Decision(decision.verdict, method, decision.point, decision.defect)
+            return Decision(
+                verdict=decision.verdict,
+                method=method,
+                point=decision.point,
+                defect=decision.defect,
+            )
         everything.append(defect)
     return decide_zero(everything, setting.field)
 
 
 def _about_integrals(
-    first: Equations, found: Integrals, of_pair: Callable[[], Decision]
+    first: Equations, integrals: Integrals, of_pair: Callable[[], Decision]
 ) -> Iterator[Examined]:
     """How many integrals there are, that they are conserved, and in involution."""
-    spec, names = first.spec, [name for name, _ in found.named]
-    rank = _rank(first, [each.value for each in found.coefficients])
+    spec, names = first.spec, [name for name, _ in integrals.named]
+    rank = _rank(first, [each.value for each in integrals.coefficients])
     casimirs = [f"casimir{n}" for n in range(1, len(spec.casimirs) + 1)]
     whole = ", ".join([*casimirs, *["energy"] * first.setting.has_energy, *names])
     yield (
-        f"{rank} independent integrals: the coefficients of tr L^k, k = 1 to {len(found.pair.L)}, "
-        f"are functions of {whole}",
+        f"{rank} independent integrals: the coefficients of tr L^k, "
+        f"k = 1 to {len(integrals.pair.L)}, are functions of {whole}",
         "conserved",
-        partial(_complete, first, found, rank),
+        partial(_complete, first, integrals, rank),
     )
-    again = cache(lambda: list(expanded_traces(first.setting, found.pair)))
-    for name, each in zip(names, found.emitted, strict=True):
+    again = cache(lambda: list(expanded_traces(first.setting, integrals.pair)))
+    for name, each in zip(names, integrals.emitted, strict=True):
+        power = f"{integrals.pair.spectral}^{each.power}"
         yield (
-            f"{name}, from tr L^{each.trace} at {found.pair.spectral}^{each.power}, is conserved",
+            f"{name}, from tr L^{each.trace} at {power}, is conserved",
             "conserved",
             partial(_decide_conserved, first, name, each, of_pair, again),
         )
-    pairs = list(combinations(found.emitted, 2))
+    pairs = list(combinations(integrals.emitted, 2))
     length = first.setting.field.terms
     if first.exact.poisson_tensor is not None and pairs:
         sizes = (len(length(a.value)) * len(length(b.value)) for a, b in pairs)
@@ -121,7 +127,7 @@ def _rank(first: Equations, functions: Sequence[Element]) -> int:
     return generic_rank(first.setting.field, rows)
 
 
-def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Discovery:
+def _complete(first: Equations, integrals: Integrals, rank: int) -> Decision | Discovery:
     """Every coefficient depends on what is emitted, which is independent.
 
     That the emitted ones are independent is certain, that the others depend on them is not.
@@ -129,21 +135,21 @@ def _complete(first: Equations, found: Integrals, rank: int) -> Decision | Disco
     emitted = dict(first.exact.observables)
     known = known_integrals(first.setting)
     before = _rank(first, known)
-    known += [emitted[name] for name, _ in found.named]
+    known += [emitted[name] for name, _ in integrals.named]
     own = _rank(first, known)
-    values = [each.value for each in found.coefficients]
+    values = [each.value for each in integrals.coefficients]
     together = _rank(first, [*known, *values])
-    if own == together == before + len(found.named):
+    if own == together == before + len(integrals.named):
         gradients = [slope_row(first.setting, f) for f in (*known, *values)]
         source = source_of_ranks(first.setting.field, (gradients, own))
         error = error_of_ranks(first.setting.field, gradients)
         scope = ALMOST + for_parameters(first.setting, [*known, *values])
         return Discovery(f"rank of the gradients {source}", scope, error)
     return Decision(
-        Verdict.REFUTED,
-        f"gradients of rank {own}, with all coefficients of rank {together}",
-        {},
-        str(together - own or before + len(found.named) - own),
+        verdict=Verdict.REFUTED,
+        method=f"gradients of rank {own}, with all coefficients of rank {together}",
+        point={},
+        defect=str(together - own or before + len(integrals.named) - own),
     )
 
 
@@ -159,11 +165,16 @@ def _decide_conserved(
     if len(first.setting.field.terms(value)) <= LONGEST:
         return drift(first, value)
     if of_pair().verdict is not Verdict.PROVED:
-        return Decision(Verdict.REFUTED, "the Lax equation does not hold", {}, "[L, M] - dL/dt")
+        return Decision(
+            verdict=Verdict.REFUTED,
+            method="the Lax equation does not hold",
+            point={},
+            defect="[L, M] - dL/dt",
+        )
     (same,) = (c for c in again() if (c.trace, c.power) == (each.trace, each.power))
     decision = decide_zero([same.value - value], first.setting.field)
     proved = decision.verdict is Verdict.PROVED
-    return Decision(Verdict.PROVED, TRACE_IDENTITY) if proved else decision
+    return Decision(verdict=Verdict.PROVED, method=TRACE_IDENTITY) if proved else decision
 
 
 def _bracket(first: Equations, f: Element, h: Element) -> Element:

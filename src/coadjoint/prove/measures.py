@@ -3,7 +3,7 @@ r"""Invariant measures :math:`\rho(z)\, d\eta\, dz` of motions, or that there is
 The conditions on a density are those of `coadjoint.prove.densities`: their ranks show that there is
 none, or that there is one near almost every point.
 
-Closed forms are looked for among products of powers of the minors of the matrix that the kernel
+Closed forms are searched for among products of powers of the minors of the matrix that the kernel
 solves with, and of their factors (Chaplygin 1903: the ball; Veselov and Veselova 1986; Fedorov and
 Jovanovic 2004; Borisov and Mamaev 2002: bodies of revolution). Kozlov (1987) shows that most
 systems with constraints have none.
@@ -44,7 +44,7 @@ SIZE = 6
 
 #: Characters of a factor with velocities that a statement shows; a longer one is described.
 LONGEST = 240
-#: Among what densities are looked for that depend on velocities.
+#: Among what densities are searched for that depend on velocities.
 SEARCHED = (
     "products of powers of invariant factors: {}, the common divisor of rates of up to "
     f"{COMMON} terms, and in up to {SYMBOLS} symbols of the state and {TERMS} terms the factors of "
@@ -70,15 +70,15 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
         obstacle = f"{coupled} unknowns are solved for together, more than {SIZE}"
     if obstacle:
         skipped = Discovery("no search")
-        yield f"an invariant measure was not looked for: {obstacle}", "measure", lambda: skipped
+        yield f"an invariant measure was not searched for: {obstacle}", "measure", lambda: skipped
         return
     points = list(islice(samples.points(), POINTS))
     assert points, "a motion without an obstacle has points"
     refusal = _refusal(motion, measure, samples, points[0])
     if refusal is not None:
         yield refusal
-    found = _of_positions(motion, measure, samples, points) if refusal is None else None
-    yield found or _of_velocities(motion, measure, samples)
+    examined = _of_positions(motion, measure, samples, points) if refusal is None else None
+    yield examined or _of_velocities(motion, measure, samples)
 
 
 def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -> Examined | None:
@@ -92,23 +92,27 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
         f"{_where(samples)}{_generic(motion)}"
     )
     if not moved and (value := point.value(measure.divergence)):
-        proof = Decision(Verdict.PROVED, f"{value} at a random point modulo {samples.prime}")
+        proof = Decision(
+            verdict=Verdict.PROVED, method=f"{value} at a random point modulo {samples.prime}"
+        )
         shown_text = show_value(motion.field, measure_of(motion).divergence)
         return f"{none}: div X{shown_text}", "measure", lambda: proof
     if measure.is_affine and any(point.value(second) for second in measure.curved):
-        decision = Decision(Verdict.PROVED, f"its value at a random point modulo {samples.prime}")
+        decision = Decision(
+            verdict=Verdict.PROVED, method=f"its value at a random point modulo {samples.prime}"
+        )
         return f"{none}: div X is not affine in {motion.fibre_word}", "measure", lambda: decision
     contradiction = measure.contradiction(point)
     if contradiction is None:
         return None
-    found, rank = contradiction
-    names = [each.name for each in found if each.name != REST]
-    places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(found))
-    text = f"what it asks for {' and '.join(places)} contradicts itself"
+    conditions, rank = contradiction
+    names = [each.name for each in conditions if each.name != REST]
+    places = [f"along {', '.join(names)}"] * bool(names) + [REST] * (len(names) < len(conditions))
+    text = f"the conditions {' and '.join(places)} have no solution"
     count = f"{rank + 1} conditions" if rank else "1 condition"
     method = f"{count} of rank {rank} at a random point modulo {samples.prime}"
-    if _is_certain(motion, measure, samples, found, rank):
-        proof = Decision(Verdict.PROVED, method)
+    if _is_certain(motion, measure, samples, conditions, rank):
+        proof = Decision(verdict=Verdict.PROVED, method=method)
         return f"{none}: {text}", "measure", lambda: proof
     guess = Discovery(method, _generic(motion).lstrip(", "), CHANCE)
     return f"{none}: {text}", "measure", lambda: guess
@@ -118,7 +122,7 @@ def _is_certain(
     motion: Motion,
     measure: Measure,
     samples: Samples,
-    found: Sequence[Condition],
+    conditions: Sequence[Condition],
     rank: int,
 ) -> bool:
     """Whether the fields of contradicting conditions have no larger rank at other points.
@@ -128,7 +132,7 @@ def _is_certain(
     if rank == len(measure.positions) - len(samples.unit):
         return True
     whole = {each.name: each for each in measure_of(motion).conditions} if rank == 0 else {}
-    last = whole.get(found[-1].name)
+    last = whole.get(conditions[-1].name)
     return last is not None and all(map(motion.field.is_zero, last.parts[:-1]))
 
 
@@ -141,9 +145,9 @@ def _of_positions(
     were looked at for one value of the inputs.
     """
     powers = measure.exponents(_factors_of_minors(motion, measure), points)
-    found = None if powers is None else _state(motion, powers)
-    if found is not None or not measure.is_affine or motion.setting.driving:
-        return found
+    examined = None if powers is None else _state(motion, powers)
+    if examined is not None or not measure.is_affine or motion.setting.driving:
+        return examined
     search = Discovery(
         f"ranks of brackets at a random point modulo {samples.prime}",
         f"near almost every point{_generic(motion)}",
@@ -166,9 +170,9 @@ def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examin
         for search in (whole.short, whole.all):
             tried = search()
             powers = measure.powers_along([*others, *tried], samples)
-            found = None if powers is None else _state(motion, powers)
-            if found is not None:
-                return found
+            examined = None if powers is None else _state(motion, powers)
+            if examined is not None:
+                return examined
     names = ", ".join(describe(motion.field, factor) for factor in tried)
     word = motion.fibre_word
     text = f" that is a product of powers of {names}" if names else f" that depends on {word}"
@@ -212,14 +216,14 @@ def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     With numbers for the parameters it shows at once whether there are factors; the others are not
     tried, since to find that a polynomial of many symbols is irreducible may take minutes.
     """
-    whole, found = measure_of(motion), list[Element]()
+    whole, factors = measure_of(motion), list[Element]()
     for short, minor in reversed(list(zip(measure.minors, whole.minors, strict=True))):
         reducible = len(find_factors(measure.field, short)) > 1
-        own = find_factors(measure.field, minor, found) if reducible else [minor]
+        own = find_factors(measure.field, minor, factors) if reducible else [minor]
         (written,) = motion.field.quotients(minor.combine())
-        found = [*own, *(divisor for divisor, _ in written.divisors), *found]
+        factors = [*own, *(divisor for divisor, _ in written.divisors), *factors]
     known = list[Element]()
-    for element in found:
+    for element in factors:
         factor = -element if leading(element) < 0 else element
         moving = motion.field.reach(motion.field.normal(factor)) & set(measure.positions)
         if moving and factor not in known:

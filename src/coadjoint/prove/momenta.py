@@ -51,8 +51,9 @@ def law_along(equations: Equations, along: Row) -> Element:
 
     A field that a constraint does not allow gains the work of its reaction.
     """
-    found, setting = equations.distribution, equations.setting
-    field, frame, bound = setting.field, frame_of(setting), () if found is None else found.equations
+    distribution, setting = equations.distribution, equations.setting
+    field, frame = setting.field, frame_of(setting)
+    bound = () if distribution is None else distribution.equations
     lagrangian = setting.lagrangian
     turned = frame.bracket(setting.elements(frame.velocities), along)
     momenta = mechanics(setting).momenta

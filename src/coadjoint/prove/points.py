@@ -141,7 +141,7 @@ class Points:
     @cached_property
     def definitions(self) -> dict[str, Element]:
         """What the conditions name other than symbols, in an order in which it can be computed."""
-        region, found = self.ring.region, dict[str, Element]()
+        region, definitions = self.ring.region, dict[str, Element]()
         own = (
             self._reachable((*self.elements, *self._defined, *self._roots))
             | self.branch.solved.keys()
@@ -150,15 +150,15 @@ class Points:
         written = region.momenta if own & region.definitions.keys() else region.definitions
 
         def visit(name: str) -> None:
-            if name in found or name in own or name not in written:
+            if name in definitions or name in own or name not in written:
                 return
             for inner in sorted(self.ring.reach(written[name])):
                 visit(inner)
-            found[name] = written[name]
+            definitions[name] = written[name]
 
         for name in sorted(self._reachable(each.element for each in self._conditions)):
             visit(name)
-        return found
+        return definitions
 
     @cached_property
     def _involved(self) -> tuple[Element, ...]:
@@ -204,10 +204,10 @@ class Points:
             ZeroDivisionError: A pole.
             ValueError: A function is not defined there.
         """
-        numbers, found = self._numbers(free), Values()
+        numbers, dependent = self._numbers(free), Values()
         for name, element in (*self.branch.solved.items(), *self.definitions.items()):
-            numbers[name] = found[name] = self.value(element, numbers)
-        return {**free, **found}
+            numbers[name] = dependent[name] = self.value(element, numbers)
+        return {**free, **dependent}
 
     def value(self, element: Element, values: Mapping[str, Any]) -> Any:
         """The value of an element: exact at exact points without functions, else a real number."""
@@ -251,20 +251,20 @@ class Points:
             tries = ON_ZERO_SET if self.branch.rest else TRIES
             for number, start in enumerate(islice(self._starts(), tries)):
                 if number < PLAIN and not self.branch.rest:
-                    found: Values | None = start
+                    point: Values | None = start
                 else:
-                    found = self._move(start, TARGETS[number % len(TARGETS)])
+                    point = self._move(start, TARGETS[number % len(TARGETS)])
                 with suppress(ZeroDivisionError, ValueError, OverflowError):
-                    if found is not None and self._is_inside(found):
-                        yield found
+                    if point is not None and self._is_inside(point):
+                        yield point
 
     def near_defaults(self) -> Iterator[Values]:
         """The defaults, moved onto the branch and into the domain."""
         with mpmath.workdps(DIGITS), suppress(ZeroDivisionError, ValueError, OverflowError):
             start = next(iter(random_points(self.names, self.ring.positive)))
-            found = self._move(start | self._defaults, TARGETS[0])
-            if found is not None and self._is_inside(found):
-                yield found
+            point = self._move(start | self._defaults, TARGETS[0])
+            if point is not None and self._is_inside(point):
+                yield point
 
     @cached_property
     def _defaults(self) -> dict[str, Fraction]:
@@ -285,24 +285,26 @@ class Points:
     @cached_property
     def _not_zero(self) -> tuple[Element, ...]:
         """What vanishes at no point: a pole looks like a large value where points are not exact."""
-        found = [*self.branch.nonzero, *self.branch.regular]
+        elements = [*self.branch.nonzero, *self.branch.regular]
         if self.branch.rest:
-            found += self._divisors((*self.elements, *self._defined, *self.branch.solved.values()))
-        return tuple(found)
+            elements += self._divisors(
+                (*self.elements, *self._defined, *self.branch.solved.values())
+            )
+        return tuple(elements)
 
     def _divisors(self, elements: Iterable[Element]) -> list[Element]:
         """The factors of all denominators, also of those in the arguments of functions."""
-        known, found, left = self.ring.adjoined, list[Element](), list(elements)
+        known, collected, left = self.ring.adjoined, list[Element](), list(elements)
         seen = set[str]()
         while left:
             element = left.pop()
             new = set(self.ring.functions_in(element)) - seen
             seen |= new
             divisors = [d for part in self.ring.quotients(element) for d, _ in part.divisors]
-            divisors = [each for each in divisors if each not in found]
-            found += divisors
+            divisors = [each for each in divisors if each not in collected]
+            collected += divisors
             left += [*divisors, *(known[name].argument for name in sorted(new))]
-        return found
+        return collected
 
     def _starts(self) -> Iterator[Values]:
         """Random points; after the plain ones every other one is near the defaults."""

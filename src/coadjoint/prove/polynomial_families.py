@@ -222,13 +222,13 @@ class PolynomialFamily:
 
     def _largest(self, quotients: Sequence[Written]) -> Degrees | None:
         """The largest degrees of the addends of a function without functions of the state."""
-        names, found = (*self.velocities, *self.positions), list[Exponents]()
+        names, exponents = (*self.velocities, *self.positions), list[Exponents]()
         state = set(self.samples.state)
         for powers in (dict(m.powers) for q in quotients for m in q.monomials):
-            found.append(tuple(powers.pop(name, 0) for name in names))
+            exponents.append(tuple(powers.pop(name, 0) for name in names))
             if any(self.field.reach(self.field[name]) & state for name in powers):
                 return None
-        return _sums(found, len(self.velocities))
+        return _sums(exponents, len(self.velocities))
 
     def gradient(self, function: Solution[Exponents]) -> Row:
         """Slopes by the state of a combination of monomials, at the first point."""

@@ -25,9 +25,9 @@ def about_projection(first: Equations) -> Iterator[Examined]:
     """Three claims where constraints are kept, none elsewhere."""
     if first.projection is None:
         return
-    found = first.projection.distribution
-    assert found is not None
-    names = ", ".join(equation.name for equation, _ in found.kept)
+    distribution = first.projection.distribution
+    assert distribution is not None
+    names = ", ".join(equation.name for equation, _ in distribution.kept)
     arrives = f"the projection moves every state onto {names}, where its equations are regular"
     yield arrives, "constraint", partial(_arrival, first.projection)
     yield (
@@ -61,17 +61,17 @@ def _arrival(projection: Equations) -> list[Element]:
 
 def _least(projection: Equations) -> list[Element]:
     """``M d + A^T u`` minus the rows of the solve that make it vanish; changes of positions."""
-    field, found = projection.setting.field, _kept_constraints(projection)
+    field, distribution = projection.setting.field, _kept_constraints(projection)
     after = zip(projection.setting.state, projection.exact.rates, strict=True)
     changes = {name: value - field[name] for name, value in after}
-    rows, eta = _rows(projection), found.independent
-    energy = field.substitute(projection.setting.lagrangian, found.solved)
+    rows, eta = _rows(projection), distribution.independent
+    energy = field.substitute(projection.setting.lagrangian, distribution.solved)
     defects = [change for name, change in changes.items() if name not in eta]
     for place, (name, slope) in enumerate(zip(eta, field.gradient(energy, eta), strict=True)):
         mass = zip(field.gradient(slope, eta), eta, strict=True)
         pulls = (
             field.derivative(residual, name) * field[multiplier_name(n)]
-            for n, (_, residual) in enumerate(found.kept)
+            for n, (_, residual) in enumerate(distribution.kept)
         )
         total = field.sum([*(m * changes[other] for m, other in mass), *pulls])
         defects.append(total - rows.get(shift_name(place), field.zero))

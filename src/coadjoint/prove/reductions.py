@@ -56,10 +56,10 @@ def on_section(restriction: Restriction, function: Element) -> Element:
 
 def _decide(whole: Equations, examine: Callable[[], Found]) -> Decision | Discovery:
     """What becomes of a claim about the whole system, decided in its field."""
-    found = examine()
-    if isinstance(found, Decision | Discovery):
-        return found
-    return decide_zero(found, whole.setting.field)
+    result = examine()
+    if isinstance(result, Decision | Discovery):
+        return result
+    return decide_zero(result, whole.setting.field)
 
 
 def _decide_kept(whole: Equations, functions: Sequence[Element], where: str) -> Decision:

@@ -55,9 +55,8 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
         ]
         if not spec.is_forced:
             claims.append((f"dS/dt = <dS, G dS>{grows}", "conserved", known.entropy))
-    claims.append(
-        (f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.list_added)
-    )
+    terms = f"{{x, h}} + {relaxation.added}{' + the forces' * spec.is_forced}"
+    claims.append((f"the rates are {terms}", "dissipation", known.list_added))
     yield from mark_accepted(spec, (relaxation.table,), claims, first.setting.field)
 
 

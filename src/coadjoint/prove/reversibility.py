@@ -45,16 +45,16 @@ def about_reversal(motion: Motion) -> Iterator[Examined]:
         values = rate_defects(motion)
         name, decision = nonzero_at_a_point(values, motion.field, motion.where)
     if name and motion.is_explicit and not isinstance(motion, ConstrainedRates):
-        found = _other_signs(motion)
-        if found is not None:
-            yield found
+        examined = _other_signs(motion)
+        if examined is not None:
+            yield examined
             return
     scope = for_parameters(motion.setting, [values.get(name, motion.field.zero)])
     yield finding(
         "transformation",
         decision,
-        f"the motion is time reversible: it runs back with {_map_text(motion, motion.fibre)}",
-        f"the motion is not time reversible by {_map_text(motion, motion.fibre)}{scope}: {name}",
+        f"the motion is time reversible under {_map_text(motion, motion.fibre)}",
+        f"the motion is not time reversible under {_map_text(motion, motion.fibre)}{scope}: {name}",
     )
 
 
@@ -138,28 +138,30 @@ def _other_signs(motion: Motion) -> Examined | None:
             return None
         scope = for_parameters(motion.setting, motion.rates.values())
         text = f"no change of signs of the state takes the motion to its reverse{scope}"
-        proof = Decision(Verdict.PROVED, "parities of the monomials of the rates, modulo 2")
+        proof = Decision(
+            verdict=Verdict.PROVED, method="parities of the monomials of the rates, modulo 2"
+        )
         return text, "transformation", lambda: proof
     back = {name: -field[name] for name in (*signs, *time)}
     defects = [
         (-rate if name in signs else rate) + field.substitute(rate, back)
         for name, rate in motion.rates.items()
     ]
-    found = decide_zero(defects, field)
-    if found.verdict is not Verdict.PROVED:
+    decision = decide_zero(defects, field)
+    if decision.verdict is not Verdict.PROVED:
         return None
-    text = f"the motion is time reversible: it runs back with {_map_text(motion, signs)}"
-    return text, "transformation", lambda: found
+    text = f"the motion is time reversible under {_map_text(motion, signs)}"
+    return text, "transformation", lambda: decision
 
 
 def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
     """The equations of the signs, and whether every solution must satisfy them.
 
     Arguments of functions, and denominators, may keep their sign or turn it; only what keeps it is
-    looked for, so that a contradiction says nothing where there are such.
+    searched for, so that a contradiction says nothing where there are such.
     """
     field, state = motion.field, {*motion.setting.state}
-    found, is_complete = list[Parity](), True
+    parities, is_complete = list[Parity](), True
     for name, rate in motion.rates.items():
         if rate == 0:
             continue
@@ -171,13 +173,13 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
         for powers in (dict(each.powers) for each in written.monomials):
             odd = frozenset(n for n, e in powers.items() if e % 2)
             right = (1 + len(odd & time)) % 2
-            found.append(((odd & state) ^ {name}, right))
+            parities.append(((odd & state) ^ {name}, right))
         for element in inside:
             for quotient in field.quotients(field.normal(element).combine()):
                 for powers in (dict(each.powers) for each in quotient.monomials):
                     odd = frozenset(n for n, e in powers.items() if e % 2)
-                    found.append((odd & state, len(odd & time) % 2))
-    return found, is_complete
+                    parities.append((odd & state, len(odd & time) % 2))
+    return parities, is_complete
 
 
 def _solve_parities(parities: Sequence[Parity], state: Sequence[str]) -> list[str] | None:

@@ -284,15 +284,15 @@ class Samples:
         solved = echelon_modulo(rows, self.prime)
         if len(solved) < len(rows) or len(names) in solved:
             raise ZeroDivisionError("the constraints depend on each other here")
-        found = {}
+        values = {}
         for pivot, row in solved.items():
             others = (
                 value * (point[names[n]] if n < len(names) else 1)
                 for n, value in row.items()
                 if n != pivot
             )
-            found[names[pivot]] = Residue(-sum(others) % self.prime, self.prime)
-        return found
+            values[names[pivot]] = Residue(-sum(others) % self.prime, self.prime)
+        return values
 
     @cached_property
     def _kept(self) -> list[tuple[Element, ...]]:

@@ -1,6 +1,6 @@
 """Searches: what is found in addition to the claims, each with its own budget.
 
-Integrals, measures, Casimirs and growth vectors are looked for without anyone having claimed them.
+Integrals, measures, Casimirs and growth vectors are searched for though nobody claimed them.
 Such a search may take very long, and must not keep a user from a proved kernel; so it ends after
 a given amount of work, and the certificate says that it did. Work is counted and not timed
 (`coadjoint.exact.element.Factors.budget`), so that a certificate is the same on every machine.
@@ -30,22 +30,22 @@ def within_budget(
     Args:
         field: Whose arithmetic is counted.
         kind: Of the finding that says where the search ended.
-        subject: What is looked for, in the plural: ``integrals``.
+        subject: What is searched for, in the plural: ``integrals``.
         examined: The statements; a generator, so that none of its work is done before.
         work: The budget.
     """
-    found = list[Examined]()
+    results = list[Examined]()
     try:
         with field.budget(work):
             for statement, of_kind, examine in examined:
                 result = examine()
                 if not isinstance(result, Decision | Discovery):
                     result = decide_zero(result, field)
-                found.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
+                results.append((statement, of_kind, lambda result=result: result))  # type: ignore[misc]
     except (BudgetSpent, UndecidedError, OverflowError) as error:
         end = Discovery(_why_ended(error, work), "no statement beyond those above")
-        found.append((f"{subject}: not searched further", kind, lambda: end))
-    yield from found
+        results.append((f"{subject}: not searched further", kind, lambda: end))
+    yield from results
 
 
 def _why_ended(error: Exception, work: int) -> str:

@@ -48,7 +48,7 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
     blocks = coupled_blocks(doubled)
     if all(_has_no_negative_minor(ring, doubled, block) for block in blocks):
         method = f"no principal minor of {named} is negative: sums of squares and of positive terms"
-        return Decision(Verdict.PROVED, method)
+        return Decision(verdict=Verdict.PROVED, method=method)
     entries = [entry for row in doubled for entry in row]
     points, seen = Points(ring, entries), 0
     for point in points:
@@ -59,12 +59,19 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
             if least < -ROUNDING * max(map(abs, values)):
                 method = f"an eigenvalue of {DIGITS} digits"
                 shown = show_point(points, point)
-                return Decision(Verdict.REFUTED, method, shown, mpmath.nstr(least, 15))
+                return Decision(
+                    verdict=Verdict.REFUTED,
+                    method=method,
+                    point=shown,
+                    defect=mpmath.nstr(least, 15),
+                )
         if seen == POINTS:
             break
     if not seen:
         raise UndecidedError(f"no point is found at which G has a value. {ADVICE}")
-    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit eigenvalues at {seen} random points")
+    return Decision(
+        verdict=Verdict.SUPPORTED, method=f"{DIGITS}-digit eigenvalues at {seen} random points"
+    )
 
 
 def _has_no_negative_minor(ring: Field, matrix: Matrix, block: Sequence[int]) -> bool:

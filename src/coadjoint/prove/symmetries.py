@@ -102,7 +102,7 @@ def _noether(
     if invariant:
         names = [symmetry.components[n] for n in invariant]
         subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
-        idle = " and nothing that acts changes it" * first.spec.is_driven
+        idle = " and forces and dissipation do not change it" * first.spec.is_driven
         yield (
             f"{subject} is conserved by Noether's theorem, since its flow keeps h{idle}"
             f"{while_constant(first, [J.values[n] for n in invariant])}",
@@ -167,7 +167,7 @@ def _kind_of(first: Equations, flows: Sequence[VectorField]) -> str:
         return ""
     if verdict is Verdict.PROVED:
         return ", a transformation of positions"
-    return ", a hidden symmetry: its flow is no transformation of positions alone"
+    return ", a hidden symmetry: its flow is not a transformation of positions alone"
 
 
 def _commutators(first: Equations, flows: Sequence[VectorField]) -> list[Element]:
@@ -221,10 +221,10 @@ def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision
 def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Element]:
     """The image of each component of the state, and of time and rates of inputs."""
     setting, field = motion.setting, motion.field
-    found = {name: field[name] for name in setting.state}
+    images = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
-        found |= {name: -field[name] for name in list_time_reversed(setting)}
-    return found | moved_components(setting, transformation.map)
+        images |= {name: -field[name] for name in list_time_reversed(setting)}
+    return images | moved_components(setting, transformation.map)
 
 
 def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:

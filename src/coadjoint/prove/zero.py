@@ -1,7 +1,7 @@
 """Deciding that elements are zero: by normal form, and where that cannot tell, at points.
 
 Comes in: elements that should be zero, everywhere or where relations hold. Goes out: a verdict, a
-method, and a counter-example point for what is not zero. Points lie in the domain that is declared
+method, and a counterexample point for what is not zero. Points lie in the domain that is declared
 and on the zero set of the relations. A value refutes if interval arithmetic keeps it from zero.
 Where no point is found, nothing is decided and an error says so. Points are the same in every run,
 so that every run gives the same certificate.
@@ -93,21 +93,28 @@ Examined = tuple[str, str, Callable[[], Sequence[Element] | Decision | Discovery
 
 
 def make_entry(
-    statement: str, kind: str, found: Decision | Discovery, seconds: float
+    statement: str, kind: str, result: Decision | Discovery, seconds: float
 ) -> Claim | Finding:
     """The entry of the certificate for a statement: a claim if it was decided, else a finding."""
-    if isinstance(found, Discovery):
-        return Finding(statement, kind, found.method, found.scope, found.error, seconds)
+    if isinstance(result, Discovery):
+        return Finding(
+            statement=statement,
+            kind=kind,
+            method=result.method,
+            scope=result.scope,
+            error=result.error,
+            seconds=seconds,
+        )
     return Claim(
         statement=statement,
         kind=kind,
-        verdict=found.verdict,
-        method=found.method,
+        verdict=result.verdict,
+        method=result.method,
         seconds=seconds,
-        counterexample=found.point,
-        defect=found.defect,
-        accepted=found.accepted,
-        leaves=found.leaves,
+        counterexample=result.point,
+        defect=result.defect,
+        accepted=result.accepted,
+        leaves=result.leaves,
     )
 
 
@@ -131,10 +138,10 @@ def _mark(
     examine: Callable[[], Sequence[Element] | Decision | Discovery], ring: Field, *, accepted: bool
 ) -> Decision | Discovery:
     """The decision about a claim of a spec, with the mark whether support is enough."""
-    found = examine()
-    if isinstance(found, Discovery):
-        return found
-    decision = found if isinstance(found, Decision) else decide_zero(found, ring)
+    result = examine()
+    if isinstance(result, Discovery):
+        return result
+    decision = result if isinstance(result, Decision) else decide_zero(result, ring)
     return replace(decision, accepted=accepted)
 
 
@@ -167,10 +174,12 @@ def decide_zero(
         if not plain and next(iter(Points(ring, (), None, defined)), None) is None:
             raise UndecidedError(f"no point is found at which it has a value. {ADVICE}")
         return prove_by_normal_form(ring)
-    found = _look(left, ring, Branch(), "", defined)
-    if isinstance(found, Decision):
-        return found
-    return Decision(Verdict.SUPPORTED, f"{DIGITS}-digit values at {found} random points")
+    outcome = _look(left, ring, Branch(), "", defined)
+    if isinstance(outcome, Decision):
+        return outcome
+    return Decision(
+        verdict=Verdict.SUPPORTED, method=f"{DIGITS}-digit values at {outcome} random points"
+    )
 
 
 def refute_at_a_point(element: Element, ring: Field, where: Ideal) -> Decision | None:
@@ -181,9 +190,9 @@ def refute_at_a_point(element: Element, ring: Field, where: Ideal) -> Decision |
     for branch in where.branches:
         with suppress(ZeroDivisionError, UndecidedError):
             value = ring.substitute(element, branch.solved)
-            found = _look([value], ring, branch, where.scope, where.given)
-            if isinstance(found, Decision):
-                return found
+            outcome = _look([value], ring, branch, where.scope, where.given)
+            if isinstance(outcome, Decision):
+                return outcome
     return None
 
 
@@ -196,7 +205,10 @@ def prove_by_normal_form(ring: Field) -> Decision:
 
     What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
     """
-    return Decision(Verdict.PROVED, NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM)
+    return Decision(
+        verdict=Verdict.PROVED,
+        method=NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM,
+    )
 
 
 def _decide_where(
@@ -214,13 +226,13 @@ def _decide_where(
         left = [element for element in elements if not where.contains(element)]
         whole = Branch(rest=where.relations, regular=where.nonzero)
         named = (*where.given, *defined)
-        found = _look(left, ring, whole, where.scope, named)
-        return found if isinstance(found, Decision) else _support(found, where)
+        outcome = _look(left, ring, whole, where.scope, named)
+        return outcome if isinstance(outcome, Decision) else _support(outcome, where)
 
 
 def _support(count: int, where: Ideal) -> Decision:
     method = f"{DIGITS}-digit values at {count} points where {where.scope}"
-    return Decision(Verdict.SUPPORTED, method)
+    return Decision(verdict=Verdict.SUPPORTED, method=method)
 
 
 def _decide_on_branches(
@@ -239,13 +251,13 @@ def _decide_on_branches(
             if not left:
                 continue
             try:
-                found = _look(left, ring, branch, where.scope, named)
+                outcome = _look(left, ring, branch, where.scope, named)
             except UndecidedError as error:
                 empty = error
                 continue
-            if isinstance(found, Decision):
-                return found
-            counts.append(found)
+            if isinstance(outcome, Decision):
+                return outcome
+            counts.append(outcome)
     if empty is not None:
         raise empty
     if not where.branches:
@@ -268,13 +280,13 @@ def _proof(
     """
     poles = _poles(elements, where)
     named = [each for each in defined if not _is_polynomial(each, where.field)]
-    found = where.points([*named, *poles]) if poles or named else where.some_points
-    if not any(_is_regular(poles, *at) for at in found):
+    points = where.points([*named, *poles]) if poles or named else where.some_points
+    if not any(_is_regular(poles, *at) for at in points):
         if not where.branches:
             raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
         empty = f"no point is found at which it has a value, where {where.scope}"
         raise UndecidedError(f"{empty}. {ADVICE}")
-    return Decision(Verdict.PROVED, f"normal form {text}{_but_for(poles, where)}")
+    return Decision(verdict=Verdict.PROVED, method=f"normal form {text}{_but_for(poles, where)}")
 
 
 def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:
@@ -299,11 +311,11 @@ def _is_polynomial(element: Element, ring: Field) -> bool:
 
 def _poles(elements: Sequence[Element], where: Ideal) -> list[Element]:
     """Denominators in which something moves and which may vanish."""
-    ring, found = where.field, list[Element]()
+    ring, poles = where.field, list[Element]()
     for element in elements:
         for written in ring.quotients(ring.normal(element)):
-            found += [divisor for divisor, _ in written.divisors if divisor not in found]
-    return [each for each in found if where.may_vanish(each)]
+            poles += [divisor for divisor, _ in written.divisors if divisor not in poles]
+    return [each for each in poles if where.may_vanish(each)]
 
 
 def _but_for(poles: Sequence[Element], where: Ideal) -> str:
@@ -341,9 +353,9 @@ def _look(
             if value:
                 written = (element, *branch.solved.values())
                 exact = not branch.rest and all(map(ring.is_function_free, written))
-                method = f"{'exact' if exact else f'{DIGITS}-digit'} counter-example{where}"
+                method = f"{'exact' if exact else f'{DIGITS}-digit'} counterexample{where}"
                 shown = show_point(points, point)
-                return Decision(Verdict.REFUTED, method, shown, value)
+                return Decision(verdict=Verdict.REFUTED, method=method, point=shown, defect=value)
             # without functions the element is not zero, and another point shows it
             seen += value is not None and (bool(branch.rest) or not ring.is_function_free(element))
             if seen == POINTS:
@@ -410,8 +422,8 @@ class _Sized:
 def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:
     """The value of an element and the size of its largest addend."""
     numbers = {name: _Sized.of(value) for name, value in point.items()}
-    found = ring.evaluate(element, numbers, _Sized.of, _Sized.call)
-    return found.value, found.size
+    sized = ring.evaluate(element, numbers, _Sized.of, _Sized.call)
+    return sized.value, sized.size
 
 
 def show_point(points: Points, point: Values) -> dict[str, str]:

@@ -63,7 +63,7 @@ def refuse_unsafe(value: object) -> None:
         mark = UNSAFE.search(text)
         if mark:
             raise SpecError(
-                f"{text[:80]!r} cannot stand in generated code: it holds {mark[0]!r}; expected "
+                f"{text[:80]!r} cannot stand in generated code: it contains {mark[0]!r}; expected "
                 "plain ASCII text without comment marks. Check the units and names of the spec.",
                 found=text[:80],
                 expected="plain ASCII text without comment marks",

@@ -40,11 +40,13 @@ class Problem:
         found: What it is, with its path.
         remedy: What to do.
         heals: Whether the next run mends it without being told.
+        regenerates: Whether regenerating the systems mends it.
     """
 
     found: str
     remedy: str
     heals: bool = False
+    regenerates: bool = False
 
 
 def tree_problems(folder: Path, *, is_shipped: bool = False) -> Iterator[Problem]:
@@ -58,23 +60,25 @@ def tree_problems(folder: Path, *, is_shipped: bool = False) -> Iterator[Problem
         OSError: It cannot be read.
     """
     if not folder.is_dir():
-        yield Problem(f"{folder} is not there", _AGAIN)
+        yield Problem(f"{folder} is not there", _AGAIN, regenerates=True)
         return
     manifest = read_object(folder / MANIFEST)
     if not is_manifest(manifest):
         what = "is damaged" if os.path.lexists(folder / MANIFEST) else "is missing"
-        yield Problem(f"{folder / MANIFEST} {what}", _AGAIN)
+        yield Problem(f"{folder / MANIFEST} {what}", _AGAIN, regenerates=True)
         manifest = {"systems": {}}
     for name, text in PACKAGE.items():
         if read_present(folder / name) != text.encode():
-            yield Problem(f"{folder / name} is missing or was changed", _AGAIN)
+            yield Problem(f"{folder / name} is missing or was changed", _AGAIN, regenerates=True)
     changed = [name for name in manifest["systems"] if not is_intact(folder, name)]
     if changed:
-        yield Problem(f"{folder}: files of {list_names(changed, 8)} are missing or changed", _AGAIN)
+        lost = f"{folder}: files of {list_names(changed, 8)} are missing or changed"
+        yield Problem(lost, _AGAIN, regenerates=True)
     for name in changed:
         certificate = folder / name / "certificate.json"
         if "claims" not in read_certificate(certificate):
-            yield Problem(f"{certificate} is missing or damaged", f"{_AGAIN} {name}")
+            lost = f"{certificate} is missing or damaged"
+            yield Problem(lost, f"{_AGAIN} {name}", regenerates=True)
     if not is_shipped:
         files = {name: list(entry["files"]) for name, entry in manifest["systems"].items()}
         yield from _list_obstacles(folder, files)
@@ -101,8 +105,9 @@ def _list_unlisted(folder: Path, systems: Collection[str]) -> Iterator[Problem]:
     for path in sorted(folder.iterdir()):
         if path.name not in systems and not path.is_symlink() and path.is_dir() and is_marked(path):
             yield Problem(
-                f"{path} holds a system that {MANIFEST} does not list",
+                f"{path} contains a system that {MANIFEST} does not list",
                 f"{_AGAIN} {path.name}, or remove the folder",
+                regenerates=True,
             )
 
 

@@ -169,7 +169,7 @@ def as_float64(value: Any, name: str) -> Array:
     converted = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
     if array.dtype.kind in "iu" and not _same_integers(array, converted):
         raise KernelTypeError(
-            f"{name} ({array.dtype}) holds integers beyond 2^53, which float64 would round. "
+            f"{name} ({array.dtype}) contains integers beyond 2^53, which float64 would round. "
             "Convert it yourself if a loss is meant.",
             found=str(array.dtype),
             expected="float64",

@@ -126,7 +126,7 @@ def say_once(message: str, *, depth: int = 2) -> None:
 
 
 def check_target(target: str) -> None:
-    """Refuse what is no target.
+    """Refuse what is not a target.
 
     Raises:
         KernelArgumentError: No such target.

@@ -388,7 +388,7 @@ def load_folder(folder: Path) -> System:
         ) from error
     if not isinstance(getattr(module, "system", None), System):
         raise OutputError(
-            f"{folder} holds no generated system; expected an __init__.py written by "
+            f"{folder} contains no generated system; expected an __init__.py written by "
             "`coadjoint regenerate`. Run it again.",
             path=str(folder),
         )

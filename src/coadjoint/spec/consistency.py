@@ -104,12 +104,12 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
     if start.table and not getattr(file, start.table):
         yield _Obstacle(f"has no table [{start.table}]", (start.table,))
     if not start.takes_driving and (file.inputs or file.time):
-        yield _Obstacle("knows neither inputs nor time")
+        yield _Obstacle("does not accept inputs or time")
     energies = energies_of(route, kinds)
     if not start.needs_energy:
         if not _is_bare(file) and kinds == ("configuration",):
             yield _Obstacle(
-                "knows no bracket of coordinates with velocities or momenta",
+                "has no bracket of coordinates with velocities or momenta",
                 cure="declare the momenta as coordinates, with [poisson] and "
                 'canonical = [["q", "p"]]',
             )
@@ -121,7 +121,7 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
         yield _Obstacle("moves momenta, and the state has velocities")
     for table in TABLES:
         if table.acts and getattr(file, table.key) and table.key not in start.options:
-            yield _Obstacle(f"knows no {table.key}", cure=f"remove [{table.key}]")
+            yield _Obstacle(f"does not accept [{table.key}]", cure=f"remove [{table.key}]")
 
 
 def _is_bare(file: Any) -> bool:

@@ -1,7 +1,7 @@
 """The reader: a spec file to a `Spec`, the first step of all.
 
 Comes in: a path, or a text. Goes out: a frozen, checked `Spec`; or an error with file, line,
-column, source line and likely fix. Faults are looked for in the order in which they are worth
+column, source line and likely fix. Faults are searched for in the order in which they are worth
 reporting: the file (`files`), its form (`validate`), the variables and what they need, the routes
 (`consistency`), then every table (`tables`).
 Read next: `coadjoint.derive.setting`.
@@ -111,7 +111,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     following = [(each.momentum.name, each.name, each.components) for each in spatial_momenta(spec)]
     following += [(each.velocity.name, each.name, each.components) for each in spec.reduced_momenta]
     for owner, momentum, components in following:
-        reading.declare(Naming(("variables", owner), momentum, components))
+        reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)
     submanifold = REDUCTION.of(reading)
     return spec if submanifold is None else spec.restricted_to(submanifold)

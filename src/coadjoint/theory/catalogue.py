@@ -26,7 +26,13 @@ Parts = tuple[LieAlgebra, LinearPart, int]
 
 def _isometries(algebra: LieAlgebra, count: int, form: Matrix, **more: Any) -> Parts:
     """A group whose first generators keep a form."""
-    part = Isometries(len(form), algebra.basis[:count], algebra.matrices[:count], form, **more)
+    part = Isometries(
+        size=len(form),
+        symbols=algebra.basis[:count],
+        generators=algebra.matrices[:count],
+        form=form,
+        **more,
+    )
     return algebra, part, count
 
 
@@ -177,7 +183,13 @@ def matrix_group(
     coordinates = (*linear.symbols, *(algebra.basis[i] for i in nilpotent))
     names = [f"{prefix}_{symbol}" for prefix in elements for symbol in coordinates]
     names += [f"{prefix}_{member}" for prefix in vectors for member in algebra.basis]
-    return MatrixGroup(name, algebra, linear, nilpotent, Field([*names, *more], slots))
+    return MatrixGroup(
+        name=name,
+        algebra=algebra,
+        linear=linear,
+        nilpotent=nilpotent,
+        field=Field([*names, *more], slots),
+    )
 
 
 def _parts(name: str) -> Parts:

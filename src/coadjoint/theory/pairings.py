@@ -99,7 +99,7 @@ def _check_known(word: str, known: Sequence[str]) -> None:
         return
     near = get_close_matches(word, known, n=1)
     raise AlgebraError(
-        f"{word!r} is no trace pairing; expected one of {', '.join(known)}."
+        f"{word!r} is not a trace pairing; expected one of {', '.join(known)}."
         + (f" Did you mean {near[0]!r}?" if near else ""),
         found=word,
     )

@@ -229,7 +229,7 @@ def emit_motion(
         residuals=tuple((each.name, each.residual) for each in of.equations),
     )
     shown = tuple(step for step in steps(exact) if step.lines)
-    return Equations(setting, route, exact, shown, distribution=of)
+    return Equations(setting=setting, route=route, exact=exact, steps=shown, distribution=of)
 
 
 def show_mass(mass: Matrix, text: str, latex: str) -> Step:

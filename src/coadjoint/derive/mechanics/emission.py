@@ -44,8 +44,15 @@ def emit(
     """
     tensor = poisson_structure(setting).tensor if has_structure(setting) else None
     emitted = list_emitted(setting, energy, _momenta_in_frame(setting))
-    exact = Exact(tuple(definitions), rates, energy, emitted, tensor, solves)
-    return Equations(setting, route, exact, tuple(steps))
+    exact = Exact(
+        definitions=tuple(definitions),
+        rates=rates,
+        energy=energy,
+        emitted=emitted,
+        poisson_tensor=tensor,
+        solves=solves,
+    )
+    return Equations(setting=setting, route=route, exact=exact, steps=tuple(steps))
 
 
 def _momenta_in_frame(setting: Setting) -> list[tuple[str, Element]]:

@@ -94,17 +94,19 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
             velocities |= _invert_block(setting, own, rest, block)
         else:
             _check_pivots(setting, own, block)
-            solves.append(Solve(own, rest, block, [names[i] for i in block]))
+            solves.append(
+                Solve(matrix=own, known=rest, block=block, names=[names[i] for i in block])
+            )
     pairs = zip(setting.momenta, names, setting.weights, strict=True)
     energy = sum((field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs), -of.lagrangian)
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
     return LegendreTransform(
-        of.momenta,
-        tuple(velocities.get(name, field[name]) for name in names),
-        field.substitute(energy, velocities),
-        (*solved, *written),
-        tuple(solves),
+        momenta=of.momenta,
+        velocities=tuple(velocities.get(name, field[name]) for name in names),
+        energy=field.substitute(energy, velocities),
+        definitions=(*solved, *written),
+        solves=tuple(solves),
     )
 
 

@@ -99,7 +99,9 @@ def _tree(spec: Spec, text: str) -> Node:
             inner[name] = each
         else:
             tree = expand(read_expression(each.text, functions(known)), inner)
-            inner[name] = Definition(name, (), each.text, tree, each.shape)
+            inner[name] = Definition(
+                name=name, arguments=(), text=each.text, tree=tree, shape=each.shape
+            )
     return expand(read_expression(text, functions(known)), inner)
 
 

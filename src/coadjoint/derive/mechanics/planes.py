@@ -111,7 +111,7 @@ def body_of(setting: Setting) -> Body:
         )
     symmetric, slopes = _potential(setting, n)
     M, Omega = (_antisymmetric(setting, n, entries) for entries in (momentum, velocity))
-    return Body(n, M, Omega, inertia, symmetric, slopes)
+    return Body(size=n, momentum=M, velocity=Omega, inertia=inertia, field=symmetric, slopes=slopes)
 
 
 def _planes(setting: Setting) -> list[tuple[Plane, Element]]:
@@ -162,7 +162,7 @@ def _inertia(setting: Setting, planes: Sequence[tuple[Plane, Element]]) -> dict[
                 ROUTE,
                 f"the kinetic energy of {name} depends on {guilty}"
                 if coupled or moving
-                else f"the kinetic energy is no square of {name}",
+                else f"the kinetic energy is not a square of {name}",
                 guilty,
                 "a sum over the planes of a square times a function of parameters",
                 "Choose axes that decouple the planes, or declare a pair under [lax].",

@@ -45,10 +45,10 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
     sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(of))}
     solves = tuple(
         Solve(
-            solve.mirrored,  # without what forces add that are proportional to reactions
-            [sides.get(name, field.zero) for name in solve.names],
-            solve.block,
-            [shifts.get(name, name) for name in solve.names],
+            matrix=solve.mirrored,  # without what forces add that are proportional to reactions
+            known=[sides.get(name, field.zero) for name in solve.names],
+            block=solve.block,
+            names=[shifts.get(name, name) for name in solve.names],
         )
         for solve in exact.solves
         if sides.keys() & set(solve.names)  # velocities of other blocks stay
@@ -65,7 +65,15 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
         decided.define(name, value)
     definitions += [line for solve in solves for line in solve_in_kernel(field, solve, decided)]
     state = tuple(field[name] + changes.get(name, field.zero) for name in setting.state)
-    return Exact(tuple(definitions), state, None, (), None, solves, exact.residuals)
+    return Exact(
+        definitions=tuple(definitions),
+        rates=state,
+        energy=None,
+        emitted=(),
+        poisson_tensor=None,
+        solves=solves,
+        residuals=exact.residuals,
+    )
 
 
 def _residuals(of: Distribution) -> list[Element]:

@@ -106,7 +106,7 @@ def derive(setting: Setting) -> Equations:
     """Equations of motion by Lagrange's equations for unit quaternions.
 
     Raises:
-        DerivationError: The algebra is not so(3), or what is advected is no vector.
+        DerivationError: The algebra is not so(3), or what is advected is not a vector.
     """
     check_rotations(setting)
     body = _body(setting)

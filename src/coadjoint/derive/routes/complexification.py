@@ -39,7 +39,7 @@ def derive(setting: Setting) -> Equations:
     """Equations of motion as real and imaginary parts of complex ones.
 
     Raises:
-        DerivationError: The algebra is no complexification, something is advected, or the
+        DerivationError: The algebra is not a complexification, something is advected, or the
             Hamiltonian calls functions that complex numbers here do not have.
     """
     real = real_algebra(setting)
@@ -76,7 +76,9 @@ def real_algebra(setting: Setting) -> LieAlgebra:
             "complexification, too.",
         )
     inner = {pair: row for pair, row in algebra.constants.items() if max(*pair, *row) < half}
-    real = LieAlgebra(f"real part of {algebra.name}", algebra.basis[:half], inner)
+    real = LieAlgebra(
+        name=f"real part of {algebra.name}", basis=algebra.basis[:half], constants=inner
+    )
     if not same_constants(complexification(real), algebra):
         raise refusal(
             setting,

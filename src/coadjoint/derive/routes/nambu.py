@@ -10,7 +10,7 @@ the motion runs along the intersections of the level sets of :math:`c` and :math
 dimensions it is :math:`\dot x_i = -\det(e_i, \nabla h, \nabla c_1, \ldots, \nabla c_{n-2})`.
 On the dual of an algebra of three dimensions c is found. Its gradient is :math:`b_k =
 -\epsilon_{ijk} \{x_i, x_j\}/2`, linear in x; where that is closed, which it is for unimodular
-algebras, :math:`c = x \cdot b/2`. Elsewhere a Casimir C is looked for, and :math:`b = m \nabla C`
+algebras, :math:`c = x \cdot b/2`. Elsewhere a Casimir C is searched for, and :math:`b = m \nabla C`
 with a multiplier m.
 Comes in: a Setting with a Hamiltonian and such functions, or with an algebra. Goes out: Equations
 whose rates are these determinants, without the bracket; `coadjoint.derive.routes.poisson` uses the
@@ -117,8 +117,8 @@ def _from_casimir(setting: Setting, b: Sequence[Element]) -> Distinguished:
         raise refusal(
             setting,
             "nambu",
-            f"{algebra.name} is not unimodular, so its bracket is no gradient, and no Casimir was "
-            f"found for a multiple of one ({reason})",
+            f"{algebra.name} is not unimodular, so its bracket is not a gradient, and no Casimir "
+            f"was found for a multiple of one ({reason})",
             algebra.name,
             "a unimodular algebra, or a rational Casimir",
         )

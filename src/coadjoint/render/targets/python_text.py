@@ -113,4 +113,4 @@ class Reader:
                 called = self._called(function)
                 if called in FUNCTIONS:
                     return Call(called, self.node(argument))
-        raise self.refusal("is no form of a Program", tree)
+        raise self.refusal("is not a form of a Program", tree)

@@ -108,8 +108,10 @@ class Scalars:
             return
         self._terms += terms
         if self._terms > PARAMETRIC_TERMS:
-            problem = f"with this one, coefficients have {self._terms} terms that hold parameters"
-            hint = "Put numbers for some of the parameters."
+            problem = (
+                f"with this one, coefficients have {self._terms} terms that contain parameters"
+            )
+            hint = "Replace some of the parameters by numbers."
             raise ExpressionError(
                 problem, tree.start, tree.end, str(self._terms), hint=hint, limit="PARAMETRIC_TERMS"
             )

@@ -143,7 +143,9 @@ def _component(node: Node, whole: Node) -> Node:
     if isinstance(whole, Name):
         return replace(node, name=whole.name)
     start, end, within = node.start, node.end, node.within
-    return Component(node.name, whole, node.indices, start=start, end=end, within=within)
+    return Component(
+        name=node.name, operand=whole, indices=node.indices, start=start, end=end, within=within
+    )
 
 
 # -- reading --------------------------------------------------------------------------------------
@@ -191,7 +193,9 @@ def define(
             shape = _shape(tree, shapes, arguments, [_name(later) for later in texts])
         except ExpressionError as error:
             raise source.expression_fault(key, error) from None
-        known[name] = Definition(name, arguments, expression, tree, shape)
+        known[name] = Definition(
+            name=name, arguments=arguments, text=expression, tree=tree, shape=shape
+        )
     return tuple(known.values())
 
 

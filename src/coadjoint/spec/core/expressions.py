@@ -127,7 +127,9 @@ class _Reader:
         while _BINDING.get(self.next.kind, 0) > binding:
             operator = self._take().kind
             right = self._climb(_BINDING[operator])
-            left = self._count(Binary(operator, left, right, start=left.start, end=right.end))
+            left = self._count(
+                Binary(operator=operator, left=left, right=right, start=left.start, end=right.end)
+            )
         return left
 
     def _unary(self) -> Node:
@@ -151,7 +153,7 @@ class _Reader:
             hint = "Write (a^b)^c, or multiply the exponents out."
             raise self._fault(problem, base.start, self.next.end, "parentheses", hint)
         end = self.tokens[self.at - 1].end
-        return self._count(Power(base, exponent, start=base.start, end=end))
+        return self._count(Power(base=base, exponent=exponent, start=base.start, end=end))
 
     def _exponent(self) -> int:
         """A literal integer, perhaps with a minus, perhaps in parentheses."""
@@ -223,7 +225,9 @@ class _Reader:
                 self._take()
                 arguments.append(self._climb(0))
         closing = self._close(opening, ")")
-        return self._count(Call(name.text, tuple(arguments), start=name.start, end=closing.end))
+        return self._count(
+            Call(function=name.text, arguments=tuple(arguments), start=name.start, end=closing.end)
+        )
 
     def _index(self, name: _Token) -> Node:
         opening = self._take()
@@ -235,7 +239,9 @@ class _Reader:
         if self.next.kind == "[":
             start, end = self.next.start, self.next.end
             raise self._fault("two subscripts in a row", start, end, f"{name.text}[1, 2]")
-        return self._count(Index(name.text, tuple(indices), start=name.start, end=closing.end))
+        return self._count(
+            Index(name=name.text, indices=tuple(indices), start=name.start, end=closing.end)
+        )
 
     def _subscript(self, opening: _Token) -> int:
         token = self.next

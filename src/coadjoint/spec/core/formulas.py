@@ -146,7 +146,7 @@ def make_scope(
     plurals = [PLURALS[role] for role in roles]
     plurals += ["parameters", *(PLURALS[role] for role in present)]
     takes = " and ".join(filter(None, [", ".join(plurals[:-1]), plurals[-1]]))
-    return Scope(kind, takes, shapes, outside, definitions)
+    return Scope(kind=kind, takes=takes, shapes=shapes, outside=outside, definitions=definitions)
 
 
 def read_formula(
@@ -178,7 +178,7 @@ def read_formula(
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
-    return Formula(text, tree, shape, write_key(key), line)
+    return Formula(text=text, tree=tree, shape=shape, key=write_key(key), line=line)
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

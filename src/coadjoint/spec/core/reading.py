@@ -59,7 +59,9 @@ class Naming:
 
 def name_each(key: str, records: Sequence[Any]) -> list[Naming]:
     """The names that the records of a table declare, each at its own key."""
-    return [Naming((key, each.name), each.name, each.components) for each in records]
+    return [
+        Naming(key=(key, each.name), name=each.name, components=each.components) for each in records
+    ]
 
 
 def name_none(key: str, record: Any) -> tuple[()]:

@@ -124,10 +124,10 @@ def _sum(a: Size, b: Size) -> Size:
     if a.constant is not None and b.constant is not None:
         return _constant(a.constant + b.constant)
     return Size(
-        a.terms + b.terms,
-        max(a.degree, b.degree),
-        max(a.bits, b.bits) + 1,
-        a.diagonal and b.diagonal,
+        terms=a.terms + b.terms,
+        degree=max(a.degree, b.degree),
+        bits=max(a.bits, b.bits) + 1,
+        diagonal=a.diagonal and b.diagonal,
         fixed=a.fixed and b.fixed,
     )
 
@@ -137,10 +137,10 @@ def _product(a: Size, b: Size, summed: int = 1) -> Size:
     if a.constant is not None and b.constant is not None:
         return _constant(a.constant * b.constant)
     return Size(
-        summed * a.terms * b.terms,
-        a.degree + b.degree,
-        a.bits + b.bits + summed.bit_length() - 1,
-        a.diagonal and b.diagonal,
+        terms=summed * a.terms * b.terms,
+        degree=a.degree + b.degree,
+        bits=a.bits + b.bits + summed.bit_length() - 1,
+        diagonal=a.diagonal and b.diagonal,
         fixed=a.fixed and b.fixed,
     )
 
@@ -153,7 +153,7 @@ def _count_products(below: list[Size], shape: list[Shape]) -> int:
 
 def _quotient(node: Node, a: Size, b: Size) -> Size:
     if b.constant is None:
-        return _product(a, Size(1, b.degree, b.bits, fixed=b.fixed))
+        return _product(a, Size(terms=1, degree=b.degree, bits=b.bits, fixed=b.fixed))
     if b.constant == 0:
         raise _no_value(node, "the expression divides by zero", "a divisor other than 0")
     return _product(a, _constant(1 / b.constant))
@@ -175,7 +175,9 @@ def _power(node: Node, base: Size, exponent: int, shape: Shape) -> Size:
         terms = comb(n + base.terms - 1, n)
     carries = base.terms.bit_length() if base.terms > 1 else 0
     bits = n * (base.bits + carries)
-    return Size(terms, n * base.degree, bits, base.diagonal, fixed=base.fixed)
+    return Size(
+        terms=terms, degree=n * base.degree, bits=bits, diagonal=base.diagonal, fixed=base.fixed
+    )
 
 
 def _function(node: Node, function: str, argument: Size) -> Size:
@@ -209,13 +211,13 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
             products = _product(a, below[1], _count_products(below, shape))
             return _sum(products, products)
         case "trace":
-            return Size(n * a.terms, a.degree, a.bits + n.bit_length())
+            return Size(terms=n * a.terms, degree=a.degree, bits=a.bits + n.bit_length())
         case "diag":
-            return Size(a.terms, a.degree, a.bits, diagonal=len(shape[0]) == 1)
+            return Size(terms=a.terms, degree=a.degree, bits=a.bits, diagonal=len(shape[0]) == 1)
         case "transpose":
             return a
         case "hat":
-            return Size(a.terms, a.degree, a.bits)
+            return Size(terms=a.terms, degree=a.degree, bits=a.bits)
         case "norm":
             _check(node, _product(a, a, n))
             return Size(degree=1)
@@ -225,7 +227,10 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
             _check(node, _determinant(a, n))
             cofactor = _determinant(a, n - 1) if not a.diagonal else Size()
             return Size(
-                cofactor.terms, n * a.degree, n * a.bits + n.bit_length(), diagonal=a.diagonal
+                terms=cofactor.terms,
+                degree=n * a.degree,
+                bits=n * a.bits + n.bit_length(),
+                diagonal=a.diagonal,
             )
     raise AssertionError(function)
 
@@ -233,16 +238,18 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
 def _largest(parts: list[Size]) -> Size:
     """The size of a vector or matrix by its parts."""
     return Size(
-        max(part.terms for part in parts),
-        max(part.degree for part in parts),
-        max(part.bits for part in parts),
+        terms=max(part.terms for part in parts),
+        degree=max(part.degree for part in parts),
+        bits=max(part.bits for part in parts),
         fixed=all(part.fixed for part in parts),
     )
 
 
 def _determinant(a: Size, n: int) -> Size:
     products = 1 if a.diagonal else factorial(n)
-    return Size(products * a.terms**n, n * a.degree, n * a.bits + products.bit_length())
+    return Size(
+        terms=products * a.terms**n, degree=n * a.degree, bits=n * a.bits + products.bit_length()
+    )
 
 
 def _refusal(node: Node, limit: str, problem: str) -> ExpressionError:

@@ -156,7 +156,7 @@ class LeibnizPart(Part):
 class SubalgebraPart(Part):
     """The span of some vectors, which must be closed under the bracket."""
 
-    algebra: OperandPart = Field(description="the algebra that holds it")
+    algebra: OperandPart = Field(description="the algebra that contains it")
     basis: dict[str, str] = Field(
         min_length=1,
         description="vectors by name, such as X1 = 'E12 + E34'",

@@ -2,7 +2,7 @@
 
 Comes in: the validated table [algebra], which may hold further algebras, and the parameters that
 its constants may depend on. Goes out: an exact `LieAlgebra` and the declared representations; or an
-error with file, line, key and counter-example. Read next: `coadjoint.spec.sections.structure`.
+error with file, line, key and counterexample. Read next: `coadjoint.spec.sections.structure`.
 """
 
 from __future__ import annotations

@@ -103,7 +103,9 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
     shapes = own | {c: () for v in variables for c in v.components if v.shape}
     scope = reading.scope("a chart", (), shapes)
     for v in variables:
-        reading.declare(Naming((*key, "variables", v.name), v.name, v.components))
+        reading.declare(
+            Naming(key=(*key, "variables", v.name), name=v.name, components=v.components)
+        )
     reduction = REDUCTION.of(reading)
     fixed = {} if reduction is None else reduction.section
     state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading)) if v.name not in fixed}

@@ -97,7 +97,8 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
     for name, text in texts.items():
         _check_names_no_reaction(reading, ("constraints", name), text)
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
-        constraints.append(Constraint(name, left, right, *solved.get(name, ())))
+        solves, sign = solved.get(name, ("", 1))
+        constraints.append(Constraint(name=name, left=left, right=right, solves=solves, sign=sign))
     return tuple(constraints)
 
 
@@ -157,8 +158,8 @@ def _name_all(table: str, constraints: Sequence[Constraint]) -> Iterator[Naming]
         why = (
             f"The multiplier of the constraint {each.name} is {each.reaction}: rename one of them."
         )
-        yield Naming(key, each.name, each.components)
-        yield Naming(key, each.reaction, each.reactions, why=why)
+        yield Naming(key=key, name=each.name, components=each.components)
+        yield Naming(key=key, name=each.reaction, components=each.reactions, why=why)
 
 
 CONSTRAINTS = Table[tuple[Constraint, ...]](

@@ -34,7 +34,7 @@ def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Defini
         LimitError: With the earlier definitions expanded, an expression is too large.
     """
     for text in texts:
-        reading.declare(Naming(("definitions", text), _read_name(reading.source, text)))
+        reading.declare(Naming(key=("definitions", text), name=_read_name(reading.source, text)))
     given: list[Declared] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
     shapes = shapes_of([*given, *filter(None, [TIME.of(reading)])])
     if find_definitions_with_reactions(reading.file):

@@ -55,7 +55,7 @@ def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input
         default = read_default(source, ("inputs", name, "default"), part.default, shape)
         _check_rate(source, name, parts)
         own = {"unit": part.unit, "doc": part.doc, "rate": part.rate or ""}
-        inputs.append(Input(name, shape, default, **own))
+        inputs.append(Input(name=name, shape=shape, default=default, **own))
     reading.check_count("inputs", "inputs", inputs, "PARAMETER_COMPONENTS")
     return tuple(inputs)
 

@@ -109,14 +109,20 @@ class _Bracket:
     def poisson(self, part: PoissonPart) -> Poisson:
         """The bracket by whichever way it is declared."""
         if part.nambu is not None:
-            return Poisson("nambu", functions=self._nambu(part.nambu))
+            return Poisson(kind="nambu", functions=self._nambu(part.nambu))
         if part.brackets is not None:
             entries = self._entries("brackets", part.brackets, range(len(self.state)))
-            return Poisson("brackets", entries=entries)
+            return Poisson(kind="brackets", entries=entries)
         weights = self._canonical(part.canonical or [])
         momenta = [p for _, p in weights]
         entries = self._entries("magnetic", part.magnetic or {}, momenta)
-        return Poisson("canonical", (), entries, tuple(weights), tuple(weights.values()))
+        return Poisson(
+            kind="canonical",
+            functions=(),
+            entries=entries,
+            pairs=tuple(weights),
+            weights=tuple(weights.values()),
+        )
 
     def _formula(self, key: KeyPath, text: str, kind: str) -> Formula:
         scope = self.reading.scope(kind, state_roles(self.reading), driven=())

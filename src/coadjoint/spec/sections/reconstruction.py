@@ -90,7 +90,8 @@ def read_reconstruction(
     rolling = ROLLING.of(reading)
     first = () if rolling is None else _follow_rolling(reading, rolling)
     blank = [
-        Reconstructed(name, None, part.attitude or "", _shape(part)) for name, part in parts.items()
+        Reconstructed(name=name, rate=None, attitude=part.attitude or "", shape=_shape(part))
+        for name, part in parts.items()
     ]
     shapes: dict[str, Shape] = {}
     for each in (*first, *blank):
@@ -117,7 +118,9 @@ def _follow_rolling(reading: Reading, rolling: Rolling) -> tuple[Reconstructed, 
         of_rolling=True,
     )
     doc = "of the point of contact on the plane"
-    contact = (Reconstructed(name, None, unit=unit, doc=doc, of_rolling=True) for name in CONTACT)
+    contact = (
+        Reconstructed(name=name, rate=None, unit=unit, doc=doc, of_rolling=True) for name in CONTACT
+    )
     return (attitude, *contact)
 
 
@@ -169,7 +172,7 @@ def _name_all(table: str, followed: Iterable[Reconstructed]) -> Iterator[Naming]
     for each in followed:
         key: KeyPath = ("rolling",) if each.of_rolling else (table, each.name)
         rates = tuple(derived_names(each.components))
-        yield Naming(key, each.name, each.components, rates)
+        yield Naming(key=key, name=each.name, components=each.components, rates=rates)
 
 
 RECONSTRUCTION = Table[tuple[Reconstructed, ...]](

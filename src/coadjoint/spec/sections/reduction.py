@@ -108,7 +108,7 @@ def _check_alone(reading: Reading) -> None:
 def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]) -> None:
     """What the section gives is a variable, and no matrix kept as a list."""
     if name not in known or known[name].form:
-        kind = "is a matrix kept as a list" if name in known else "is no variable"
+        kind = "is a matrix kept as a list" if name in known else "is not a variable"
         problem = f"{name!r} {kind}"
         expected = f"one of {list_names(n for n, v in known.items() if not v.form)}"
         hint = did_you_mean(name, known)

@@ -57,7 +57,7 @@ def read_time(reading: Reading, part: TimePart) -> Time:
 
 def _name_time(table: str, time: Time | None) -> list[Naming]:
     """Its name; it may be ``t``, which is reserved since solutions call the time so."""
-    return [] if time is None else [Naming((table, "name"), time.name, allowed="t")]
+    return [] if time is None else [Naming(key=(table, "name"), name=time.name, allowed="t")]
 
 
 TIME = Table[Time | None](

@@ -372,7 +372,9 @@ def _name_all(table: str, variables: Sequence[Variable]) -> Iterator[Naming]:
     state = state_of(variables)
     for each in variables:
         rates = tuple(derived_names(each.components)) if each in state else ()
-        yield Naming((table, each.name), each.name, each.components, rates)
+        yield Naming(
+            key=(table, each.name), name=each.name, components=each.components, rates=rates
+        )
 
 
 def state_roles(reading: Reading) -> tuple[str, ...]:

@@ -106,7 +106,7 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
     elif output:
         body.outputs.append((int(output[1]), read_expression(output[2], name)))
     elif line:
-        raise failure(f"kernel.c: {line!r} is no line of our template", name)
+        raise failure(f"kernel.c: {line!r} is not a line of our template", name)
 
 
 def read_expression(text: str, name: str) -> Node:
@@ -142,7 +142,7 @@ class Reader:
             if token.lastgroup:
                 yield token.lastgroup, token[0]
         if end != len(self.text):
-            raise failure(f"{self.file}: {self.text[end:]!r} is no form of a Program", self.name)
+            raise failure(f"{self.file}: {self.text[end:]!r} is not a form of a Program", self.name)
         yield "end", ""
 
     def whole(self) -> Node:
@@ -179,7 +179,7 @@ class Reader:
         """A number, a name, a call, or a sum in parentheses."""
         kind, text = self.tokens[self.at]
         self.at += 1
-        # An integer would divide as integers do, and 1e999 is no number.
+        # An integer would divide as integers do, and 1e999 is not a number.
         if kind == "number" and not text.isdigit() and isfinite(float(text)):
             return Number(Fraction(float(text)))
         if kind == "name" and self.tokens[self.at][1] != "(":
@@ -200,4 +200,4 @@ class Reader:
 
     def refusal(self) -> CrossCheckError:
         """The failure of rung 3."""
-        return failure(f"{self.file}: {self.text!r} is no form of a Program", self.name)
+        return failure(f"{self.file}: {self.text!r} is not a form of a Program", self.name)

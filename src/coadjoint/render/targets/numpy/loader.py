@@ -1,7 +1,7 @@
 """The target NumPy, loading: ``kernel.py`` as a module, and calls of it.
 
 Comes in: a System, and checked arrays. Goes out: results in place. It stands in for C where there
-is no compiler, and a compiled kernel is compared with it.
+is not a compiler, and a compiled kernel is compared with it.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def _read_zeros(reader: Reader, line: ast.stmt, body: Body) -> bool:
         case ast.Assign([ast.Name("zeros")], ast.Tuple(elts=rows)):
             for row in rows:
                 if not isinstance(row, ast.Constant) or type(row.value) is not int:
-                    raise reader.refusal("is no row", row)
+                    raise reader.refusal("is not a row", row)
                 body.outputs.append((row.value, Number(Fraction(0))))
             return True
         case ast.Assign(
