@@ -36,7 +36,8 @@ def contest(system: System, hand: Any, repeat: Any) -> dict[str, float]:
         AssertionError: They do not compute the same.
     """
     library = load_library(system.folder, system.name, system.id, "exact", lambda _: None)
-    kernels: dict[str, Any] = {"generated": library.symbol("rhs"), "by hand": hand}
+    by_hand = ctypes.cast(hand, ctypes.c_void_p).value
+    kernels = {"generated": library.find("rhs"), "by hand": by_hand}
     state = np.random.default_rng(0).normal(size=(system.STATE.size, MEMBERS))
     # One result array for both: where an array lies decides how its rows share the cache.
     parameters, out = system.pack(None), np.empty_like(state)
@@ -47,7 +48,7 @@ def contest(system: System, hand: Any, repeat: Any) -> dict[str, float]:
     )
 
     def caller(name: str, times: int) -> Callable[[], None]:
-        pointer = ctypes.cast(kernels[name], address)
+        pointer = address(kernels[name])
         return lambda: repeat(size(times), pointer, *arguments)
 
     results = {}

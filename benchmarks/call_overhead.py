@@ -26,7 +26,7 @@ def measure() -> list[Figure]:
         repeat = compiled("repeat", Path(folder)).repeat
         size, address = ctypes.c_size_t, ctypes.c_void_p
         arguments = (
-            ctypes.cast(kernel.function("rhs"), address),  # type: ignore[arg-type]
+            address(kernel.find("rhs")),
             *(size(1), address(state.ctypes.data), size(1)),
             *(address(parameters.ctypes.data), size(0), address(out.ctypes.data), size(1)),
         )

@@ -234,3 +234,15 @@ def test_a_force_asks_for_a_mass_matrix_that_can_be_inverted():
     """A velocity without kinetic energy has no acceleration, with forces as without."""
     with pytest.raises(DerivationError, match="determinant 0"):
         derive(spec(OSCILLATORS, ("m*(v1^2 + v1*v2 + v2^2)", "m*v1^2")))
+
+
+def test_a_force_along_a_matrix_is_a_vector_of_what_acts_along_its_components():
+    """A matrix is refused with what is expected; the advice is followed and leads on."""
+    with pytest.raises(SpecError) as caught:
+        spec(MATRIX, ('V = "f"', 'V = "-V"'), ("f = { shape = [3], default = 1 }", ""))
+    said = str(caught.value)
+    assert "the value is a 2 by 2 matrix; expected a 3-vector, along the components" in said
+    assert "V11, V12, V22 of the matrix 'V'" in said
+    advice = said.partition("Write ")[2].partition(" for ")[0]
+    assert advice == "vector(V11, 0, 0)"
+    assert spec(MATRIX, ('V = "f"', f'V = "{advice}"'), ("f = { shape = [3], default = 1 }", ""))

@@ -108,6 +108,37 @@ def test_what_does_not_keep_the_energy_is_refuted(G, S, statement):
     assert metriplectic(G, S)[statement] is Verdict.REFUTED
 
 
+UNSURE = "2 + sin(Pi1) + cos(Pi1*Pi2)"
+
+
+@pytest.mark.parametrize("G", ["-a", "Pi1", UNSURE, "diag(vector(a, a, -a))"])
+def test_no_sign_is_said_where_that_of_the_metric_is_not_proved(G):
+    """A law whose terms have no proved sign is a law all the same, and says no more."""
+    for found in (double(G), metriplectic(f"({G})*({PROJECTION})" if "diag" not in G else G)):
+        said = " ".join(found)
+        assert found["G is positive semidefinite"] is not Verdict.PROVED
+        assert "dh/dt = -<P dh, G P dh>" in found or "dS/dt = <dS, G dS>" in found
+        assert "never" not in said
+
+
+def test_support_for_a_metric_is_no_proof_that_the_energy_falls():
+    """Also where the spec accepts it: no sentence of the certificate says more than is proved."""
+    table = f'[double_bracket]\nG = "{UNSURE}"\naccept = "numerical"\n[claims]'
+    certificate = prove_claims(spec(RIGID_BODY, ("[claims]", table)))
+    assert certificate.holds
+    assert "never" not in " ".join(claim.statement for claim in certificate.claims)
+
+
+def test_a_matrix_that_is_not_symmetric_is_decided_by_its_symmetric_part():
+    """Principal minors of ``(1, 4; 0, 1)`` are 1, and ``v.Gv = x^2 + 4xy + y^2`` has no sign."""
+    field = Field(["q"])
+    one, zero = field.one, field.zero
+    found = decide_semidefinite([[one, 4 * one], [zero, one]], field)
+    assert found.verdict is Verdict.REFUTED
+    assert float(eval_fraction(found.defect)) == pytest.approx(-1)  # 1 - 4/2, by hand
+    assert decide_semidefinite([[one, one], [-one, one]], field).verdict is Verdict.PROVED
+
+
 @pytest.mark.parametrize("spoil", [-1, 2, 0])
 def test_a_spoiled_double_bracket_is_caught(spoil, monkeypatch):
     """The laws come from bracket, G and h, not from what the routes have added."""

@@ -110,7 +110,7 @@ def test_a_map_that_cannot_be_found_is_asked_for():
     text = ('\nmap = "dot(cross(r, v) - lam*r/norm(r), xi)"', "")
     with pytest.raises(DerivationError, match=r"symmetries.L|generators.r") as caught:
         prove_claims(spec(KEPLER, *MONOPOLE, WITHOUT_REVERSAL, text))
-    assert "expected the momentum map beside it" in str(caught.value)
+    assert "expected the momentum map together with it" in str(caught.value)
 
 
 def test_a_generator_that_leaves_the_form_is_refused():

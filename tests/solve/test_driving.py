@@ -222,9 +222,15 @@ def test_an_input_with_its_rate_moves_a_constraint(system):
 
 WRONG = [
     (lambda t: [1.0, 2.0], r"at t = 0: .*\(2,\); expected \(3,\)"),
-    (lambda t: [np.nan, 0.0, 0.0], "the input f is nan of the function inputs at t = 0; expected"),
-    (lambda t: [1.0 if t < 1 else np.inf, 0.0, 0.0], r"the input f is inf .* at t = [12]"),
+    (lambda t: [np.nan, 0.0, 0.0], "the input f of the function inputs at t = 0 is nan; expected"),
+    (lambda t: [1.0 if t < 1 else np.inf, 0.0, 0.0], r"the input f .* at t = [12].* is inf;"),
     (lambda t: [1.0, 0.0, 0.0] if t < 1 else [1.0], r"at t = [12].*\(1,\); expected \(3,\)"),
+    (lambda t: None, "the function inputs returns None at t = 0; expected .3,.: f, k1, k2"),
+    (([0, 1], np.ones((2, 3)), "linear"), r"samples .* shape .2, 3.; expected .3, 2., one row"),
+    (
+        ([0, 1], {"f": [1, 2, 3], "k": np.ones((2, 2))}, "linear"),
+        r"fit together: .3,., .2,., .2,.\.$",
+    ),
     ([1.0, np.nan, 0.0], "the input k1 is nan; expected a finite number"),
     (np.ones((3, 2)), r"the shape \(3, 2\), expected \(3,\): f, k1, k2"),
     (([0.0, 4.0], np.ones((3, 2))), "tuple of 2 with the interpolation None; expected samples as"),

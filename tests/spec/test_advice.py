@@ -622,6 +622,7 @@ ELSEWHERE = {
     "Remove form, or declare the algebra by such matrices.": "test_lax.py",
     "Declare it in a spec of the whole system.": "another spec",
     "Write diag(m) for a mass of each row.": "test_newton.py",
+    "Write vector(": "tests/derive/test_external.py",
     "Remove the momentum ": "below",
     "The first is in line ": "names the place",
     "Blocks of ": "names what there is",

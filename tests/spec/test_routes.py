@@ -13,7 +13,7 @@ import coadjoint
 from coadjoint.derive.registry import load_route
 from coadjoint.errors import SpecError
 from coadjoint.spec.routes import ROUTES, energies_of
-from tests.specs import RIGID_BODY, spec
+from tests.specs import RIGID_BODY, prove_claims, spec
 
 DOCS = Path(__file__).parents[2] / "docs" / "routes.md"
 PACKAGE = Path(coadjoint.__file__).parent
@@ -175,3 +175,36 @@ l = "v^2/2"
         spec(particle)
     assert (caught.value.key, caught.value.found) == ("routes[1]", "canonical")
     assert spec(particle, ('"canonical", "euler-lagrange"', '"euler-lagrange", "canonical"'))
+
+
+@pytest.mark.parametrize("other", ["euler-poincare", "lie-poisson", "clebsch", "newton-euler"])
+@pytest.mark.parametrize("place", [0, 1])
+def test_routes_of_momenta_are_refused_beside_velocities_in_the_state(other, place):
+    """Over an algebra the two have different states; the advice is followed and leads on."""
+    routes = ["nonholonomic"]
+    routes.insert(place, other)
+    body = (('Pi = { role = "momentum" }\n', ""), ('casimirs = ["dot(Pi, Pi)"]', ""))
+    given = ('["euler-poincare", "lie-poisson"]', str(routes).replace("'", '"'))
+    with pytest.raises(SpecError, match="moves momenta, and the state has velocities") as caught:
+        spec(RIGID_BODY, *body, given)
+    assert (caught.value.key, caught.value.found) == (f"routes[{place + 1}]", other)
+    assert f'Remove "{other}"' in str(caught.value)
+    assert spec(RIGID_BODY, *body, (given[0], '["nonholonomic"]'))
+
+
+def test_a_route_of_coordinates_is_not_the_first_beside_one_in_a_frame():
+    """The advice, to put the other first, is followed and leads on."""
+    particle = """
+title = "x"
+routes = ["euler-lagrange", "nonholonomic"]
+[variables]
+q = { role = "coordinate" }
+v = { role = "velocity", of = "q" }
+[lagrangian]
+l = "v^2/2"
+"""
+    with pytest.raises(SpecError, match="here it is there to be proved equal") as caught:
+        spec(particle)
+    assert 'Put "nonholonomic" first.' in str(caught.value)
+    order = ('"euler-lagrange", "nonholonomic"', '"nonholonomic", "euler-lagrange"')
+    assert prove_claims(spec(particle, order)).holds

@@ -102,11 +102,11 @@ class Library:
         arrays, rest = divmod(len(arguments), 2)
         assert rest == 1, len(arguments)
         assert 3 <= arrays <= 5, len(arguments)
-        words = (self._find(function), arrays, *arguments)
+        words = (self.find(function), arrays, *arguments)
         return ctypes.byref((_SIZE * len(words))(*words))
 
-    def _find(self, function: str) -> int:
-        """Where a function of the object is, by its bare name.
+    def find(self, function: str) -> int:
+        """The address of a function of the object, by its bare name.
 
         Raises:
             CompilerError: The object has none.

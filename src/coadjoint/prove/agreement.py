@@ -16,7 +16,7 @@ from coadjoint.derive.charts import declared_charts
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.charts import ChartMap, reach
-from coadjoint.prove.constrained import same_solves
+from coadjoint.prove.constrained import same_accelerations, same_solves
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.duality import about_duality
 from coadjoint.prove.equivalence import LegendreMap
@@ -66,7 +66,8 @@ def about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
             yield from _about_chart(first, other)
             continue
         if first.distribution is not None:
-            same = partial(same_solves, first, other)
+            solved = same_accelerations if other.distribution is None else same_solves
+            same = partial(solved, first, other)
         elif pulled is not None:
             same = partial(pulled.rate_defects, first, other)
             through = ", through the Legendre transform"

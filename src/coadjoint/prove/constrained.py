@@ -355,6 +355,25 @@ def _solve_defects(first: Equations) -> list[Element]:
     ]
 
 
+def same_accelerations(first: Equations, other: Equations) -> list[Element]:
+    """Accelerations that another route writes out, put into the linear equations of the first.
+
+    The matrix of these equations is regular, so that they have no other solution.
+    """
+    field, state = first.setting.field, first.setting.state
+    given = {rate_name(x): other.close(b) for x, b in zip(state, other.exact.rates, strict=True)}
+    linear, defects = _linear_equations(first), dict[str, Element]()
+    for (name, by), entry in linear.items():
+        known = defects.get(name, field.zero)
+        defects[name] = known + entry * given[by] if by else known - entry
+    free = [
+        first.close(a) - given[rate_name(x)]
+        for x, a in zip(state, first.exact.rates, strict=True)
+        if rate_name(x) not in defects
+    ]
+    return [*defects.values(), *free]
+
+
 def same_solves(first: Equations, other: Equations) -> list[Element]:
     """Differences of the linear equations of two routes, of the rates and of the reactions.
 

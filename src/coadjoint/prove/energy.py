@@ -25,6 +25,7 @@ from coadjoint.prove.driven import (
     own_change,
     while_constant,
 )
+from coadjoint.prove.relaxation import is_dissipative
 
 
 def keeps_energy(equations: Equations) -> bool:
@@ -54,7 +55,8 @@ class Balance:
         if keeps_energy(self.equations):
             return f"the energy is conserved{held}"
         if self._only_falls:
-            return f"dh/dt = -<P dh, G P dh>: the energy never grows{held}"
+            sign = ": the energy never grows" if is_dissipative(self.equations) else ""
+            return f"dh/dt = -<P dh, G P dh>{sign}{held}"
         terms = ["the power of the forces"] if self.spec.forces else []
         if self.spec.dissipation is not None:
             terms.append("-2 R" if self._is_quadratic else "-<dR/dxi, xi>")
@@ -70,7 +72,7 @@ class Balance:
 
     @property
     def _only_falls(self) -> bool:
-        """Whether a double bracket alone changes the energy; that G has no sign is a claim."""
+        """Whether a double bracket alone changes the energy."""
         double = self.spec.relaxation is not None and self.spec.relaxation.S is None
         return double and not self.spec.is_forced and not changes_by_time(self.equations)
 

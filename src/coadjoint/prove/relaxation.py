@@ -17,16 +17,18 @@ these conditions as a claim. Read next: `coadjoint.prove.claims`.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.external import added_rates, metric
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, dot
+from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
-from coadjoint.prove.zero import Examined, mark_accepted
+from coadjoint.prove.zero import Examined, UndecidedError, mark_accepted
 
 
 def about_relaxation(first: Equations) -> Iterator[Examined]:
@@ -36,12 +38,13 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
     if relaxation is None or energy is None or tensor is None:
         return
     known = _Relaxed(first, energy, tensor)
+    grows = ": the entropy never falls" if known.has_sign else ""
     claims: list[Examined] = [
         ("G is symmetric", "dissipation", known.asymmetry),
         (
             "G is positive semidefinite",
             "dissipation",
-            lambda: decide_semidefinite(known.G, first.setting.field),
+            lambda: decide_semidefinite(known.G, known.field),
         ),
     ]
     if relaxation.S is not None:
@@ -51,12 +54,19 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
             ("G dh = 0", "dissipation", known.on_energy),
         ]
         if not spec.is_forced:
-            law = ("dS/dt = <dS, G dS>: the entropy never falls", "conserved", known.entropy)
-            claims.append(law)
+            claims.append((f"dS/dt = <dS, G dS>{grows}", "conserved", known.entropy))
     claims.append(
         (f"beside {{x, h}} the rates are {relaxation.added}", "dissipation", known.list_added)
     )
     yield from mark_accepted(spec, (relaxation.table,), claims, first.setting.field)
+
+
+def is_dissipative(first: Equations) -> bool:
+    """Whether G is proved positive semidefinite, so that what it does has a sign."""
+    energy, tensor = first.exact.energy, first.exact.poisson_tensor
+    if first.spec.relaxation is None or energy is None or tensor is None:
+        return False
+    return _Relaxed(first, energy, tensor).has_sign
 
 
 def lost(first: Equations, energy: Element) -> Element:
@@ -77,6 +87,13 @@ class _Relaxed:
         self._dh = gradient(first, energy)
         self._free = apply(self._P, self._dh)
         self._energy = energy
+
+    @property
+    def has_sign(self) -> bool:
+        """Whether it is proved, and not only supported, that no ``<v, G v>`` is negative."""
+        with suppress(UndecidedError):
+            return decide_semidefinite(self.G, self.field).verdict is Verdict.PROVED
+        return False
 
     def asymmetry(self) -> list[Element]:
         """``G_ij - G_ji``."""

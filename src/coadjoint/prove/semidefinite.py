@@ -33,25 +33,28 @@ ROUNDING = mpmath.mpf(10) ** -30
 
 
 def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
-    """Whether a symmetric matrix has no negative eigenvalue, wherever it is defined.
+    """Whether no ``<v, G v>`` is negative, wherever a matrix G is defined.
 
     Args:
-        matrix: Symmetric, which another claim states.
+        matrix: G, of which only twice the symmetric part is looked at.
         ring: Where its entries live.
 
     Raises:
         UndecidedError: It is not proved, and no point is found at which it has a value.
     """
-    blocks = coupled_blocks(tuple(map(tuple, matrix)))
-    if all(_has_no_negative_minor(ring, matrix, block) for block in blocks):
-        method = "no principal minor of G is negative: sums of squares and of positive terms"
+    size = range(len(matrix))
+    named = "G" if all(matrix[i][j] == matrix[j][i] for i in size for j in range(i)) else "G + G^T"
+    doubled = tuple(tuple(matrix[i][j] + matrix[j][i] for j in size) for i in size)
+    blocks = coupled_blocks(doubled)
+    if all(_has_no_negative_minor(ring, doubled, block) for block in blocks):
+        method = f"no principal minor of {named} is negative: sums of squares and of positive terms"
         return Decision(Verdict.PROVED, method)
-    entries = [entry for row in matrix for entry in row]
+    entries = [entry for row in doubled for entry in row]
     points, seen = Points(ring, entries), 0
     for point in points:
         with mpmath.workdps(DIGITS), suppress(ZeroDivisionError, ValueError, OverflowError):
-            values = mpmath.matrix([[real(points.value(e, point)) for e in row] for row in matrix])
-            least = min(mpmath.eigsy((values + values.T) / 2, eigvals_only=True))
+            values = mpmath.matrix([[real(points.value(e, point)) for e in row] for row in doubled])
+            least = min(mpmath.eigsy(values / 2, eigvals_only=True))
             seen += 1
             if least < -ROUNDING * max(map(abs, values)):
                 method = f"an eigenvalue of {DIGITS} digits"

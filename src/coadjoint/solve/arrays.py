@@ -328,7 +328,9 @@ def _assemble(
         batch = np.broadcast_shapes(*(np.shape(part) for part in ordered))
     except ValueError as error:
         raise KernelArgumentError(
-            f"{name} have batch shapes that do not fit together: {error}.", found=name
+            f"{name} have batch shapes that do not fit together: "
+            f"{', '.join(str(np.shape(part)) for part in ordered)}.",
+            found=name,
         ) from error
     packed = np.empty((len(ordered), *batch))
     for row, part in enumerate(ordered):

@@ -103,8 +103,16 @@ class Function(Signal):
         Raises:
             KernelArgumentError: Another shape than ``(m,)``, or no finite number.
         """
-        where = f"of the function inputs at t = {time:.12g}"
-        values = _pack(self.system, self.function(float(time)), where)
+        where, given = f"of the function inputs at t = {time:.12g}", self.function(float(time))
+        if given is None:
+            size, wanted = self.system.INPUTS.size, ", ".join(self.system.INPUTS.components)
+            raise KernelArgumentError(
+                f"{self.system.name}: the function inputs returns None at t = {time:.12g}; "
+                f"expected ({size},): {wanted}, or values by name. Write return before its value.",
+                found="None",
+                expected=[size],
+            )
+        values = _pack(self.system, given, where)
         return _check_one(self.system, values, where)
 
     def over(self, times: Array) -> Array:
@@ -241,8 +249,9 @@ def _sample(system: System, given: tuple[Any, ...], start: float, end: float) ->
             "times.",
             found=str(given[0])[:80],
         )
-    values = _pack(system, given[1], " samples")
     wanted = (system.INPUTS.size, times.size)
+    _check_rows(given[1], wanted)
+    values = _pack(system, given[1], "of the samples")
     if values.ndim == 1 and wanted[0] == 1:
         values = values[np.newaxis]
     if values.shape != wanted or not np.isfinite(values).all():
@@ -262,6 +271,21 @@ def _sample(system: System, given: tuple[Any, ...], start: float, end: float) ->
             expected=[start, end],
         )
     return Previous(times, values) if kind == "previous" else Linear(times, values)
+
+
+def _check_rows(given: Any, wanted: tuple[int, int]) -> None:
+    """Samples that come as an array have a row for each component.
+
+    Raises:
+        KernelArgumentError: They have other rows.
+    """
+    if not isinstance(given, str | dict) and np.ndim(given) == 2 and len(given) != wanted[0]:
+        raise KernelArgumentError(
+            f"samples of inputs have shape {np.shape(given)}; expected {wanted}, one row for each "
+            "component and one column for each time.",
+            found=list(np.shape(given)),
+            expected=list(wanted),
+        )
 
 
 def _pack(system: System, given: Any, where: str) -> Array:
@@ -294,8 +318,8 @@ def _check_one(system: System, values: Array, where: str) -> Array:
         place = int(np.argmin(np.isfinite(values)))
         name, value = system.INPUTS.components[place], float(values[place])
         raise KernelArgumentError(
-            " ".join(filter(None, [f"{system.name}: the input {name} is {value}", where]))
-            + "; expected a finite number.",
+            f"{system.name}: the input {name}{f' {where}' if where else ''} is {value}; expected a "
+            "finite number.",
             found=str(value),
             component=name,
         )

@@ -117,6 +117,8 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
         names = [each.title() for each in energies]
         one_of = f"no {names[0]}" if len(names) == 1 else f"neither a {' nor a '.join(names)}"
         yield _Obstacle(f"has {one_of}", energies)
+    if is_in_frame(file) and not start.in_frame and kinds == ("algebra",):
+        yield _Obstacle("moves momenta, and the state has velocities")
     for table in TABLES:
         if table.acts and getattr(file, table.key) and table.key not in start.options:
             yield _Obstacle(f"knows no {table.key}", cure=f"remove [{table.key}]")
@@ -189,7 +191,9 @@ def _check_first(source: Source, file: Any) -> None:
         return
     problem = "cannot be the first: it is there to be proved equal to another"
     if ROUTES[first].emitted:
-        problem = "moves momenta, and the state has velocities"
+        follows = is_in_frame(file) and first != "canonical"
+        problem = "cannot be the first: here it is there to be proved equal to another"
+        problem = problem if follows else "moves momenta, and the state has velocities"
     problem, expected = f"the route {first} {problem}", f"one of {list_names(fitting)} before it"
     hint = f'Put "{fitting[0]}" first.' if fitting else ""
     raise source.fault(("routes", 0), problem, first, expected, hint)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.mechanics.solver import Definition, Solve
 from coadjoint.derive.records import Exact, Step, write_slopes, write_step
@@ -42,9 +43,15 @@ def emit(
         solves: What the kernel solves for these.
     """
     tensor = poisson_structure(setting).tensor if has_structure(setting) else None
-    emitted = list_emitted(setting, energy)
+    emitted = list_emitted(setting, energy, _momenta_in_frame(setting))
     exact = Exact(tuple(definitions), rates, energy, emitted, tensor, solves)
     return Equations(setting, route, exact, tuple(steps))
+
+
+def _momenta_in_frame(setting: Setting) -> list[tuple[str, Element]]:
+    """``dl/dv`` by the names under which a route in a frame emits them; empty beside no such."""
+    names = [name for each in setting.spec.reduced_momenta for name in each.components]
+    return list(zip(names, mechanics(setting).momenta, strict=True)) if names else []
 
 
 def emit_in_momenta(setting: Setting, route: str, rates: Rates, steps: Sequence[Step]) -> Equations:

@@ -12,10 +12,11 @@ from pydantic import Field
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import ROLES, Formula, Scope, read_fitting
+from coadjoint.spec.core.formulas import ROLES, Formula, Scope, misfit, read_fitting
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
+from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles, state_of
@@ -67,7 +68,17 @@ def read_along(
     name = str(key[-1])
     if name not in velocities:
         raise _no_velocity(reading, key, name, velocities)
-    return read_fitting(reading.source, key, text, scope, velocities[name].shape, name)
+    along = velocities[name]
+    if not along.form:
+        return read_fitting(reading.source, key, text, scope, along.shape, name)
+    formula = reading.formula(key, text, scope, any_shape=True)
+    if formula.shape != along.shape:  # a matrix has the shape of its components, not its own
+        names = list_names(along.components)
+        expected = f"{words(along.shape)}, along the components {names} of the matrix {name!r}"
+        zeros = ", ".join(["0"] * (len(along.components) - 1))
+        hint = f"Write vector({along.components[0]}, {zeros}) for one along {along.components[0]}."
+        raise misfit(reading.source, key, formula, expected, hint if zeros else "")
+    return formula
 
 
 FORCES = Table[dict[str, Formula]](
