@@ -20,7 +20,7 @@ from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement,
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
-from coadjoint.render.solvers import arrange, arrange_function
+from coadjoint.render.solvers import arrange, arrange_function, arrange_rates
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
@@ -113,7 +113,9 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
-    rhs = next(program for program in context.programs if program.name == "rhs")
+    programs = {program.name: program for program in context.programs}
+    rhs = programs["rhs"]
+    others = [programs[name] for name in ("domain", "projection") if name in programs]
     table = dop853()
     rendered = render_templates(
         tuple(TEMPLATES.values()),
@@ -145,8 +147,10 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
                 for table, quantities in _tables(context).items()
             },
             "domain": list(map(declaration, context.domain)),
-            "solver": arrange(rhs),
-            "rates": arrange_function(rhs, "_rates"),
+            "solver": arrange(rhs, others),
+            "rates": arrange_rates(rhs),
+            "others": {program.name: arrange_function(program) for program in others},
+            "comparisons": [">" if bound.strict else ">=" for bound in context.domain],
             "dop853": {
                 each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
             },

@@ -23,6 +23,7 @@ from coadjoint.lower.program import (
     Node,
     Number,
     Program,
+    Statement,
     Symbol,
     walk,
 )
@@ -95,20 +96,26 @@ class SolverText:
     fixed_reads: frozenset[str]
 
 
-def arrange(rhs: Program) -> SolverText:
-    """The recurrences of the rates of a system as its templates print them."""
+def arrange(rhs: Program, others: Iterable[Program] = ()) -> SolverText:
+    """The recurrences of the rates of a system as its templates print them.
+
+    Args:
+        rhs: The Program of the rates.
+        others: What else its solvers compute; its functions are counted.
+    """
     jets = make_jets(rhs)
     arrays = jets.kept.union(jets.state, jets.driving)
     first = list(_first(jets, arrays))
     stages = tuple(_stages(jets, arrays))
     rates = tuple(
-        Line(f"{name}[_k + 1]", Multiply(Symbol("_parts[_k + 1]"), _at(tail, "_k", arrays)))
+        Line(f"{name}[_k + 1]", _integrate(_at(tail, "_k", arrays)))
         for name, (_, tail) in zip(jets.state, jets.rates, strict=True)
     )
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
-    calls |= {n.function for v in rhs.values() for n in walk(v) if isinstance(n, Call)}
+    values = (value for program in (rhs, *others) for value in program.values())
+    calls |= {n.function for value in values for n in walk(value) if isinstance(n, Call)}
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
     return SolverText(
         fixed=fixed,
@@ -123,9 +130,14 @@ def arrange(rhs: Program) -> SolverText:
     )
 
 
+def _integrate(rate: Node) -> Node:
+    """The coefficient of a component, from that of its rate."""
+    return rate if rate == ZERO else Multiply(Symbol("_parts[_k + 1]"), rate)
+
+
 @dataclass(frozen=True)
 class FunctionText:
-    """A Program as lines, what depends on parameters alone left out.
+    """A Program as lines.
 
     Attributes:
         lines: Statements, then rows of the result.
@@ -136,14 +148,18 @@ class FunctionText:
     reads: frozenset[str]
 
 
-def arrange_function(program: Program, out: str) -> FunctionText:
-    """The lines of a Program for each member.
+def arrange_rates(rhs: Program) -> FunctionText:
+    """The lines of the rates, what depends on parameters alone left out: that is known."""
+    return _arrange(rhs, rhs.statements_at("member"), "_rates")
 
-    Args:
-        program: What to arrange.
-        out: Name of the array of the result.
-    """
-    lines = [Line(statement.name, statement.value) for statement in program.statements_at("member")]
+
+def arrange_function(program: Program) -> FunctionText:
+    """All lines of a Program, whose rows go to ``_rows``."""
+    return _arrange(program, program.statements, "_rows")
+
+
+def _arrange(program: Program, statements: Iterable[Statement], out: str) -> FunctionText:
+    lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"{out}[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
 

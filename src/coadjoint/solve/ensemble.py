@@ -17,9 +17,11 @@ import numpy as np
 from coadjoint.solve.steps import Lanes
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
-    from coadjoint.solve.steps import Attempt, Method
+    from coadjoint.solve.steps import Method
 
     Array = NDArray[np.float64]
     Counts = NDArray[np.uint64]
@@ -34,6 +36,23 @@ class Status(IntEnum):
     STEP_UNDERFLOW = 2
     NONFINITE = 3
     MAX_STEPS = 4
+    DOMAIN = 5
+
+
+#: Halvings of a step that leaves the domain: its last state inside is known to 1e-12 of it.
+HALVINGS = 40
+
+
+class Limits:
+    """What bounds a motion; this one has neither a domain nor constraints that are kept."""
+
+    def are_inside(self, lanes: Lanes, after: Array, state: Array) -> Mask:
+        """Where a state is in the domain, some time after that of the lanes."""
+        return np.ones(after.shape, bool)
+
+    def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The nearest states on the constraints; where there is none, the state itself."""
+        return state
 
 
 @dataclass
@@ -73,6 +92,7 @@ class Ensemble:
         atol: Absolute tolerance.
         size: A fixed step; 0 to have steps follow the tolerances.
         max_steps: A trajectory ends after so many.
+        limits: Its domain, and the constraints that are kept.
         time: Where they are in time, ``(N,)``.
         step: The steps to try next, ``(N,)``; 0 to have them chosen.
         next: The sample that comes next, ``(N,)``.
@@ -91,6 +111,7 @@ class Ensemble:
     atol: float
     size: float
     max_steps: int
+    limits: Limits = field(default_factory=Limits)
     time: Array = field(init=False)
     step: Array = field(init=False)
     next: Counts = field(init=False)
@@ -139,14 +160,26 @@ class Ensemble:
         """Try one step of some members."""
         lanes = self._lanes(going)
         attempt = method.try_step(lanes)
+        state = self.limits.project(lanes, attempt.took, attempt.state)
         time = lanes.time + attempt.took
         time = np.where(attempt.took == lanes.end - lanes.time, lanes.end, time)
-        finite = np.isfinite(attempt.state).all(axis=0)
+        finite = np.isfinite(state).all(axis=0)
         stuck = time == lanes.time
         accepted = attempt.accepted & finite & ~stuck
-        if self.out is not None:
-            self._store_samples(going, lanes, attempt, time, accepted)
-        self.state[:, going] = np.where(accepted, attempt.state, lanes.state)
+
+        def find_state(after: Array) -> Array:
+            return self.limits.project(lanes, after, attempt.path(after))
+
+        inside, outside = self._store_samples(
+            going, lanes, find_state, time, accepted, attempt.took
+        )
+        left = outside < attempt.took
+        left |= accepted & ~self.limits.are_inside(lanes, attempt.took, state)
+        if left.any():
+            inside, last = self._find_exit(lanes, find_state, inside, outside)
+            state = np.where(left, last, state)
+            time = np.where(left, lanes.time + inside, time)
+        self.state[:, going] = np.where(accepted, state, lanes.state)
         self.time[going] = np.where(accepted, time, lanes.time)
         self.step[going] = lanes.step
         self.steps[going] += accepted
@@ -155,10 +188,22 @@ class Ensemble:
         over = self.steps[going] >= self.max_steps
         status[accepted & over] = Status.MAX_STEPS
         status[accepted & (self.time[going] >= self.end)] = Status.OK
+        status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
         self.status[going] = status
+
+    def _find_exit(
+        self, lanes: Lanes, find_state: Callable[[Array], Array], inside: Array, outside: Array
+    ) -> tuple[Array, Array]:
+        """How far a step is in the domain, and the last state there."""
+        for _ in range(HALVINGS):
+            middle = (inside + outside) * 0.5
+            good = self.limits.are_inside(lanes, middle, find_state(middle))
+            inside = np.where(good, middle, inside)
+            outside = np.where(good, outside, middle)
+        return inside, find_state(inside)
 
     def _lanes(self, going: NDArray[np.intp]) -> Lanes:
         """Some members, as methods take them."""
@@ -186,21 +231,34 @@ class Ensemble:
         self,
         going: NDArray[np.intp],
         lanes: Lanes,
-        attempt: Attempt,
+        find_state: Callable[[Array], Array],
         time: Array,
         accepted: Mask,
-    ) -> None:
-        """States at the samples that a step passes."""
-        assert self.out is not None
-        while True:
+        took: Array,
+    ) -> tuple[Array, Array]:
+        """Store states at the samples that a step passes.
+
+        Returns:
+            A time of the step at which a member is in the domain, and a later one: at which it is
+            outside, or the end of the step.
+        """
+        inside, outside = np.zeros(took.shape), took.copy()
+        out, open_ = self.out, accepted.copy()
+        while out is not None:
             place = self.next[going].astype(np.intp)
-            inside = place < len(self.samples)
-            at = self.samples[np.where(inside, place, 0)]
-            wanted = accepted & inside & (at <= time)
+            known = place < len(self.samples)
+            at = self.samples[np.where(known, place, 0)]
+            wanted = open_ & known & (at <= time)
             if not wanted.any():
-                return
-            after = np.where(wanted, at - lanes.time, attempt.took)
-            state = attempt.path(after)
+                break
+            after = np.where(wanted, at - lanes.time, took)
+            state = find_state(after)
+            good = self.limits.are_inside(lanes, after, state)
+            outside = np.where(wanted & ~good, after, outside)
+            open_ &= ~wanted | good
+            wanted &= good
+            inside = np.where(wanted, after, inside)
             members = going[wanted]
-            self.out[:, members, place[wanted]] = state[:, wanted]
+            out[:, members, place[wanted]] = state[:, wanted]
             self.next[members] += np.uint64(1)
+        return inside, outside
