@@ -21,6 +21,7 @@ BENCHMARKS = (
     "c_kernels",
     "numpy_kernels",
     "call_overhead",
+    "ensembles",
 )
 
 

@@ -47,3 +47,32 @@ def test_a_wrong_sign_by_hand_is_noticed(c_kernels, tmp_path, monkeypatch):
     monkeypatch.setattr(system, "pack", lambda _: np.arange(1.0, 9.0))
     with pytest.raises(AssertionError):
         c_kernels.contest(system, hand, repeat)
+
+
+PEER_SYSTEMS = ("rigid_body", "heavy_top", "kirchhoff", "chaplygin_ball", "so8_body")
+
+
+@pytest.mark.parametrize("name", PEER_SYSTEMS)
+def test_equations_of_the_peers_agree_with_generated_rates(name, monkeypatch):
+    """Rates typed from the books for heyoka are those of the kernels, and a spoiled one is not."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    import peers
+    from ensembles import SYSTEMS as CASES
+
+    states, values = peers.initial_states(name, 4), np.array(CASES[name][1], float)
+    generated = load_system(name).rhs(states, values, target="numpy")
+    by_hand = np.array(peers.EQUATIONS[name](states, values))
+    assert np.abs(generated - by_hand).max() <= 1e-15 * 10
+    values[1] *= 1.5
+    assert np.abs(generated - peers.EQUATIONS[name](states, values)).max() > 1e-3
+
+
+def test_equal_error_is_read_between_points_in_logarithms(monkeypatch):
+    """From (1e-4, 1) to (1e-8, 100) the curve passes 10 at 1e-6; finer than all is None."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    from ensembles import Point, time_at
+
+    points = [Point("x", 0.0, 0, (t, t, t), e, e) for t, e in ((1.0, 1e-4), (100.0, 1e-8))]
+    assert time_at(points, 1e-6) == pytest.approx(10.0)
+    assert time_at(points, 1e-3) == 1.0
+    assert time_at(points, 1e-9) is None

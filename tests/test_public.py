@@ -93,7 +93,7 @@ def test_loading_reports_progress(own):
     """Every stage is told, by system."""
     seen = []
     coadjoint.load(own, progress=lambda *step: seen.append(step))
-    assert [step[1] for step in seen][:2] == ["derive", "prove"]
+    assert [step[1] for step in seen][:2] == ["derive", "lower"]
     assert {step[0] for step in seen} == {"my_body"}
 
 

@@ -2,8 +2,8 @@
 
     spec file -> read_spec -> Spec          coadjoint.spec
               -> derive -> Equations        coadjoint.derive, one module per route
+              -> lower -> Programs          coadjoint.lower, held to the limits of size
               -> prove -> Certificate       coadjoint.prove
-              -> lower -> Programs          coadjoint.lower
               -> render_system -> texts     coadjoint.render, a folder of targets for each target
               -> System                     coadjoint.build and coadjoint.solve: compiled, loaded
               -> crosscheck -> Report       coadjoint.crosscheck
@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.reference import Reference
-from coadjoint.lower.check import check_programs
+from coadjoint.lower.check import check_programs, check_sizes
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
@@ -32,7 +32,7 @@ from coadjoint.spec import Spec
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
-STAGES = ("derive", "prove", "lower", "render", "compile and cross-check")
+STAGES = ("derive", "lower", "prove", "render", "compile and cross-check")
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,11 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     setting = make_setting(spec)
     routes = [derive(spec, route, setting=setting) for route in spec.routes]
     first = routes[0]
-    progress("prove")
-    certificate = prove(spec, routes).require()
     progress("lower")
     programs = lower(first)
+    check_sizes(first, programs)  # a system that is too large is refused before it is proved
+    progress("prove")
+    certificate = prove(spec, routes).require()
     check_programs(first, programs)
     progress("render")
     context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED))

@@ -148,7 +148,7 @@ class Taylor:
         """As `Method.try_step`."""
         path = self.expand(lanes, self.order)
         most = lanes.end - lanes.time
-        took = _fixed(self.size, most) if self.size > 0 else _smaller(self._choose(path), most)
+        took = _fixed(self.size, most) if self.size > 0 else _free(lanes, self._choose(path), most)
 
         def at(after: Array) -> Array:
             total = path[:, self.order]
@@ -177,6 +177,11 @@ def _norm(rows: Array) -> Array:
     for row in rows[1:]:
         largest = _larger(np.abs(row), largest)
     return largest
+
+
+def _free(lanes: Lanes, step: Array, most: Array) -> Array:
+    """A step that follows the tolerances, rounded so that the time after it is exact."""
+    return _smaller((lanes.time + step) - lanes.time, most)
 
 
 def _fixed(size: float, most: Array) -> Array:
@@ -258,7 +263,7 @@ class DormandPrince8:
             fresh = lanes.step == 0.0
             if fresh.any():
                 lanes.step = np.where(fresh, self._first(lanes, most), lanes.step)
-        h = _fixed(self.size, most) if self.size > 0 else _smaller(lanes.step, most)
+        h = _fixed(self.size, most) if self.size > 0 else _free(lanes, lanes.step, most)
         k: list[Array] = []
         x = lanes.state
         for stage in range(STAGES):
