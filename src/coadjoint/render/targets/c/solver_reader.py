@@ -31,6 +31,12 @@ _STATEMENT = re.compile(
     r"\s*(?:(?P<loop>for \([^)]*\)) \{|(?P<end>\})|(?P<plain>[^;{}]*(?:\{[^{}]*\}[^;{}]*)?);)\s*"
 )
 _ORDERS = "for (int _k = 1; _k < ORDER; ++_k)"
+#: How the loop over orders is to be compiled, which changes no value.
+_UNROLLED = re.compile(
+    r"^#if defined\(__GNUC__\) && !defined\(__clang__\) && \d+ \* ORDER \* \(ORDER \+ 1\) <= 1000\n"
+    r"#pragma GCC unroll 32\n#endif\n",
+    re.MULTILINE,
+)
 _TERMS = re.compile(r"for \(int _m = 1; _m <= (_k|_k - 1); \+\+_m\)")
 _ASSIGNED = re.compile(r"((?:const )?V )?(\w+(?:\[(?:\d+|_k|_k \+ 1)\])?) = (.*)", re.DOTALL)
 _DRIVING = (
@@ -78,7 +84,7 @@ def read_function(text: str, function: str) -> SolverBody:
     if not found:
         raise failure(f"{FILE} has no function {function!r}", function)
     inside = re.sub(r"/\*.*?\*/", "", found[1], flags=re.DOTALL)
-    return _Reading(function).read(inside)
+    return _Reading(function).read(_UNROLLED.sub("", inside, count=1))
 
 
 def read_tables(text: str) -> dict[str, tuple[float, ...]]:
