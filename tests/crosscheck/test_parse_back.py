@@ -86,12 +86,12 @@ SPOILED_PLAIN = [
     ("    Omega1 = Pi1 / I1\n", "", "Omega"),
     ("Pi1, Pi2, Pi3, G", "Pi2, Pi1, Pi3, G", "inputs"),
     ("_p1 = m * g", "_p1 = sqrt(m * g)", "the line of _p1"),
-    ("_p1 = m * g", "_p1 = np.sqrt(m * g)", "no form"),
-    ("_p1 = m * g", "_p1 = abs(m * g)", "no form"),
+    ("_p1 = m * g", "_p1 = np.sqrt(m * g)", "not a form"),
+    ("_p1 = m * g", "_p1 = abs(m * g)", "not a form"),
     ("_p1 = m * g", "_p1 = m * g * 1", "'1'"),
     ("_p1 = m * g", "_p1 += m * g", "_p1 \\+= m"),
-    ("out = [0.0] * 6", "out = [0.0] * 7", "no form"),
-    ("out = [0.0] * 6", "out = [1.0] * 6", "no form"),
+    ("out = [0.0] * 6", "out = [0.0] * 7", "not a form"),
+    ("out = [0.0] * 6", "out = [1.0] * 6", "not a form"),
     ("return out\n", "return out[::-1]\n", "not what is returned, out"),
     ("(state, parameters)", "(parameters, state)", "takes parameters, state"),
     ("\nID =", "\nimport os\nID =", "out of place"),
@@ -136,10 +136,10 @@ SPOILED_C = [
     ("out[3 * out_stride", "out[4 * out_stride", "the line of"),
     ("const double Omega1 = Pi1 / I1;", "", "Omega"),
     ("const double Omega1 = Pi1 / I1;", "const float Omega1 = Pi1 / I1;", "const float"),
-    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = (float)Pi1 / I1;", "no form"),
-    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = 1 * Pi1 / I1;", "no form"),
-    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = --Pi1 / I1;", "no form"),
-    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = pow(Pi1, I1);", "no form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = (float)Pi1 / I1;", "not a form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = 1 * Pi1 / I1;", "not a form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = --Pi1 / I1;", "not a form"),
+    ("const double Omega1 = Pi1 / I1;", "const double Omega1 = pow(Pi1, I1);", "not a form"),
     ("state[0 * state_stride", "state[1 * state_stride", "inputs"),
     ("_p1 = m * g;", "_p1 = m * g; abort();", "abort"),
 ]
@@ -168,7 +168,7 @@ def test_spoiled_c_is_caught_in_either_branch(good, bad, found, branch):
 def test_separate_parameters_are_read_by_member(bad):
     """In the second branch a parameter of another row, or the first member's for all, is caught."""
     spoiled = TEXTS["kernel.c"].replace("parameters[0 * parameters_stride + _n]", bad, 1)
-    with pytest.raises(CrossCheckError, match=r"inputs|no form|no line"):
+    with pytest.raises(CrossCheckError, match=r"inputs|not a form|not a line|no line"):
         check_c(TOP_RHS, spoiled, "heavy_top")
 
 
@@ -195,7 +195,7 @@ def test_a_changed_constant_is_detected(text):
 )
 def test_other_forms_of_c_are_refused(text):
     """Forms that the printer never writes are refused."""
-    with pytest.raises(CrossCheckError, match="no form"):
+    with pytest.raises(CrossCheckError, match="not a form"):
         read_c_expression(text, "f")
 
 

@@ -3,7 +3,7 @@
 import pytest
 import sympy
 
-from coadjoint.derive import derive
+from coadjoint.derive import Equations, derive
 from coadjoint.errors import DerivationError
 from tests.specs import prove_claims, spec
 
@@ -171,6 +171,47 @@ def test_noether_on_configuration_spaces_sees_a_potential(changes):
     wrong = prove_claims(spec(CHARGE, *changes, ("dot(q, q)^2", "q1*q2")))
     assert "J is conserved" in statements_of_refuted(wrong)
     assert not any("Noether" in statement for statement in statements(wrong))
+
+
+DRAGGED = """
+title = "A particle in the plane, with drag and a push"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+p = { role = "momentum", of = "q" }
+[parameters]
+c = { default = 1 }
+f = { default = 1 }
+[hamiltonian]
+h = "dot(p, p)/2 + dot(q, q)^2"
+[forces]
+p = "f*vector(q1, q2) - c*p"
+[symmetries.J]
+algebra    = "so(2)"
+vector     = "s"
+generators = { q = "s*vector(-q2, q1)" }
+"""
+
+
+def test_noether_under_forces():
+    """A push away from the centre has no moment; drag takes c J, and is told with its sign."""
+    found = statements(prove_claims(spec(DRAGGED)).require())
+    law = {each for each in found if each.startswith("dJ/dt")}
+    assert len(law) == 1
+    right = law.pop().removeprefix("dJ/dt = ").removesuffix(", since its flow keeps h")
+    q1, q2, p1, p2, c = sympy.symbols("q1 q2 p1 p2 c")
+    assert sympy.expand(sympy.sympify(right) + c * (q1 * p2 - q2 * p1)) == 0
+    free = statements(prove_claims(spec(DRAGGED, ("f*vector(q1, q2) - c*p", "f*q"))).require())
+    assert f"{NOETHER} and forces and dissipation do not change it" in free
+
+
+def test_a_wrong_law_of_a_momentum_map_is_refuted(monkeypatch):
+    """The law is that of the emitted rates: forces that are counted twice do not fit them."""
+    once = Equations.work
+    monkeypatch.setattr(Equations, "work", lambda self, of: once(self, of) + once(self, of))
+    assert any(
+        each.startswith("dJ/dt") for each in statements_of_refuted(prove_claims(spec(DRAGGED)))
+    )
 
 
 #: Time moves with a shift along the first axis, which no force is along.

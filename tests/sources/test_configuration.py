@@ -290,7 +290,7 @@ def test_2_2_4_geodesics_of_the_hyperbolic_plane_are_half_circles():
     check_proved(spec(PLANE), "x + y*w/u is conserved", "y^2 + (y*w/u)^2 is conserved")
     assert refuted(spec(PLANE, ("x + y*w/u", "x - y*w/u"))) == [
         "x - y*w/u is conserved",
-        "the flow of x - y*w/u takes motions to motions, a hidden symmetry: its flow is no "
+        "the flow of x - y*w/u takes motions to motions, a hidden symmetry: its flow is not a "
         "transformation of positions alone",
     ]
 

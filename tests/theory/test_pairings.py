@@ -66,5 +66,5 @@ def test_an_unknown_form_is_refused(word):
 
 def test_an_unknown_space_is_refused():
     """The message has the word and the nearest space."""
-    with pytest.raises(AlgebraError, match=r"'transpose' is no .* Did you mean 'transposed'"):
+    with pytest.raises(AlgebraError, match=r"'transpose' is not a .* Did you mean 'transposed'"):
         trace_pairing(algebra_by_name("so(3)"), "tr(mu xi)", "transpose")

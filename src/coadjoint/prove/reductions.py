@@ -12,11 +12,10 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.domain import region
-from coadjoint.derive.reductions import Restriction, whole_equations
+from coadjoint.derive.reductions import Restriction
 from coadjoint.exact import Element
 from coadjoint.prove.ideals import Ideal
-from coadjoint.prove.relaxation import about_relaxation
+from coadjoint.prove.relaxation import about_relaxation, derive_whole
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 
 Found = Sequence[Element] | Decision | Discovery
@@ -44,9 +43,7 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
 
 def restriction_of(first: Equations) -> Restriction:
     """The whole system of a restricted motion, on its section."""
-    whole = whole_equations(first.setting, first.route)
-    whole.setting.field.region = region(whole)
-    return Restriction(first.setting, whole)
+    return Restriction(first.setting, derive_whole(first))
 
 
 def on_section(restriction: Restriction, function: Element) -> Element:

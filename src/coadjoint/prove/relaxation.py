@@ -21,7 +21,9 @@ from contextlib import suppress
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.domain import region
 from coadjoint.derive.mechanics.external import added_rates, metric
+from coadjoint.derive.reductions import whole_equations
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, dot
 from coadjoint.prove.certificate import Verdict
@@ -60,8 +62,17 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
     yield from mark_accepted(spec, (relaxation.table,), claims, first.setting.field)
 
 
+def derive_whole(first: Equations) -> Equations:
+    """The equations of the whole system of a restricted motion."""
+    whole = whole_equations(first.setting, first.route)
+    whole.setting.field.region = region(whole)
+    return whole
+
+
 def is_dissipative(first: Equations) -> bool:
     """Whether G is proved positive semidefinite, so that what it does has a sign."""
+    if first.spec.reduction is not None:  # G acts on the whole system
+        first = derive_whole(first)
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if first.spec.relaxation is None or energy is None or tensor is None:
         return False

@@ -95,7 +95,10 @@ def _cocycle(first: Equations, symmetry: Symmetry, J: MomentumMap) -> str:
 def _noether(
     first: Equations, symmetry: Symmetry, J: MomentumMap, h: Element
 ) -> Iterator[Examined]:
-    """What is conserved since h is invariant: nothing is claimed of the other components."""
+    """What h, which its flow keeps, leaves of J: nothing is claimed of the other components.
+
+    Without forces it is conserved; else they alone change it, and the law is told.
+    """
     rates, setting = J.rates(h), first.setting
     own = [explicit(setting, first.close(value)) + first.work(value) for value in J.values]
     invariant = [n for n, rate in enumerate(rates) if rate == 0 and setting.field.is_zero(own[n])]
@@ -109,6 +112,18 @@ def _noether(
             "symmetry",
             lambda: [defect for n in invariant for defect in drift(first, J.values[n])],
         )
+    for n in sorted({n for n, rate in enumerate(rates) if rate == 0}.difference(invariant)):
+        yield (
+            f"d{symmetry.components[n]}/dt = {element_text(setting.field, own[n])}, since its flow "
+            "keeps h",
+            "symmetry",
+            partial(_defects_of_law, first, J.values[n], own[n]),
+        )
+
+
+def _defects_of_law(first: Equations, value: Element, rate: Element) -> list[Element]:
+    """The rate of a function along the motion, less the one that is claimed."""
+    return [defect - rate for defect in drift(first, value)]
 
 
 # -- integrals and their symmetries ---------------------------------------------------------------
