@@ -101,7 +101,8 @@ def _noether(
     """
     rates, setting = J.rates(h), first.setting
     own = [explicit(setting, first.close(value)) + first.work(value) for value in J.values]
-    invariant = [n for n, rate in enumerate(rates) if rate == 0 and setting.field.is_zero(own[n])]
+    kept = [n for n, rate in enumerate(rates) if rate == 0]
+    invariant = [n for n in kept if setting.field.is_zero(own[n])]
     if invariant:
         names = [symmetry.components[n] for n in invariant]
         subject = symmetry.name if len(invariant) == len(rates) else ", ".join(names)
@@ -112,7 +113,7 @@ def _noether(
             "symmetry",
             lambda: [defect for n in invariant for defect in drift(first, J.values[n])],
         )
-    for n in sorted({n for n, rate in enumerate(rates) if rate == 0}.difference(invariant)):
+    for n in (n for n in kept if n not in invariant):
         yield (
             f"d{symmetry.components[n]}/dt = {element_text(setting.field, own[n])}, since its flow "
             "keeps h",
