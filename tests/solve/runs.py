@@ -7,6 +7,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from coadjoint.solve.course import Course
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import kapitza_top, rigid_body
 from tests.driven_specs import POINT
@@ -39,7 +40,7 @@ def made(batch=(), **changes):
         "parameters": SOURCE.uniform(1, 2, size=(3, *batch)),
         "status": "MAX_STEPS",
         "message": 'it "stopped",\nhere # so',
-        "settings": {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "target": "c"},
+        "course": Course(method="dop853", order=8, rtol=1e-10, atol=1e-12, step=None),
     }
     return Solution(**(given | changes))
 

@@ -116,7 +116,14 @@ def check_solvers(
             equal = check_bits(solvers, batch, size)
         else:
             together = check_together(solvers, batch, size)
-    return SolverFigures(coefficients, lines, steps, choices, equal, together)
+    return SolverFigures(
+        coefficients=coefficients,
+        lines=lines,
+        steps=steps,
+        choices=choices,
+        equal=equal,
+        together=together,
+    )
 
 
 def _is_plain(text: SolverText) -> bool:

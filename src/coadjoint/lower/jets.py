@@ -170,7 +170,7 @@ class _Making:
             self._cells[-1] = replace(last, name=name)
             self._depth[name] = last.depth
         else:
-            self._append(Cell(name, whole, tail, self._depth_of(whole)))
+            self._append(Cell(name=name, value=whole, tail=tail, depth=self._depth_of(whole)))
 
     def _append(self, cell: Cell) -> None:
         self._cells.append(cell)
@@ -187,8 +187,8 @@ class _Making:
                 partner = self._name()
                 other = Call(PARTNERS[value.function], value.argument)
                 self._known[other] = partner
-                self._append(Cell(partner, other, None, depth, name))
-            self._append(Cell(name, value, None, depth, partner))
+                self._append(Cell(name=partner, value=other, tail=None, depth=depth, partner=name))
+            self._append(Cell(name=name, value=value, tail=None, depth=depth, partner=partner))
         return Symbol(self._known[value])
 
     def _name(self) -> str:
@@ -205,7 +205,9 @@ class _Making:
             if isinstance(whole, Symbol):  # a recurrence has made a cell of it
                 return whole
             self._known[node] = self._name()
-            self._append(Cell(self._known[node], whole, tail, self._depth_of(whole)))
+            self._append(
+                Cell(name=self._known[node], value=whole, tail=tail, depth=self._depth_of(whole))
+            )
         return Symbol(self._known[node])
 
     def _depth_of(self, node: Node) -> int:
