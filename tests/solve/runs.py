@@ -8,6 +8,7 @@ from functools import cache, partial
 import numpy as np
 
 from coadjoint.solve.course import Course
+from coadjoint.solve.ensemble import Status
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import kapitza_top, rigid_body
 from tests.driven_specs import POINT
@@ -25,7 +26,7 @@ def check_same(found, solution):
             assert ours.shape == theirs.shape, name
             assert ours.tobytes() == theirs.tobytes(), name
     for name in ("system", "status", "message", "settings"):
-        assert getattr(solution, name) == getattr(found, name), name
+        assert np.array_equal(getattr(solution, name), getattr(found, name)), name
 
 
 def made(batch=(), **changes):
@@ -33,14 +34,16 @@ def made(batch=(), **changes):
     state = SOURCE.normal(size=(3, *batch, 4)) * 1e-3
     state[1, ..., -1] = np.nan
     state[2, ..., -1] = -np.inf
+    status = changes.pop("status", np.full(batch, "MAX_STEPS"))
+    codes = np.array([Status[name] for name in np.ravel(status)], np.int8).reshape(batch)
     given = {
         "system": rigid_body.system,
         "time": np.array([0.0, 0.1, 1 / 3, math.pi]),
         "state": state,
         "parameters": SOURCE.uniform(1, 2, size=(3, *batch)),
-        "status": "MAX_STEPS",
+        "status": str(status) if not batch else "",
         "message": 'it "stopped",\nhere # so',
-        "course": Course(method="dop853", order=8, rtol=1e-10, atol=1e-12, step=None),
+        "course": Course(method="dop853", order=8, rtol=1e-10, atol=1e-12, step=None, codes=codes),
     }
     return Solution(**(given | changes))
 

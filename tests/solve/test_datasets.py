@@ -35,8 +35,8 @@ def test_a_dataset_says_how_it_was_made():
     found = solution.to_xarray().attrs
     assert (found["system"], found["id"]) == ("heavy_top", heavy_top.system.id)
     assert (found["parameter_I"], found["parameter_m"]) == ([2, 3, 4], 1)
-    assert (found["method"], found["rtol"], found["atol"]) == ("DOP853", 1e-9, 1e-12)
-    assert (found["status"], found["target"]) == ("OK", "numpy")
+    assert (found["method"], found["rtol"], found["atol"]) == ("taylor", 1e-9, 1e-12)
+    assert found["status"] == "OK"
     assert {"coadjoint_version", "numpy_version", "scipy_version"} <= found.keys()
 
 
