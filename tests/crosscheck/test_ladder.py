@@ -246,7 +246,7 @@ def test_python_is_nan_exactly_where_it_has_no_value(value, expected, tmp_path):
 
     NumPy gives 0 for 1/(1/0), which Python cannot pass through.
     """
-    each = program("rhs", "q p", "k", "", value, (1,))
+    each = program("rhs", "q p", "k", "", f"{value}; p", (2,))
     context = replace(PENDULUM, programs=(each,))
     good = subject(tmp_path, context, reference=ProgramReference([each]))
     batch = good.points.draw_special(1, 400)
