@@ -46,14 +46,12 @@ def list_emitted(
 
 def emitted_energy(setting: Setting, energy: Element) -> Emitted:
     """The energy of a route."""
-    return Emitted(
-        name="energy",
-        shape=(),
-        components=("energy",),
-        unit=units.of_energy(setting),
-        values=(energy,),
-        kept=Kept.AS_ENERGY,
-    )
+    return _emit_number("energy", units.of_energy(setting), energy, Kept.AS_ENERGY)
+
+
+def _emit_number(name: str, unit: str, value: Element, kept: Kept) -> Emitted:
+    """A quantity of one component, which has its name."""
+    return Emitted(name=name, shape=(), components=(name,), unit=unit, values=(value,), kept=kept)
 
 
 @once
@@ -110,14 +108,7 @@ def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterato
     values |= section_momenta(setting)
     for section in setting.spec.sections:
         name, kept = section.name, _find_claim(setting, section.name)
-        yield Emitted(
-            name=name,
-            shape=(),
-            components=(name,),
-            unit=section.unit,
-            values=(values[name],),
-            kept=kept,
-        )
+        yield _emit_number(name, section.unit, values[name], kept)
 
 
 @once
@@ -159,16 +150,7 @@ def _list_last(setting: Setting) -> tuple[Emitted, ...]:
     emitted, pair = [], lax_integrals(setting)
     for name, value in () if pair is None else pair.named:
         unit = units.of_value(setting, value)
-        emitted.append(
-            Emitted(
-                name=name,
-                shape=(),
-                components=(name,),
-                unit=unit,
-                values=(value,),
-                kept=Kept.ALWAYS,
-            )
-        )
+        emitted.append(_emit_number(name, unit, value, Kept.ALWAYS))
     for each in spatial_momenta(setting.spec):
         inner, kept = each.momentum, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
         seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))

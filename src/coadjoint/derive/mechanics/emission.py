@@ -56,7 +56,7 @@ def emit(
 
 
 def _momenta_in_frame(setting: Setting) -> list[tuple[str, Element]]:
-    """``dl/dv`` by the names under which a route in a frame emits them; empty beside no such."""
+    """``dl/dv`` by the names that a route in a frame emits; empty where it emits none."""
     names = [name for each in setting.spec.reduced_momenta for name in each.components]
     return list(zip(names, mechanics(setting).momenta, strict=True)) if names else []
 

@@ -166,7 +166,7 @@ def representation_of(
     declared = declared or {}
     known = (*REPRESENTATIONS, *declared)
     if name not in known:
-        problem = f"there is no representation {name!a}"
+        problem = f"the representation {name!a} is not known"
         hint = f"Declare it under [representations.{name}]."
         raise source.unknown(key, problem, name, known, hint)
     if name in declared:
