@@ -5,9 +5,9 @@ the function is monotone or keeps its sign, so that no root and no double root l
 two of them.
 
 On each piece the function is interpolated at Chebyshev points, ``g = c_0 + c_1 T_1 + ... + c_N
-T_N`` on [-1, 1]. There ``|T_k| <= 1``, ``|T_k'| <= k^2`` and ``|T_k''| <= k^2 (k^2 - 1) / 3``. So g keeps
-its sign if ``|c_0|`` is more than the sum of the others, it is monotone if ``|c_1|`` is more than
-the sum of ``k^2 |c_k|``, and it is convex or concave, with one turning point at the most, if
+T_N`` on [-1, 1]. There ``|T_k| <= 1``, ``|T_k'| <= k^2`` and ``|T_k''| <= k^2 (k^2 - 1) / 3``. So g
+keeps its sign if ``|c_0|`` is more than the sum of the others, it is monotone if ``|c_1|`` is more
+than the sum of ``k^2 |c_k|``, and it is convex or concave, with one turning point at the most, if
 ``4 |c_2|`` is more than the sum of the bounds of the other second derivatives. A piece for which
 none of that can be said is halved. For a polynomial of degree N at most the interpolation is exact.
 Otherwise its error is taken as twice the two last coefficients, and a piece is halved until that
@@ -132,9 +132,9 @@ def _divide(
         finite = np.isfinite(values).all(axis=1)
         with np.errstate(all="ignore"):
             forms = _Forms(_transform(values, matrix))
-            small = forms.size <= band[row - first]
+            small: Mask = np.asarray(forms.size <= band[row - first])
             small |= forms.variation <= NOISE * largest[row - first]
-            known = forms.is_clear(band[row - first]) | forms.is_monotone | forms.is_bent | small
+            known = small | forms.is_clear(band[row - first]) | forms.is_monotone | forms.is_bent
         many = np.bincount(row - first)[row - first] > OPEN
         lost = ~np.isfinite(values).any(axis=1)
         done = (finite & known) | lost | many | (depth == DEPTH)
