@@ -85,6 +85,7 @@ def simulate(system: System, request: Request) -> Solution:
         rejected=run.rejected.reshape(batch),
         reached=run.time.reshape(batch),
         last=run.state.reshape(-1, *batch),
+        driven=_find_driven(driven, run, batch),
         start=_find_start(request, driven) if request.samples == 1 else None,
     )
     return _make_solution(system, request, run, course, driven)
@@ -223,6 +224,15 @@ def _make_solution(
     return Solution(
         system, times, states, parameters.copy(), status, message, None, inputs, course=course
     )
+
+
+def _find_driven(
+    signal: Signal | Array | None, run: Ensemble, batch: tuple[int, ...]
+) -> Array | None:
+    """The inputs where each member came, if they change."""
+    if not isinstance(signal, Previous | Linear):
+        return None
+    return signal.over(run.time).reshape(-1, *batch)
 
 
 def _find_start(request: Request, signal: Signal | Array | None) -> Start:
