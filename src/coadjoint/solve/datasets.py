@@ -7,6 +7,7 @@ Read next: `coadjoint.solve.carried`.
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,6 +62,7 @@ def to_xarray(solution: Solution) -> Any:
     for name in ("status", "message"):  # of members, each has its own
         if not isinstance(attributes[name], str | int):
             variables[name] = (axes, np.asarray(attributes.pop(name)))
+    attributes["course"] = json.dumps(attributes["course"])
     _add_parameters(solution, axes, coordinates, variables, attributes)
     return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
 
@@ -119,7 +121,7 @@ def read_netcdf(system: System, path: Path) -> Solution:
     try:
         form |= {"time": dataset["time"].values, "parameters": _read_parameters(system, dataset)}
         shared = {name: value for name, value in said.items() if not name.startswith(PARAMETER)}
-        return rebuild(system, shared, _find_rows(system, dataset), form)
+        return rebuild(system, path, shared, _find_rows(system, dataset), form)
     except KeyError as error:
         raise explain_unread(path, f"it has no {error}") from error
 

@@ -84,11 +84,13 @@ class Linear(Signal):
     def __init__(self, times: Array, values: Array) -> None:
         self.times, self.values = times, values
 
-    def at(self, time: float) -> Array:
-        """The values at one time."""
+    def at(self, time: float | Array) -> Array:
+        """The values at one time, or at many."""
         return np.array([np.interp(time, self.times, row) for row in self.values])
 
-    over = at  # type: ignore[assignment]  # np.interp takes both
+    def over(self, times: Array) -> Array:
+        """The values at many times."""
+        return self.at(times)
 
 
 class Function(Signal):

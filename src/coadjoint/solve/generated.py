@@ -14,6 +14,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters
+from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.driving import Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.request import Request
+    from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -66,11 +68,12 @@ def simulate(system: System, request: Request) -> Solution:
     stepper = system._solvers.get(request.choice, request.target)
     run.begin(request.start)
     _end_undefined(system, run)
+    checkpoint = _resume(system, request, run, stepper)
     with ExitStack() as stack:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
             told = stack.enter_context(progress_bar())
-        march(stepper, run, request.threads or count_threads(), told)
+        march(stepper, run, request.start, request.threads or count_threads(), told, checkpoint)
     course = Course(
         method=request.choice.name,
         order=request.choice.order,
@@ -82,6 +85,7 @@ def simulate(system: System, request: Request) -> Solution:
         rejected=run.rejected.reshape(batch),
         reached=run.time.reshape(batch),
         last=run.state.reshape(-1, *batch),
+        driven=_find_driven(driven, run, batch),
         start=_find_start(request, driven) if request.samples == 1 else None,
     )
     return _make_solution(system, request, run, course, driven)
@@ -181,6 +185,17 @@ def _end_undefined(system: System, run: Ensemble) -> None:
     run.status[~np.isfinite(rates).all(axis=0)] = Status.NONFINITE
 
 
+def _resume(system: System, request: Request, run: Ensemble, stepper: Stepper) -> Checkpoint | None:
+    """The checkpoint of a run, which stands where it was broken off; None if none was asked for."""
+    if request.checkpoint is None:
+        return None
+    has_same_bits = request.target != "c-fast" and not system.elementary
+    build = "" if has_same_bits else stepper.key
+    checkpoint = Checkpoint(request.checkpoint, system, request, run, build)
+    checkpoint.resume(run)
+    return checkpoint
+
+
 # -- after the last step ------------------------------------------------------------------------
 
 
@@ -209,6 +224,15 @@ def _make_solution(
     return Solution(
         system, times, states, parameters.copy(), status, message, None, inputs, course=course
     )
+
+
+def _find_driven(
+    signal: Signal | Array | None, run: Ensemble, batch: tuple[int, ...]
+) -> Array | None:
+    """The inputs where each member came, if they change."""
+    if not isinstance(signal, Previous | Linear):
+        return None
+    return signal.over(run.time).reshape(-1, *batch)
 
 
 def _find_start(request: Request, signal: Signal | Array | None) -> Start:

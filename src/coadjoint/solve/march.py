@@ -8,6 +8,7 @@ of a solver is short, so that Ctrl-C is heard and progress is told. Read next:
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -22,6 +23,7 @@ import numpy as np
 from coadjoint.solve.ensemble import Status
 
 if TYPE_CHECKING:
+    from coadjoint.solve.checkpoints import Checkpoint
     from coadjoint.solve.ensemble import Ensemble
     from coadjoint.solve.solvers import Stepper
 
@@ -45,34 +47,62 @@ def count_threads() -> int:
     return os.cpu_count() or 1
 
 
-def march(stepper: Stepper, run: Ensemble, threads: int, progress: Progress | None = None) -> None:
+def march(
+    stepper: Stepper,
+    run: Ensemble,
+    start: float,
+    threads: int,
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> None:
     """Advance an ensemble to its end.
 
     Args:
         stepper: Who advances it.
         run: Its members, begun.
+        start: When they began.
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
+        checkpoint: Written now and then, and at the end; None for none.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; members stand where they came.
+        OutputError: The checkpoint cannot be written.
     """
     slices = _cut(run.state.shape[1], threads)
-    begun, stop = run.time.copy() if progress else run.time, Event()
 
     def report() -> None:
         if progress is not None:
-            progress(_find_part(run, begun))
+            progress(_find_part(run, start))
 
-    if len(slices) == 1:
-        reported = time.monotonic()
-        for _ in _advance(stepper, run, *slices[0], stop):
-            if time.monotonic() - reported > REPORT_SECONDS:
-                report()
-                reported = time.monotonic()
-    else:
-        _share(stepper, run, slices, threads, stop, report)
+    while (run.status == Status.GOES_ON).any():
+        seconds = math.inf if checkpoint is None else checkpoint.seconds
+        _go_on(stepper, run, slices, threads, report, time.monotonic() + seconds)
+        if checkpoint is not None:
+            checkpoint.write(run)
     report()
+
+
+def _go_on(
+    stepper: Stepper,
+    run: Ensemble,
+    slices: list[tuple[int, int]],
+    threads: int,
+    report: Callable[[], None],
+    until: float,
+) -> None:
+    """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
+    if len(slices) > 1:
+        _share(stepper, run, slices, threads, report, until)
+        return
+    reported = time.monotonic()
+    for _ in _advance(stepper, run, *slices[0], Event()):
+        now = time.monotonic()
+        if now > until:
+            return
+        if now - reported > REPORT_SECONDS:
+            report()
+            reported = now
 
 
 def _share(
@@ -80,10 +110,11 @@ def _share(
     run: Ensemble,
     slices: list[tuple[int, int]],
     threads: int,
-    stop: Event,
     report: Callable[[], None],
+    until: float,
 ) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
+    stop = Event()
 
     def work(first: int, last: int) -> None:
         for _ in _advance(stepper, run, first, last, stop):
@@ -97,6 +128,8 @@ def _share(
                 for each in done:
                     each.result()
                 report()
+                if time.monotonic() > until:
+                    stop.set()
         except BaseException:  # Ctrl-C among them
             stop.set()
             pool.shutdown(cancel_futures=True)
@@ -126,11 +159,10 @@ def _cut(members: int, threads: int) -> list[tuple[int, int]]:
     return [(first, min(first + size, members)) for first in range(0, members, size)]
 
 
-def _find_part(run: Ensemble, begun: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+def _find_part(run: Ensemble, start: float) -> float:
     """The part of the way that is done, from 0 to 1."""
-    span = np.maximum(run.end - begun, np.finfo(float).tiny)
-    part = np.where(run.status == Status.GOES_ON, (run.time - begun) / span, 1.0)
-    return float(part.mean())
+    gone = (run.time - start) / (run.end - start)
+    return float(np.where(run.status == Status.GOES_ON, gone, 1.0).mean())
 
 
 @contextmanager

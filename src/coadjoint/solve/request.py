@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Integral, Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +55,7 @@ class Request:
         reconstruct: As given.
         threads: How many threads, at the most; None for all processors.
         progress: Whether to show a bar, or whom to tell.
+        checkpoint: Where a run on its way is kept; None for nowhere.
     """
 
     state: Array
@@ -71,6 +73,7 @@ class Request:
     reconstruct: Any
     threads: int | None
     progress: bool | Callable[[float], object]
+    checkpoint: Path | None
 
     @property
     def choice(self) -> Choice:

@@ -15,6 +15,7 @@ import scipy.integrate
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import generated
 from coadjoint.solve.arrays import pack_parameters
+from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
@@ -63,6 +64,7 @@ def simulate(
     threads: Any,
     progress: Any,
     reconstruct: Any,
+    checkpoint: Any,
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
     initial, (start, times) = check_state(system, state), list_times(t, samples)
@@ -88,6 +90,7 @@ def simulate(
         reconstruct=reconstruct,
         threads=threads,
         progress=progress,
+        checkpoint=check_checkpoint(checkpoint),
     )
     if not request.method.startswith(SCIPY):
         return generated.simulate(system, request)
@@ -96,11 +99,19 @@ def simulate(
 
 
 def _check_alone(system: System, request: Request, obstacle: str) -> None:
-    """The methods of SciPy follow one trajectory.
+    """The methods of SciPy follow one trajectory, and keep no checkpoint.
 
     Raises:
-        KernelArgumentError: The state is a batch.
+        KernelArgumentError: The state is a batch, or there is to be a checkpoint.
     """
+    if request.checkpoint is not None:
+        reason = f": {obstacle}" if obstacle else ""
+        raise KernelArgumentError(
+            f"checkpoint is given, and method {request.method!r} of SciPy keeps none; expected a "
+            f"generated solver{', which does not apply here' if obstacle else ''}{reason}.",
+            found=str(request.checkpoint),
+            reason=obstacle,
+        )
     if request.state.ndim > 1:
         advice = f"generated solvers do not apply: {obstacle}. Call it for each member"
         if not obstacle:

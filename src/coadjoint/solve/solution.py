@@ -126,41 +126,9 @@ class Solution:
         Raises:
             KernelArgumentError: There is no such member.
         """
-        batch = self.batch
-        good = len(place) == len(batch) > 0
-        if not good or not all(-n <= p < n for p, n in zip(place, batch, strict=True)):
-            raise KernelArgumentError(
-                f"member {place} is not in a batch of the shape {batch}; expected "
-                f"{len(batch)} numbers within it."
-                if batch
-                else "this solution is one trajectory.",
-                found=list(place),
-                expected=list(batch),
-            )
-        come = self.course.take(place)
-        at: Any = (slice(None), *place)
-        end = float(self.time[-1] if come.reached is None else come.reached)
-        reached = ~np.isnan(self.state[at][0]) & (self.time <= end)
-        times, states = self.time[reached], self.state[at][:, reached]
-        if come.last is not None and (not times.size or times[-1] < end):
-            times, states = np.append(times, end), np.column_stack([states, come.last])
-        shared, inputs = self.parameters.ndim == 1, self.inputs
-        if inputs is not None and inputs.ndim > 2:
-            inputs = inputs[at][:, 0]
-        elif inputs is not None and inputs.ndim == 2 and times.size != self.time.size:
-            inputs = np.column_stack([inputs[:, : reached.sum()], inputs[:, reached.sum()]])
-            inputs = inputs[:, : times.size]
-        return Solution(
-            self.system,
-            times,
-            states,
-            self.parameters if shared else self.parameters[at],
-            come.status,
-            "" if come.status == "OK" else f"it stopped at t = {end:.6g}",
-            None,
-            inputs,
-            course=come,
-        )
+        from coadjoint.solve.members import take_member
+
+        return take_member(self, place)
 
     def _check_alone(self, what: str) -> None:
         """Refuse what is of one trajectory.
@@ -308,12 +276,14 @@ class Solution:
         quantities = self.system.OBSERVABLES.values()
         return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
 
+    def first(self, name: str) -> Array:
+        """The value at the start, ``(..., 1)``, also where no sample has it."""
+        return self[name][..., :1] if self._at_start is None else self._at_start[name]
+
     def change(self, name: str) -> Array:
         """``q(t) - q(0)`` of an observable or state component, ``(T,)`` or ``(*batch, T)``."""
-        values = self[name]
-        first = values[..., :1] if self._at_start is None else self._at_start[name]
         with np.errstate(invalid="ignore"):  # infinite values give NaN, as they should
-            return values - first
+            return self[name] - self.first(name)
 
     @property
     def time_reached(self) -> Any:
@@ -325,8 +295,8 @@ class Solution:
         """The last state by component; of a batch arrays, of what could be followed to there."""
         names = self.system.STATE.components
         if self.batch:
-            assert self.course.last is not None
-            return dict(zip(names, self.course.last, strict=True))
+            last = self.state[..., -1] if self.course.last is None else self.course.last
+            return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
     @property

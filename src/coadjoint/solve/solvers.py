@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 import numpy as np
 
 from coadjoint.build.compiler import HOW_TO_GET_ONE, Source
-from coadjoint.build.library import Library, load_library
+from coadjoint.build.library import Library, load_library, tell_processor
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
@@ -76,6 +76,11 @@ class Choice:
 
 class Stepper(Protocol):
     """Whoever advances members of an ensemble."""
+
+    @property
+    def key(self) -> str:
+        """What its bits depend on beyond the files of the system."""
+        ...
 
     def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
         """Go on with the members ``first <= n < last``, by at most ``work`` steps of a block.
@@ -180,7 +185,7 @@ class CStepper:
     """
 
     def __init__(self, library: Library) -> None:
-        self.source = library.source
+        self.source, self.key = library.source, library.key
         self._advance = library.take("advance")
 
     def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
@@ -235,6 +240,11 @@ class NumpyStepper:
             self._expansion = KernelModule(system, "solver.py").function("expand")
         else:
             self._kernel = NumpyKernel(system, "kernel.py")
+
+    @property
+    def key(self) -> str:
+        """NumPy's own functions differ from one processor to another."""
+        return f"numpy {np.__version__} {tell_processor()}"
 
     def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
         """As `Stepper.advance`; a block is all of the members."""
