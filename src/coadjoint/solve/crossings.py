@@ -46,10 +46,25 @@ class Steps(Protocol):
         degree: Of the polynomials of the state.
     """
 
-    member: Places
-    start: Array
-    size: Array
-    degree: int
+    @property
+    def member(self) -> Places:
+        """As above."""
+        ...
+
+    @property
+    def start(self) -> Array:
+        """As above."""
+        ...
+
+    @property
+    def size(self) -> Array:
+        """As above."""
+        ...
+
+    @property
+    def degree(self) -> int:
+        """As above."""
+        ...
 
     def evaluate(self, rows: Places, after: Array) -> Array:
         """States ``(n, R, K)`` of the steps ``rows``, some time ``(R, K)`` after their starts."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -19,11 +20,12 @@ from coadjoint.solve.course import Start
 from coadjoint.solve.crossings import Steps
 from coadjoint.solve.driving import Previous, Signal
 from coadjoint.solve.events import Surroundings
+from coadjoint.solve.lookout import Ending, Lookout, list_occurrences
+from coadjoint.solve.occurrences import Occurrences
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.lookout import Ending, Lookout
     from coadjoint.solve.solution import Solution
 
     Array = NDArray[np.float64]
@@ -176,13 +178,13 @@ class Dense:
 
     def take(self, place: tuple[int, ...], batch: tuple[int, ...]) -> Dense:
         """The steps of one member of a batch."""
-        member = int(
-            np.ravel_multi_index([p % n for p, n in zip(place, batch, strict=True)], batch)
-        )
+        inside = tuple(p % n for p, n in zip(place, batch, strict=True))
+        member = int(np.ravel_multi_index(inside, batch))
         steps = self.steps.take(np.flatnonzero(self.steps.member == member))
         signal = self.signal
         if isinstance(signal, np.ndarray):
-            signal = Signal(signal[(slice(None), *place)])
+            at: Any = (slice(None), *place)
+            signal = Signal(signal[at])
         return Dense(steps, signal, self.start)
 
 
@@ -280,7 +282,7 @@ def _find_states(solution: Solution, dense: Dense, times: Array) -> Array:
         0 if solution.reconstructed is None else len(solution.reconstructed)
     )
     states = np.full((size, members, times.size), np.nan)
-    for member, (first, last) in enumerate(zip(bounds[:-1], bounds[1:], strict=True)):
+    for member, (first, last) in enumerate(pairwise(bounds)):
         come = np.flatnonzero(times <= reached[member])
         if first == last or not come.size:
             continue
@@ -330,6 +332,10 @@ class Record:
         """The terminal event that the end of the trajectory decides, if there is one."""
         endings = [] if self.lookout is None else self.lookout.finish([0])
         return endings[0] if endings else None
+
+    def list_events(self) -> dict[str, Occurrences]:
+        """All events by name."""
+        return {} if self.lookout is None else list_occurrences([self.lookout], ())
 
     def make_dense(self, end: float, signal: Signal | None, start: float) -> Dense | None:
         """The steps up to an end; None if they were not to be kept."""

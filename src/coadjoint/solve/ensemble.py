@@ -34,6 +34,7 @@ class Status(IntEnum):
     STEP_UNDERFLOW = 2
     NONFINITE = 3
     MAX_STEPS = 4
+    EVENT = 6
 
 
 @dataclass

@@ -78,9 +78,7 @@ def _explain(error: ExpressionError, text: str, label: str) -> KernelArgumentErr
     """A fault of an expression as the error of an argument."""
     expected = f"; expected {error.expected}" if error.expected else ""
     return KernelArgumentError(
-        f"{label}, column {error.start + 1}: {error.problem}{expected}. {error.hint}".rstrip(),
-        found=text,
-        column=error.start + 1,
+        f"{label}: {error.problem}{expected}. {error.hint}".rstrip(), found=text
     )
 
 

@@ -43,6 +43,11 @@ class Ending(NamedTuple):
     decided: int
 
 
+def explain_ending(ending: Ending) -> str:
+    """What a Solution says of it."""
+    return f"the event {ending.name!r} ended it at t = {ending.time:.12g}"
+
+
 class Lookout:
     """The search for all events of some members.
 

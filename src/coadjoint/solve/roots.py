@@ -11,7 +11,7 @@ than the sum of ``k^2 |c_k|``, and it is convex or concave, with one turning poi
 ``4 |c_2|`` is more than the sum of the bounds of the other second derivatives. A piece for which
 none of that can be said is halved. For a polynomial of degree N at most the interpolation is exact.
 Otherwise its error is taken as twice the two last coefficients, and a piece is halved until that
-error is small as well.
+error is known as well.
 Read next: `coadjoint.solve.crossings`.
 """
 
@@ -132,15 +132,15 @@ def _divide(
         finite = np.isfinite(values).all(axis=1)
         with np.errstate(all="ignore"):
             forms = _Forms(_transform(values, matrix))
-            small: Mask = np.asarray(forms.size <= band[row - first])
-            small |= forms.variation <= NOISE * largest[row - first]
-            known = small | forms.is_clear(band[row - first]) | forms.is_monotone | forms.is_bent
+            known = np.asarray(forms.size <= band[row - first])
+            known |= forms.variation <= NOISE * largest[row - first]
+            known |= forms.is_clear(band[row - first]) | forms.is_monotone | forms.is_bent
         many = np.bincount(row - first)[row - first] > OPEN
         lost = ~np.isfinite(values).any(axis=1)
         done = (finite & known) | lost | many | (depth == DEPTH)
         chosen = _Pieces(row[done], left[done], width[done])
-        bent = forms.is_bent[done] & ~forms.is_monotone[done] & finite[done]
-        ends = np.where(finite[done, np.newaxis], values[done][:, [0, -1]], np.nan)
+        bent = (forms.is_bent & ~forms.is_monotone & finite)[done]
+        ends = np.where(finite[:, np.newaxis], values[:, [0, -1]], np.nan)[done]
         lots.append(_list_knots(function, chosen, ends, forms.coefficients[:, done], bent))
         open_ = _halve(_Pieces(row[~done], left[~done], width[~done]))
     return lots, band
@@ -224,10 +224,10 @@ class _Forms:
         self.size = size[0] + self.variation
         n = float(len(size) - 1)
         most = n * n
-        self.is_monotone: Mask = size[1] > _add(size, 2, lambda k: k * k) + most * self._error
+        self.is_monotone = size[1] > _add(size, 2, lambda k: k * k) + most * self._error
         bend = most * (most - 1.0) / 3.0
         rest = _add(size, 3, lambda k: k * k * (k * k - 1.0) / 3.0)
-        self.is_bent: Mask = 4.0 * size[2] > rest + bend * self._error
+        self.is_bent = 4.0 * size[2] > rest + bend * self._error
 
     def is_clear(self, band: Array) -> Mask:
         """Whether a function stays away from zero by more than a band."""
