@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 Function = Callable[["Places", "Array"], tuple["Array", "Array"]]
 #: The least degree of an interpolation.
 DEGREE: Final = 16
-#: Halvings of a step at the most: a piece is then a 10^-9 of it.
-DEPTH: Final = 30
+#: Halvings of a step at the most, at kinks and poles: a piece is then a 10^-13 of it.
+DEPTH: Final = 43
 #: Pieces of one step that are open at a time, at the most: a function that is noise has no end.
 OPEN: Final = 256
 #: Variation of a function that is rounding, relative to the size of its terms.
@@ -129,7 +129,7 @@ def _divide(
         if not depth:
             largest = np.fmax.reduce(sizes, axis=1, initial=0.0)
             band = band_of(largest)
-        finite = np.isfinite(values).all(axis=1)
+        finite: Mask = np.asarray(np.isfinite(values).all(axis=1))
         with np.errstate(all="ignore"):
             forms = _Forms(_transform(values, matrix))
             known = np.asarray(forms.size <= band[row - first])
@@ -139,7 +139,7 @@ def _divide(
         lost = ~np.isfinite(values).any(axis=1)
         done = (finite & known) | lost | many | (depth == DEPTH)
         chosen = _Pieces(row[done], left[done], width[done])
-        bent = (forms.is_bent & ~forms.is_monotone & finite)[done]
+        bent = (finite & forms.is_bent & ~forms.is_monotone)[done]
         ends = np.where(finite[:, np.newaxis], values[:, [0, -1]], np.nan)[done]
         lots.append(_list_knots(function, chosen, ends, forms.coefficients[:, done], bent))
         open_ = _halve(_Pieces(row[~done], left[~done], width[~done]))
