@@ -21,7 +21,7 @@ from coadjoint.solve.crossings import Steps
 from coadjoint.solve.driving import Previous, Signal
 from coadjoint.solve.events import Surroundings
 from coadjoint.solve.lookout import Ending, Lookout, list_occurrences
-from coadjoint.solve.occurrences import Occurrences
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -333,9 +333,9 @@ class Record:
         endings = [] if self.lookout is None else self.lookout.finish([0])
         return endings[0] if endings else None
 
-    def list_events(self) -> dict[str, Occurrences]:
+    def list_events(self) -> Events:
         """All events by name."""
-        return {} if self.lookout is None else list_occurrences([self.lookout], ())
+        return Events() if self.lookout is None else list_occurrences([self.lookout], ())
 
     def make_dense(self, end: float, signal: Signal | None, start: float) -> Dense | None:
         """The steps up to an end; None if they were not to be kept."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from coadjoint.solve.crossings import Crossings, Watch, join
 from coadjoint.solve.events import Sought, Surroundings, make_function
-from coadjoint.solve.occurrences import Occurrences
+from coadjoint.solve.occurrences import Events, Occurrences
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -147,7 +147,7 @@ class Lookout:
         return kept, self._watches[place].undefined
 
 
-def list_occurrences(lookouts: Sequence[Lookout], batch: tuple[int, ...]) -> dict[str, Occurrences]:
+def list_occurrences(lookouts: Sequence[Lookout], batch: tuple[int, ...]) -> Events:
     """All events by name, of the members of all lookouts in order.
 
     Args:
@@ -156,7 +156,7 @@ def list_occurrences(lookouts: Sequence[Lookout], batch: tuple[int, ...]) -> dic
     """
     found: dict[str, Occurrences] = {}
     if not lookouts:
-        return found
+        return Events()
     around = lookouts[0].surroundings
     for place, sought in enumerate(lookouts[0].sought):
         parts = [lookout.collect(place) for lookout in lookouts]
@@ -179,4 +179,4 @@ def list_occurrences(lookouts: Sequence[Lookout], batch: tuple[int, ...]) -> dic
             inputs=inputs,
             undefined=undefined.reshape(batch),
         )
-    return found
+    return Events(found)

@@ -49,7 +49,7 @@ def take_member(solution: Solution, place: tuple[int, ...]) -> Solution:
         None,
         inputs,
         course=course,
-        events={name: each.of(*place) for name, each in solution.events.items()},
+        events=solution.events.of(*place),
         dense=None if solution.dense is None else solution.dense.take(place, solution.batch),
     )
 

@@ -1,15 +1,17 @@
 """Occurrences: where an event occurred along trajectories, as a Solution holds them.
 
 Comes in: times, members and states that the lookout found. Goes out: a record that people index by
-name. Read next: `coadjoint.solve.events`.
+name. Read next: `coadjoint.solve.event_tables`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -147,3 +149,61 @@ class Occurrences:
         first, last = self.time.min(), self.time.max()
         told = f"{many} events {name!r}{members}, t = {first:g} .. {last:g}"
         return f"<{told}>" if many > 1 else f"<1 event {name!r}, t = {first:g}>"
+
+
+class Events(Mapping[str, Occurrences]):
+    """The events of a Solution by name; without any where none were looked for.
+
+    Args:
+        by_name: The occurrences of each event.
+    """
+
+    def __init__(self, by_name: Mapping[str, Occurrences] | None = None) -> None:
+        self._by_name = dict(by_name or {})
+
+    def __getitem__(self, name: str) -> Occurrences:
+        if name not in self._by_name:
+            told = ", ".join(map(repr, self._by_name)) or "none: simulate with events="
+            raise KernelArgumentError(
+                f"{name!r} is not among the events of this solution; expected one of {told}.",
+                found=name,
+                expected=list(self._by_name),
+            )
+        return self._by_name[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._by_name
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._by_name)
+
+    def of(self, *place: int) -> Events:
+        """The events of one member of a batch."""
+        return Events({name: each.of(*place) for name, each in self.items()})
+
+    def to_pandas(self) -> Any:
+        """A `pandas.DataFrame` of one row per occurrence, by member and time.
+
+        Raises:
+            KernelArgumentError: pandas is not installed; the message has the pip command.
+        """
+        from coadjoint.solve.carried import import_extra
+        from coadjoint.solve.event_tables import list_columns
+
+        return import_extra("pandas", "to_pandas").DataFrame(list_columns(self))
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the table of `to_pandas`, whole or not at all.
+
+        Raises:
+            OutputError: The file cannot be written.
+        """
+        from coadjoint.solve.event_tables import write_events
+
+        write_events(self, Path(path))
+
+    def __repr__(self) -> str:
+        return "\n".join(map(repr, self.values())) or "<no events were looked for>"

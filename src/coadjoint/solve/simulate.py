@@ -24,6 +24,7 @@ from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import Surroundings, read_events
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
+from coadjoint.solve.occurrences import Events
 from coadjoint.solve.reconstruct import find_start
 from coadjoint.solve.request import (
     ATOL,
@@ -222,7 +223,7 @@ def _make_solution(
         followed,
         inputs,
         course=course,
-        events={} if record is None else record.list_events(),
+        events=Events() if record is None else record.list_events(),
         dense=None if record is None else record.make_dense(end, driving.signal, request.start),
     )
 

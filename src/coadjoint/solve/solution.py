@@ -17,12 +17,12 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.course import UNTOLD, Course, relative, relative_of_each
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from coadjoint.solve.dense import Dense
-    from coadjoint.solve.occurrences import Occurrences
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class Solution:
         inputs: Array | None = None,
         *,
         course: Course | None = None,
-        events: dict[str, Occurrences] | None = None,
+        events: Events | None = None,
         dense: Dense | None = None,
     ) -> None:
         self.system = system
@@ -76,7 +76,7 @@ class Solution:
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
         self.inputs = inputs
-        self.events = {} if events is None else events
+        self.events = events or Events()
         self.dense = dense
 
     def __getstate__(self) -> dict[str, Any]:
