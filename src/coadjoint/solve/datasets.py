@@ -94,7 +94,8 @@ def _add_events(solution: Solution, variables: dict[str, Any]) -> None:
     for name, values in list_columns(solution.events).items():
         kind = np.dtype(np.str_) if name == "event" else None
         attributes = {"units": units[name]} if name in units else {}
-        variables[EVENT + name] = (EVENT + "number", np.asarray(values, kind), attributes)
+        title = EVENT + ("name" if name == "event" else name)
+        variables[title] = (EVENT + "number", np.asarray(values, kind), attributes)
 
 
 def _add_parameters(

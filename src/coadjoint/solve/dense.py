@@ -297,7 +297,7 @@ def _find_states(solution: Solution, dense: Dense, times: Array) -> Array:
 # -- the steps of SciPy ---------------------------------------------------------------------------
 
 
-class Record:
+class Trail:
     """The steps of one trajectory by SciPy, for events and dense output.
 
     Args:

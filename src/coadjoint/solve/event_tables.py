@@ -108,11 +108,14 @@ def read_events_back(
             member=member,
             time=np.array(record["time"], np.float64),
             direction=np.array(record["direction"], np.int8),
-            state=np.array(record["state"], np.float64).reshape(len(record["state"]), count),
+            state=_read_rows(record["state"], count),
             parameters=flat if flat.ndim == 1 else flat[:, member],
-            inputs=None
-            if inputs is None
-            else np.array(inputs, np.float64).reshape(len(inputs), count),
+            inputs=None if inputs is None else _read_rows(inputs, count),
             undefined=np.array(times, np.float64).reshape(batch),
         )
     return found
+
+
+def _read_rows(rows: list[list[float]], count: int) -> Array:
+    """Rows of as many values as there are occurrences, which may be none."""
+    return np.array(rows, np.float64).reshape(len(rows), count)

@@ -133,7 +133,7 @@ def _read(system: System, given: Any, *, followed: bool) -> Sought:
     Raises:
         KernelArgumentError: A type, number, name or formula that cannot be right.
     """
-    event = Event(given) if isinstance(given, str) else given
+    event = Event(formula=given) if isinstance(given, str) else given
     if not isinstance(event, Event) or not isinstance(event.formula, str):
         raise KernelArgumentError(
             f"an event is {str(given)[:80]!r}; expected a formula such as 'x == 0', or an Event.",

@@ -118,11 +118,11 @@ class Lookout:
         np.add.at(counts, member, 1)
         return [
             Ending(
-                int(crossings.member[n]),
-                float(crossings.time[n]),
-                crossings.state[:, n].copy(),
-                sought.event.name,
-                int(crossings.decided[n]),
+                member=int(crossings.member[n]),
+                time=float(crossings.time[n]),
+                state=crossings.state[:, n].copy(),
+                name=sought.event.name,
+                decided=int(crossings.decided[n]),
             )
             for n in np.flatnonzero(number == sought.limit).tolist()
         ]
@@ -137,6 +137,10 @@ class Lookout:
         kept = [e for e in first.values() if e.time < self.ends[e.member - self.first]]
         for ending in kept:
             self.ends[ending.member - self.first] = ending.time
+            for place, watch in enumerate(self._watches):  # others at the same time
+                crossing = watch.finish(ending.member)
+                if crossing is not None:
+                    self._add(place, crossing)
         return kept
 
     def collect(self, place: int) -> tuple[Crossings, Array]:

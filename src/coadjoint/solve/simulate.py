@@ -18,7 +18,7 @@ from coadjoint.solve.arrays import pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense import Record, make_driving
+from coadjoint.solve.dense import Trail, make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import Surroundings, read_events
@@ -161,25 +161,25 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
-    record = _make_record(system, packed, driving, request, followed.size)
+    trail = _make_trail(system, packed, driving, request, followed.size)
     most = request.max_steps
     with np.errstate(all="ignore"):
-        run = _follow(stretches, initial, times, most, latest, domain, constraints, record)
-    ending = record.finish()
+        run = _follow(stretches, initial, times, most, latest, domain, constraints, trail)
+    ending = trail.finish()
     if ending is not None:
         run = _cut_at_event(*run[:2], ending)
-    return _make_solution(system, packed, driving, run, request, record)
+    return _make_solution(system, packed, driving, run, request, trail)
 
 
-def _make_record(
+def _make_trail(
     system: System, parameters: Array, driving: Driving, request: Request, followed: int
-) -> Record:
+) -> Trail:
     """Who looks at the steps."""
     surroundings = Surroundings(system, parameters, make_driving(driving.signal), followed)
     lookout = None
     if request.events:
         lookout = Lookout(request.events, surroundings, request.rtol, request.atol, 0, 1)
-    return Record(lookout, surroundings, keeps=request.dense)
+    return Trail(lookout, surroundings, keeps=request.dense)
 
 
 #: Times that were reached, states there, status and reason.
@@ -192,7 +192,7 @@ def _make_solution(
     driving: Driving,
     run: _Run,
     request: Request,
-    record: Record | None = None,
+    trail: Trail | None = None,
 ) -> Solution:
     """The Solution of a run, the state apart from what was reconstructed below it."""
     times, states, status, reason = run
@@ -223,8 +223,8 @@ def _make_solution(
         followed,
         inputs,
         course=course,
-        events=Events() if record is None else record.list_events(),
-        dense=None if record is None else record.make_dense(end, driving.signal, request.start),
+        events=Events() if trail is None else trail.list_events(),
+        dense=None if trail is None else trail.make_dense(end, driving.signal, request.start),
     )
 
 
@@ -257,7 +257,7 @@ def _follow(
     latest: Array,
     domain: Domain,
     constraints: Constraints,
-    record: Record,
+    trail: Trail,
 ) -> _Run:
     """The times that were reached, states there, status and reason.
 
@@ -283,8 +283,8 @@ def _follow(
                 states[:, reached:after] = path()(times[reached:after])
             points = zip(times[reached:after].tolist(), states.T[reached:after], strict=True)
             end = domain.find_exit(path, before, [*points, here])
-            if record.is_needed:
-                ending = record.add(dense(), before[0], here[0] if end is None else end.time)
+            if trail.is_needed:
+                ending = trail.add(dense(), before[0], here[0] if end is None else end.time)
                 if ending is not None:
                     return _cut_at_event(times, states, ending)
             if end is not None:
