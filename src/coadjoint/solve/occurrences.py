@@ -7,7 +7,7 @@ name. Read next: `coadjoint.solve.event_tables`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -204,6 +204,19 @@ class Events(Mapping[str, Occurrences]):
         from coadjoint.solve.event_tables import write_events
 
         write_events(self, Path(path))
+
+    def plot(
+        self, path: str | PathLike[str] | None = None, axes: Sequence[str] | None = None
+    ) -> Any:
+        """Draw the states at events, one component over another; see `coadjoint.solve.section`.
+
+        Args:
+            path: Picture file to write; None to return the figure for showing.
+            axes: The names of two components; None for those that vary most.
+        """
+        from coadjoint.solve.section import draw_section
+
+        return draw_section(self, path, axes)
 
     def __repr__(self) -> str:
         return "\n".join(map(repr, self.values())) or "<no events were looked for>"
