@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.arrays import pack_inputs, pack_parameters
+from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.march import count_threads, march, progress_bar
+from coadjoint.solve.request import check_memory
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
@@ -27,6 +28,7 @@ from coadjoint.solve.starts import check_starts
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
@@ -99,11 +101,13 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     n, batch = system.STATE.size, request.state.shape[1:]
     members = math.prod(batch)
     parameters = pack_parameters(system, request.parameters)
-    check_batch(parameters, batch, "parameters")
+    check_batch(parameters, batch, system.PARAMETERS, "parameters")
     if parameters.ndim > 1:
         parameters = parameters.reshape(-1, members)
     signal = _find_signal(system, request, batch)
     times = request.times
+    if request.samples > 1:
+        check_memory((n, members, times.size))
     run = Ensemble(
         state=request.state.reshape(n, members).copy(),
         parameters=parameters,
@@ -119,7 +123,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     return run, signal
 
 
-def check_batch(array: Array, batch: tuple[int, ...], name: str) -> None:
+def check_batch(array: Array, batch: tuple[int, ...], quantities: Quantities, name: str) -> None:
     """What is given for each member has to be so for the members of the state.
 
     Raises:
@@ -136,7 +140,8 @@ def check_batch(array: Array, batch: tuple[int, ...], name: str) -> None:
     if not np.isfinite(array).all():
         place = np.argwhere(~np.isfinite(array))[0]
         raise KernelArgumentError(
-            f"{name} have {array[tuple(place)]} in row {place[0]}; expected finite numbers.",
+            f"{quantities.components[place[0]]}{tell_member(place)} of the {name} is "
+            f"{array[tuple(place)]}; expected a finite number.",
             found=str(array[tuple(place)]),
         )
 
@@ -147,7 +152,7 @@ def _find_signal(system: System, request: Request, batch: tuple[int, ...]) -> Si
     sampled = isinstance(given, tuple) and any(np.ndim(part) for part in given)
     if batch and system.INPUTS and not sampled:
         packed = pack_inputs(system, given)
-        check_batch(packed, batch, "inputs")
+        check_batch(packed, batch, system.INPUTS, "inputs")
         if packed.ndim > 1:
             return packed
     return make_signal(system, given, request.start, float(request.times[-1]))
@@ -276,7 +281,7 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
         return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
-        Status.NONFINITE: f"the rates are not finite {place}",
+        Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
         Status.STEP_UNDERFLOW: f"no step was small enough {place}",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]

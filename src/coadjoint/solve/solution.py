@@ -41,7 +41,7 @@ class Solution:
         parameters: Packed parameters, ``(k,)`` or ``(k, *batch)``.
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
-            the last point inside), ``NONFINITE`` (the rates stopped being finite),
+            the last point inside), ``NONFINITE`` (rates or steps are not finite),
             ``STEP_UNDERFLOW`` (no step was small enough for the tolerances), ``MAX_STEPS`` or
             ``EVENT`` (a terminal event; the last sample is where it occurred).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
