@@ -36,7 +36,7 @@ class ExactSteps:
 
 def find_crossings(function, edges, members=1, at_a_time=None):
     """The crossings of a function, from so many steps of each member in a call."""
-    watch = Watch(lambda size: ATOL + RTOL * size, RTOL, 0, members)
+    watch = Watch(lambda size: ATOL + RTOL * size, RTOL, members)
     steps = ExactSteps(function, edges, members)
     count = len(edges) - 1
     group = np.arange(len(steps.member)) % count // (at_a_time or count)

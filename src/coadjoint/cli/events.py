@@ -121,9 +121,10 @@ class Asked:
             axes = None if self.axes is None else [each.strip() for each in self.axes.split(",")]
             solution.events.plot(self.section, axes)
 
-    def has_arrived(self, status: str) -> bool:
-        """Whether a trajectory ended as it was to: at an event, or else at the end."""
-        return status == ("EVENT" if self.until_event else "OK")
+    def has_arrived(self, solution: Solution) -> bool:
+        """Whether all trajectories ended as they were to: at an event, or else at the end."""
+        statuses = solution.status.ravel() if solution.batch else [solution.status]
+        return all(status == ("EVENT" if self.until_event else "OK") for status in statuses)
 
 
 def take_events(options: dict[str, Any]) -> Asked:

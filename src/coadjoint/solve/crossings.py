@@ -172,21 +172,18 @@ class Watch:
     Args:
         band_of: What is as good as zero, by the size of the terms of the function.
         slack: Part of the time by which a root at the end of a trajectory may be late.
-        first: The first of the members.
-        count: How many there are.
+        members: How many there are.
 
     Attributes:
         undefined: When the function of each member stopped being finite first; infinite for never.
     """
 
-    def __init__(
-        self, band_of: Callable[[Array], Array], slack: float, first: int, count: int
-    ) -> None:
-        self._band_of, self._slack, self._first = band_of, max(slack, 16 * EPS), first
-        self._sign = np.zeros(count, np.int8)
-        self._value = np.full(count, np.nan)
+    def __init__(self, band_of: Callable[[Array], Array], slack: float, members: int) -> None:
+        self._band_of, self._slack = band_of, max(slack, 16 * EPS)
+        self._sign = np.zeros(members, np.int8)
+        self._value = np.full(members, np.nan)
         self._held: dict[int, _Held] = {}
-        self.undefined = np.full(count, np.inf)
+        self.undefined = np.full(members, np.inf)
 
     def scan(self, function: Function, steps: Steps) -> Crossings:
         """The crossings that the next steps decide.
@@ -202,7 +199,7 @@ class Watch:
 
     def finish(self, member: int) -> Crossings | None:
         """The crossing that the end of a trajectory decides, if there is one."""
-        held, sign = self._held.pop(member, None), int(self._sign[member - self._first])
+        held, sign = self._held.pop(member, None), int(self._sign[member])
         if held is None:
             return None
         if not held.ends and not (held.clear and (held.turned or held.root is not None)):
@@ -230,7 +227,7 @@ class _Scan:
         front = np.flatnonzero(np.append(True, member[1:] != member[:-1]))[: member.size]
         self.member = np.insert(member, front, member[front])
         self.is_known = np.insert(np.zeros(len(member), bool), front, values=True)
-        known = self.member[self.is_known] - watch._first
+        known = self.member[self.is_known]
         self.row = np.insert(self.row, front, self.row[front])
         self.part = np.insert(self.part, front, 0.0)
         self.piece = np.insert(self.piece, front, -1)
@@ -244,7 +241,7 @@ class _Scan:
     def _note_gaps(self, member: Places, gap: Mask) -> None:
         """Keep when a function was not finite."""
         time = self.steps.start[self.row] + self.part * self.steps.size[self.row]
-        np.minimum.at(self.watch.undefined, member[gap] - self.watch._first, time[gap])
+        np.minimum.at(self.watch.undefined, member[gap], time[gap])
 
     def find(self) -> Crossings:
         """The crossings that are decided; what is known after the last knots is kept."""
@@ -377,7 +374,7 @@ class _Scan:
         """Keep what is known of each member after its last knot."""
         watch = self.watch
         last = np.flatnonzero(np.append(self.is_known[1:], True))[: self.sign.size]
-        place = self.member[last] - watch._first
+        place = self.member[last]
         watch._sign[place], watch._value[place] = self.side[last], self.value[last]
         within = (self.sign[last] == 0) & (self.side[last] != 0)
         within &= np.abs(self.value[last]) < np.inf

@@ -335,7 +335,7 @@ class Trail:
 
     def list_events(self) -> Events:
         """All events by name."""
-        return Events() if self.lookout is None else list_occurrences([self.lookout], ())
+        return Events() if self.lookout is None else list_occurrences(self.lookout, ())
 
     def make_dense(self, end: float, signal: Signal | None, start: float) -> Dense | None:
         """The steps up to an end; None if they were not to be kept."""

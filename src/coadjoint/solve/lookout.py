@@ -8,7 +8,6 @@ Read next: `coadjoint.solve.crossings`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -56,8 +55,7 @@ class Lookout:
         surroundings: What the names of their formulas mean.
         rtol: Relative tolerance of the integration.
         atol: Absolute tolerance.
-        first: The first of the members.
-        last: The one after the last.
+        members: How many there are.
     """
 
     def __init__(
@@ -66,17 +64,14 @@ class Lookout:
         surroundings: Surroundings,
         rtol: float,
         atol: float,
-        first: int,
-        last: int,
+        members: int,
     ) -> None:
         self.sought, self.surroundings = tuple(sought), surroundings
-        self.first, self.last = first, last
-        count = last - first
-        self._watches = [Watch(s.make_band(rtol, atol), rtol, first, count) for s in sought]
+        self._watches = [Watch(each.make_band(rtol, atol), rtol, members) for each in sought]
         self._lots: list[list[Crossings]] = [[] for _ in sought]
-        self._counts = [np.zeros(count, np.int64) for _ in sought]
+        self._counts = [np.zeros(members, np.int64) for _ in sought]
         #: When each trajectory was ended by an event.
-        self.ends = np.full(count, np.inf)
+        self.ends = np.full(members, np.inf)
 
     def look(self, steps: Steps) -> list[Ending]:
         """Find the events of the next steps.
@@ -108,7 +103,7 @@ class Lookout:
         if sought.event.direction:
             crossings = crossings.take(crossings.direction == sought.event.direction)
         self._lots[place].append(crossings)
-        member, counts = crossings.member - self.first, self._counts[place]
+        member, counts = crossings.member, self._counts[place]
         if not sought.limit:
             return []
         # crossings stand by member and time: how many of each member come before one
@@ -134,9 +129,9 @@ class Lookout:
             known = first.get(ending.member)
             if known is None or ending.time < known.time:
                 first[ending.member] = ending
-        kept = [e for e in first.values() if e.time < self.ends[e.member - self.first]]
+        kept = [e for e in first.values() if e.time < self.ends[e.member]]
         for ending in kept:
-            self.ends[ending.member - self.first] = ending.time
+            self.ends[ending.member] = ending.time
             for place, watch in enumerate(self._watches):  # others at the same time
                 crossing = watch.finish(ending.member)
                 if crossing is not None:
@@ -147,32 +142,27 @@ class Lookout:
         """The crossings of an event up to the ends of trajectories, and where it is undefined."""
         size = self.surroundings.system.STATE.size + self.surroundings.followed
         whole = join(self._lots[place], size)
-        kept = whole.take(whole.time <= self.ends[whole.member - self.first])
+        kept = whole.take(whole.time <= self.ends[whole.member])
         return kept, self._watches[place].undefined
 
 
-def list_occurrences(lookouts: Sequence[Lookout], batch: tuple[int, ...]) -> Events:
-    """All events by name, of the members of all lookouts in order.
+def list_occurrences(lookout: Lookout, batch: tuple[int, ...]) -> Events:
+    """All events by name.
 
     Args:
-        lookouts: One for each slice of the members.
+        lookout: Who looked for them.
         batch: The shape of the batch.
     """
     found: dict[str, Occurrences] = {}
-    if not lookouts:
-        return Events()
-    around = lookouts[0].surroundings
-    for place, sought in enumerate(lookouts[0].sought):
-        parts = [lookout.collect(place) for lookout in lookouts]
-        size = around.system.STATE.size + around.followed
-        whole = join([crossings for crossings, _ in parts], size)
-        undefined = np.concatenate([times for _, times in parts])
+    around = lookout.surroundings
+    for place, sought in enumerate(lookout.sought):
+        whole, undefined = lookout.collect(place)
         shared = around.parameters.ndim == 1
         inputs = None
         if around.driving is not None:
             inputs = around.driving(whole.member, whole.time, whole.time)
         found[sought.event.name] = Occurrences(
-            event=replace(sought.event),
+            event=sought.event,
             system=around.system,
             batch=batch,
             member=whole.member,

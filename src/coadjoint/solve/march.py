@@ -25,7 +25,6 @@ from coadjoint.solve.ensemble import Status
 if TYPE_CHECKING:
     from coadjoint.solve.checkpoints import Checkpoint
     from coadjoint.solve.ensemble import Ensemble
-    from coadjoint.solve.recording import Recording
     from coadjoint.solve.solvers import Stepper
 
 #: Told now and then: the part of the way that is done, from 0 to 1.
@@ -55,7 +54,6 @@ def march(
     threads: int,
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
-    recording: Recording | None = None,
 ) -> None:
     """Advance an ensemble to its end.
 
@@ -66,7 +64,6 @@ def march(
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
         checkpoint: Written now and then, and at the end; None for none.
-        recording: Looks at all steps; None for nobody. It goes with no checkpoint.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; members stand where they came.
@@ -80,8 +77,7 @@ def march(
 
     while (run.status == Status.GOES_ON).any():
         seconds = math.inf if checkpoint is None else checkpoint.seconds
-        until = time.monotonic() + seconds
-        _go_on(stepper, run, slices, threads, report, until, recording)
+        _go_on(stepper, run, slices, threads, report, time.monotonic() + seconds)
         if checkpoint is not None:
             checkpoint.write(run)
     report()
@@ -94,14 +90,13 @@ def _go_on(
     threads: int,
     report: Callable[[], None],
     until: float,
-    recording: Recording | None,
 ) -> None:
     """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
     if len(slices) > 1:
-        _share(stepper, run, slices, threads, report, until, recording)
+        _share(stepper, run, slices, threads, report, until)
         return
     reported = time.monotonic()
-    for _ in _advance(stepper, run, *slices[0], Event(), recording):
+    for _ in _advance(stepper, run, *slices[0], Event()):
         now = time.monotonic()
         if now > until:
             return
@@ -117,13 +112,12 @@ def _share(
     threads: int,
     report: Callable[[], None],
     until: float,
-    recording: Recording | None,
 ) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
     stop = Event()
 
     def work(first: int, last: int) -> None:
-        for _ in _advance(stepper, run, first, last, stop, recording):
+        for _ in _advance(stepper, run, first, last, stop):
             pass
 
     with ThreadPoolExecutor(min(threads, len(slices))) as pool:
@@ -142,28 +136,14 @@ def _share(
             raise
 
 
-def _advance(
-    stepper: Stepper,
-    run: Ensemble,
-    first: int,
-    last: int,
-    stop: Event,
-    recording: Recording | None,
-) -> Iterator[None]:
+def _advance(stepper: Stepper, run: Ensemble, first: int, last: int, stop: Event) -> Iterator[None]:
     """Advance a slice, one short call after the other."""
-    part = None if recording is None else recording.begin(first, last)
     work = FIRST_WORK
     while not stop.is_set():
         begun = time.perf_counter()
-        record = () if part is None else (part.record,)
-        left = stepper.advance(run, first, last, work, *record)
-        took = max(time.perf_counter() - begun, 1e-9)
-        if part is not None:
-            part.look()
-        if not left:
-            if part is not None:
-                part.finish()
+        if not stepper.advance(run, first, last, work):
             return
+        took = max(time.perf_counter() - begun, 1e-9)
         work = max(1, int(work * min(GROWTH, CALL_SECONDS / took)))
         yield
 

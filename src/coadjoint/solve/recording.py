@@ -10,27 +10,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coadjoint.solve.dense import Dense, move_onto_constraints
-from coadjoint.solve.ensemble import Record, Status
+from coadjoint.solve.ensemble import Status
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending, list_occurrences
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.driving import Signal
-    from coadjoint.solve.ensemble import Ensemble
+    from coadjoint.solve.ensemble import Ensemble, Record
     from coadjoint.solve.events import Sought, Surroundings
     from coadjoint.solve.occurrences import Events
 
     Array = NDArray[np.float64]
     Places = NDArray[np.intp]
-
-#: The memory of a record, in numbers.
-ROOM: Final = 2_000_000
 
 
 @dataclass
@@ -52,7 +49,7 @@ class Polynomials:
     @property
     def degree(self) -> int:
         """Of the polynomials."""
-        return self.path.shape[2] - 1
+        return int(self.path.shape[2] - 1)
 
     @property
     def nbytes(self) -> int:
@@ -77,128 +74,83 @@ class Polynomials:
 class Recording:
     """The recording of a run.
 
+    Several threads may call it at a time, each for members of its own.
+
     Args:
         run: The ensemble.
         sought: The events.
         surroundings: What the names of their formulas mean.
-        degree: Of the polynomials of the solver.
         keeps: Whether steps are kept.
     """
 
     def __init__(
-        self,
-        run: Ensemble,
-        sought: Sequence[Sought],
-        surroundings: Surroundings,
-        degree: int,
-        *,
-        keeps: bool,
+        self, run: Ensemble, sought: Sequence[Sought], surroundings: Surroundings, *, keeps: bool
     ) -> None:
-        self._run, self._sought, self._around = run, sought, surroundings
-        self._degree, self._keeps = degree, keeps
-        self._slices: list[Slice] = []
-
-    def begin(self, first: int, last: int) -> Slice:
-        """The recording of some members, which one thread advances."""
-        lookout = Lookout(
-            sought=self._sought,
-            surroundings=self._around,
-            rtol=self._run.rtol,
-            atol=self._run.atol,
-            first=first,
-            last=last,
+        self._run, self._keeps = run, keeps
+        self._lookout = Lookout(
+            sought=sought,
+            surroundings=surroundings,
+            rtol=run.rtol,
+            atol=run.atol,
+            members=run.state.shape[1],
         )
-        part = Slice(self._run, lookout, self._degree, keeps=self._keeps)
-        self._slices.append(part)
-        return part
+        self._endings: list[Ending] = []
+        self._kept: list[Polynomials] = []
 
-    @property
-    def _in_order(self) -> list[Slice]:
-        return sorted(self._slices, key=lambda part: part.lookout.first)
-
-    def list_events(self, batch: tuple[int, ...]) -> Events:
-        """All events by name."""
-        return list_occurrences([part.lookout for part in self._in_order], batch)
-
-    def explain_end(self) -> str:
-        """Which event ended the only trajectory."""
-        endings = [ending for part in self._slices for ending in part.endings]
-        return explain_ending(endings[-1])
-
-    def make_dense(self, signal: Signal | Array | None, start: float) -> Dense | None:
-        """The steps up to where each member came; None if they were not to be kept."""
-        if not self._keeps:
-            return None
-        lots = [lot for part in self._in_order for lot in part.kept]
-        n = len(self._run.state)
-        empty = np.empty(0)
-        lots = lots or [Polynomials(empty.astype(np.intp), empty, empty, np.empty((0, n, 1)))]
-        whole = Polynomials(
-            np.concatenate([lot.member for lot in lots]),
-            np.concatenate([lot.start for lot in lots]),
-            np.concatenate([lot.size for lot in lots]),
-            np.concatenate([lot.path for lot in lots]),
-        )
-        for part in self._slices:
-            part.kept.clear()
-        order = np.lexsort((whole.start, whole.member))
-        inside = whole.start[order] < self._run.time[whole.member[order]]
-        return Dense(whole.take(order[inside]), signal, start)
-
-
-class Slice:
-    """The recording of some members.
-
-    Args:
-        run: The ensemble.
-        lookout: Who looks for events.
-        degree: Of the polynomials of the solver.
-        keeps: Whether steps are kept.
-
-    Attributes:
-        record: What the solver writes into.
-        endings: Where terminal events ended members.
-        kept: The steps, in lots.
-    """
-
-    def __init__(self, run: Ensemble, lookout: Lookout, degree: int, *, keeps: bool) -> None:
-        n = len(run.state)
-        self._run, self.lookout, self._keeps = run, lookout, keeps
-        self.record = Record.make(n, degree, ROOM // (5 + n * (degree + 1)))
-        self.endings: list[Ending] = []
-        self.kept: list[Polynomials] = []
-
-    def look(self) -> None:
-        """Look at the steps of a call, and forget them."""
-        record = self.record
+    def look(self, record: Record) -> None:
+        """Look at the steps of a call, and stop members at terminal events."""
         order = np.argsort(record.member, kind="stable")
         steps = Polynomials(
             record.member[order], record.begun[order], record.length[order], record.path[order]
         )
-        around = self.lookout.surroundings
-        for ending in self.lookout.look(move_onto_constraints(steps, around)):
-            self._stop(ending, int(order[ending.decided]))
+        around = self._lookout.surroundings
+        for ending in self._lookout.look(move_onto_constraints(steps, around)):
+            row = int(order[ending.decided])
+            after = ending.time - float(record.begun[row])
+            self._run.stop(record, row, after, ending.state)
+            self._stop(ending)
         if self._keeps:
-            self.kept.append(steps)
-        record.clear()
+            self._kept.append(steps)
 
     def finish(self) -> None:
         """Look at where members ended."""
-        members = np.arange(self.lookout.first, self.lookout.last)
-        ended = members[self._run.status[members] != Status.GOES_ON]
-        for ending in self.lookout.finish(ended.tolist()):
-            self._stop(ending, None)
+        for ending in self._lookout.finish(range(self._run.state.shape[1])):
+            self._stop(ending)
 
-    def _stop(self, ending: Ending, row: int | None) -> None:
-        """End a member; its steps are those up to the one of a row, or all if there is none."""
+    def _stop(self, ending: Ending) -> None:
+        """End a member where an event does; it made all the steps that are counted."""
         run, member = self._run, ending.member
-        if row is not None:
-            begun = float(self.record.begun[row])
-            run.stop(self.record, row, ending.time - begun, ending.state)
         first = int(np.searchsorted(run.samples, ending.time, side="right"))
         if run.out is not None:
             run.out[:, member, first:] = np.nan
         run.next[member] = min(first, int(run.next[member]))
         run.state[:, member], run.time[member] = ending.state, ending.time
         run.status[member] = Status.EVENT
-        self.endings.append(ending)
+        self._endings.append(ending)
+
+    # -- after the run ----------------------------------------------------------------------------
+
+    def list_events(self, batch: tuple[int, ...]) -> Events:
+        """All events by name."""
+        return list_occurrences(self._lookout, batch)
+
+    def explain_end(self) -> str:
+        """Which event ended the only trajectory."""
+        return explain_ending(self._endings[-1])
+
+    def make_dense(self, signal: Signal | Array | None, start: float) -> Dense | None:
+        """The steps up to where each member came; None if they were not to be kept."""
+        if not self._keeps:
+            return None
+        none, n = np.empty(0), len(self._run.state)
+        lots = self._kept or [Polynomials(none.astype(np.intp), none, none, np.empty((0, n, 1)))]
+        whole = Polynomials(
+            np.concatenate([lot.member for lot in lots]),
+            np.concatenate([lot.start for lot in lots]),
+            np.concatenate([lot.size for lot in lots]),
+            np.concatenate([lot.path for lot in lots]),
+        )
+        self._kept = []
+        order = np.lexsort((whole.start, whole.member))
+        inside = whole.start[order] < self._run.time[whole.member[order]]
+        return Dense(whole.take(order[inside]), signal, start)

@@ -178,7 +178,7 @@ def _make_trail(
     surroundings = Surroundings(system, parameters, make_driving(driving.signal), followed)
     lookout = None
     if request.events:
-        lookout = Lookout(request.events, surroundings, request.rtol, request.atol, 0, 1)
+        lookout = Lookout(request.events, surroundings, request.rtol, request.atol, 1)
     return Trail(lookout, surroundings, keeps=request.dense)
 
 
