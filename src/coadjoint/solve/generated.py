@@ -79,7 +79,8 @@ def simulate(system: System, request: Request) -> Solution:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
             told = stack.enter_context(progress_bar())
-        threads, watch = request.threads or count_threads(), recording and recording.look
+        threads = request.threads or count_threads()
+        watch = None if recording is None else recording.look
         march(stepper, run, request.start, threads, told, checkpoint, watch)
     if recording is not None:
         recording.finish()
