@@ -18,6 +18,7 @@ from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
 from tests.kernels import COMPILER
 from tests.programs import BOUNDED
+from tests.solve.runs import drive_members
 from tests.solve.systems import POLE, build, pendulum
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
@@ -200,6 +201,17 @@ def test_inputs_over_time_and_of_each_member(tmp_path, method, kind):
         assert np.array_equal(one.state, own.state[:, member])
         assert np.array_equal(own["energy"][member], one["energy"])
         assert own.member(member)["u"].tolist() == one["u"].tolist()
+
+
+def test_a_member_that_stops_has_the_inputs_of_that_time():
+    """Between two samples, where a straight line has neither of their values."""
+    whole = drive_members(samples=4)
+    assert whole.status.tolist() == ["OK", "OK", "NONFINITE"]
+    stopped = whole.member(2)
+    end = stopped.time[-1]
+    assert end not in whole.time
+    assert stopped["f"].tolist() == np.interp(stopped.time, [0, 0.5, 1], [1, 3, 2]).tolist()
+    assert stopped["f"].shape == stopped.time.shape
 
 
 def test_elementary_functions_agree_but_for_roundings(tmp_path):
