@@ -104,7 +104,7 @@ def test_every_loop_is_vectorised(context, tmp_path):
     loops = {
         number
         for number, line in enumerate(texts["kernel.c"].splitlines(), 1)
-        if line.strip() == "for (size_t _n = 0; _n < count; ++_n) {"  # zeros have no brace
+        if line.strip() == "for (size_t _n = _first; _n < _last; ++_n) {"
     }
     found = {int(line) for line in re.findall(r"kernel\.c:(\d+):\d+: optimized: loop", report)}
     called = [

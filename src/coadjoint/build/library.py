@@ -20,13 +20,10 @@ from typing import Any
 
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
+from coadjoint.build.calling import CALL, CALL_AT, LABEL, SUPPORT
 from coadjoint.build.compiler import (
     ANOTHER,
-    CALL,
-    CALL_AT,
     KERNEL,
-    LABEL,
-    SUPPORT,
     Compiler,
     Source,
     compile_kernel,

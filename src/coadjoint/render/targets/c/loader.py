@@ -28,9 +28,9 @@ FLAGS: Final = {"c": "exact", "c-fast": "fast"}
 #: Numbers that one call of a C function reads and writes. At 2 to 20 ns each it ends within a tenth
 #: of a second, so that Ctrl-C is heard; some microseconds for each call do not show.
 CHUNK = 1 << 22
-#: Points at which a fresh library is compared with the NumPy kernel: odd, so that the last of them
-#: fill no vector register.
-PROBES = 17
+#: Points at which a fresh library is compared with the NumPy kernel: once so few and odd that the
+#: last of them fill no vector register, once so many that results are aligned to such registers.
+PROBES = (17, 72)
 #: Largest relative difference of a fresh library where bits are not promised: fused operations and
 #: other libraries' functions differ by roundings, a wrong kernel by much more.
 ROUNDINGS = 1e-9
@@ -111,12 +111,21 @@ def _probes(system: Generated) -> Iterator[tuple[str, Call]]:
     source = np.random.default_rng(0)
     for function, shape in system.functions.items():
         sizes = system.sizes(function).items()
-        own = {name: source.uniform(0.5, 2.0, (size, PROBES)) for name, size in sizes}
-        state = own.pop("state")
-        for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
-            block, (parameters, *_) = np.full((*shape, PROBES), np.pi), given.values()
-            driving = {name: array for name, array in given.items() if name != "parameters"}
-            yield function, Call(state, parameters, block, driving)
+        for members in PROBES:
+            own = {name: source.uniform(0.5, 2.0, (size, members)) for name, size in sizes}
+            state = own.pop("state")
+            for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
+                block, (parameters, *_) = _unaligned((*shape, members)), given.values()
+                driving = {name: array for name, array in given.items() if name != "parameters"}
+                yield function, Call(state, parameters, block, driving)
+
+
+def _unaligned(shape: tuple[int, ...]) -> NDArray[Any]:
+    """A result that begins three numbers before a multiple of 64 bytes."""
+    size = math.prod(shape)
+    room = np.full(size + 8, np.pi)
+    first = (5 - room.ctypes.data // room.itemsize) % 8
+    return room[first : first + size].reshape(shape)
 
 
 def _agree(values: NDArray[Any], expected: NDArray[Any], *, exact: bool) -> bool:
