@@ -11,7 +11,7 @@ import pytest
 
 from coadjoint.build import library
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import find_compiler
+from coadjoint.build.compiler import find_compiler, one_function
 from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, OutputError
 from coadjoint.systems import rigid_body
@@ -149,4 +149,4 @@ def test_builders_at_one_time_do_not_disturb_one_another(cache):
     answers = [process.communicate()[0].strip() for process in started]
     assert answers == ["[-1.5, 2.25, -1.0]"] * 6
     assert not list((cache / "work").iterdir())
-    assert fetch(library._key(find_compiler(), SOURCES, "exact"))
+    assert fetch(library._key(find_compiler(), SOURCES, "exact", one_function("rhs")))

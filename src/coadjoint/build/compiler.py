@@ -28,6 +28,7 @@ from threading import Lock
 
 from coadjoint.build import warden
 from coadjoint.build.calling import SUPPORT
+from coadjoint.build.versions import keep_version, recall_version
 from coadjoint.errors import CompilerError, errno_of, remedy_for
 from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
 
@@ -89,10 +90,15 @@ class Source:
 
     def label(self, name: str) -> str:
         """The symbol of the id that its object carries, for the name of a system."""
-        return f"{name}_id" if self == KERNEL else f"{name}_{self.stem}_id"
+        return f"{name}_id" if self.stem == KERNEL.stem else f"{name}_{self.stem}_id"
 
 
 KERNEL = Source()
+
+
+def one_function(name: str) -> Source:
+    """One function of a kernel, which is compiled sooner than all of them."""
+    return Source(defines=("-DCOADJOINT_ONLY", f"-DCOADJOINT_ONLY_{name.upper()}"))
 
 
 @dataclass(frozen=True)
@@ -193,6 +199,9 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     Raises:
         CompilerError: It does not answer.
     """
+    known = recall_version(command)
+    if known is not None:
+        return Compiler(command, *known)
     status, output = _run((*command, "--version"), Path("/"), VERSION_SECONDS, VERSION_SECONDS)
     if status != 0 or not output.strip():
         said = _with_signal(output, status)
@@ -202,7 +211,9 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
             found=command[0],
             status=status,
         )
-    return Compiler(command, output.strip().splitlines()[0], "Free Software Foundation" in output)
+    found = output.strip().splitlines()[0], "Free Software Foundation" in output
+    keep_version(command, found)
+    return Compiler(command, *found)
 
 
 def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source = KERNEL) -> Path:

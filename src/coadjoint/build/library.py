@@ -14,7 +14,7 @@ import platform
 import shutil
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -163,13 +163,11 @@ def load_library(
             where it could work.
         OutputError: The folder has no such source.
     """
-    compiler = find_compiler()
-    sources = _sources(folder, kind)
+    kept = find_library(folder, name, identity, build, kind)
+    if kept is not None:
+        return kept
+    compiler, sources = find_compiler(), _sources(folder, kind)
     key, source = _key(compiler, sources, build, kind), _hash(sources[kind.files[0]])
-    cached = fetch(key)
-    if cached is not None:
-        with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
-            return Library(cached, name, identity, build, source, kind)
     with ExitStack() as stack:
         try:
             work = stack.enter_context(working_folder())
@@ -186,6 +184,24 @@ def load_library(
         with suppress(OSError, OutputError):  # it is good; the next process compiles again
             store(key, fresh.read_bytes())
         return library
+
+
+def find_library(
+    folder: Path, name: str, identity: str, build: str, kind: Source = KERNEL
+) -> Library | None:
+    """Load C of a generated folder if the cache has it compiled; arguments as in `load_library`.
+
+    Raises:
+        CompilerError: There is no compiler.
+        OutputError: The folder has no such source.
+    """
+    sources = _sources(folder, kind)
+    cached = fetch(_key(find_compiler(), sources, build, kind))
+    if cached is not None:
+        with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
+            source = _hash(sources[kind.files[0]])
+            return Library(cached, name, identity, build, source, kind)
+    return None
 
 
 def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
@@ -222,6 +238,7 @@ def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
+@cache
 def _processor() -> str:
     """What tells processors apart that share a home folder."""
     try:

@@ -78,6 +78,14 @@ class Kernel:
 
     source: str
 
+    def prepare(self, function: str = "") -> None:
+        """Make ready what is called next: a function, or all of them.
+
+        Raises:
+            CompilerError: It cannot be compiled.
+            CrossCheckError: What was compiled differs from the NumPy kernel.
+        """
+
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """What evaluates all members, called one after the other."""
         raise NotImplementedError
@@ -146,7 +154,7 @@ class Target:
         return bodies
 
     def load(self, system: Generated, build: str, reference: Callable[[], Any]) -> Kernel:
-        """The kernel of a System, by ``load`` of its loader.
+        """The kernel of a System, by ``load`` of its loader; it compiles nothing yet.
 
         Args:
             system: Whose kernel it is.
@@ -154,8 +162,6 @@ class Target:
             reference: Loads the NumPy kernel, with which what a compiler made is compared.
 
         Raises:
-            CompilerError: It cannot be compiled.
-            CrossCheckError: What was compiled differs from the NumPy kernel.
             OutputError: The file cannot be loaded.
         """
         kernel: Kernel = self._module("loader").load(system, build, reference)
