@@ -33,15 +33,19 @@ def load():
 
 
 def test_a_bound_call_computes_what_the_function_does(cache):
-    """Arguments packed once, all of them or all but members, state and result."""
+    """Arguments packed once, all or all but members, state, parameters and result."""
     state, parameters = np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0])
     bound, two = np.zeros(3), np.zeros((3, 2))
     arguments = (1, state.ctypes.data, 1, parameters.ctypes.data, 0, bound.ctypes.data, 1)
     load().bind("rhs", *arguments)()
-    load().bind_at("rhs", *arguments)(2, np.outer(state, [1.0, 2.0]).ctypes.data, two.ctypes.data)
+    both = np.outer(state, [1.0, 2.0])
+    load().bind_at("rhs", *arguments)(2, both.ctypes.data, None, two.ctypes.data)
     # dPi1/dt = (1/I3 - 1/I2) Pi2 Pi3 and cyclic, exact in these numbers
     assert bound.tolist() == [-1.5, 2.25, -1.0]
     assert two.tolist() == [[-1.5, -6.0], [2.25, 9.0], [-1.0, -4.0]]
+    other = np.array([2.0, 4.0, 8.0])  # twice as heavy, half as fast
+    load().bind_at("rhs", *arguments)(2, both.ctypes.data, other.ctypes.data, two.ctypes.data)
+    assert two.tolist() == [[-0.75, -3.0], [1.125, 4.5], [-0.5, -2.0]]
 
 
 def test_an_object_of_another_run_is_refused(cache):

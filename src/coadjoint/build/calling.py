@@ -26,7 +26,7 @@ extern const char coadjoint_build[];
 const char coadjoint_build[] = "BUILD";
 
 void coadjoint_call(const uintptr_t *);
-void coadjoint_call_at(const uintptr_t *, size_t, in, double *);
+void coadjoint_call_at(const uintptr_t *, size_t, in, in, double *);
 
 void coadjoint_call(const uintptr_t *c)
 {
@@ -46,13 +46,15 @@ void coadjoint_call(const uintptr_t *c)
     }
 }
 
-/* The same at another state of so many members, with another result. */
-void coadjoint_call_at(const uintptr_t *c, size_t members, in state, double *out)
+/* The same at another state of so many members, with other parameters or NULL, another result. */
+void coadjoint_call_at(const uintptr_t *c, size_t members, in state, in parameters, double *out)
 {
     uintptr_t own[13], last = 2 * c[1] + 1;
     memcpy(own, c, (last + 2) * sizeof *own);
     own[2] = own[4] = own[last + 1] = members;
     own[3] = (uintptr_t)state;
+    if (parameters)
+        own[5] = (uintptr_t)parameters;
     own[last] = (uintptr_t)out;
     coadjoint_call(own);
 }

@@ -81,7 +81,7 @@ class Library:
                     expected=expected,
                 )
         self._call.restype = self._call_at.restype = None
-        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS]
+        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS, _ADDRESS]
 
     def _text(self, symbol: str, expected: str) -> str:
         """A string of the object, no further than one character beyond what is expected."""
@@ -98,10 +98,11 @@ class Library:
         """
         return partial(self._call, self._pack(function, arguments))
 
-    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any], None]:
-        """The same for other members: their number, state and result are given at each call.
+    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any, Any], None]:
+        """The same for other members: number, state, parameters and result are given at each call.
 
-        State and result are passed as `ctypes.byref` makes them, without gaps between the rows.
+        They are passed as `ctypes.byref` makes them, without gaps between the rows; parameters
+        that are None are those of the arguments, others are shared in the same way.
         """
         return partial(self._call_at, self._pack(function, arguments))
 

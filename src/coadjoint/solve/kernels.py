@@ -19,7 +19,7 @@ import numpy as np
 from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning, compilers
 from coadjoint.errors import CompilerError, CrossCheckError, KernelArgumentError
 from coadjoint.render.targets import BUILDS
-from coadjoint.solve.arrays import evaluate_ready
+from coadjoint.solve.ready import make_ready
 
 if TYPE_CHECKING:
     from coadjoint.render.targets.protocol import Call, Kernel
@@ -37,8 +37,8 @@ class Kernels:
         self._loaded: dict[str, Kernel] = {}
         #: Who computes a function for a target; NumPy, where a compiler failed.
         self._chosen: dict[tuple[str, str], Kernel] = {}
-        #: Functions of a ready state alone, by name and target; those that were called so before.
-        self.ready: dict[tuple[str, str], Callable[[Any], Any]] = {}
+        #: The short way to functions, by name and target; of those that were called before.
+        self.ready: dict[tuple[str, str], Callable[..., Any]] = {}
 
     def run(self, function: str, call: Call, target: str) -> None:
         """Evaluate a call into its result."""
@@ -46,12 +46,17 @@ class Kernels:
             piece()
 
     def make_ready(self, function: str, call: Call, target: str) -> None:
-        """Keep a function of a ready state alone; the rest is that of a call with defaults."""
-        if (function, target) not in self.ready:
-            shape, rows = self.system.functions[function], len(call.state)
-            like = replace(call, state=np.empty((rows, 1)), block=np.empty((*shape, 1)))
-            evaluate = self._kernel(function, target).evaluate_with(function, like)
-            self.ready[function, target] = evaluate_ready(shape, rows, evaluate)
+        """Keep the short way to a function, with the inputs of a call that has the defaults."""
+        if (function, target) in self.ready or "time" in call.driving:
+            return
+        quantities, rows = self.system.PARAMETERS, self.system.rows(function).size
+        parameters = np.array([quantities.defaults.get(c, np.nan) for c in quantities.components])
+        shape = self.system.functions[function]
+        like = replace(
+            call, state=np.empty((rows, 1)), parameters=parameters, block=np.empty((*shape, 1))
+        )
+        evaluate = self._kernel(function, target).evaluate_with(function, like)
+        self.ready[function, target] = make_ready(shape, rows, quantities, evaluate)
 
     def bind(self, function: str, call: Call, target: str) -> Callable[[], None]:
         """The call as a function without arguments."""

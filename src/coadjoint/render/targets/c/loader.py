@@ -23,6 +23,7 @@ from coadjoint.render.targets.protocol import Call, Evaluate, Generated, Kernel
 
 if TYPE_CHECKING:
     from coadjoint.render.targets.numpy.loader import NumpyKernel
+    from coadjoint.render.targets.protocol import Array, Buffer
 
 #: The flags of each build, by the name that compilers know them under.
 FLAGS: Final = {"c": "exact", "c-fast": "fast"}
@@ -78,8 +79,9 @@ class CKernel(Kernel):
         bound = self._libraries[function].bind_at(function, like.members, *_places(like, 0))
         place, byref = ctypes.c_double.from_buffer, ctypes.byref
 
-        def evaluate(members: int, state: NDArray[Any], out: NDArray[Any]) -> None:
-            bound(members, byref(place(state)), byref(place(out)))  # type: ignore[arg-type]
+        def evaluate(members: int, state: Array, parameters: Buffer | None, out: Array) -> None:
+            given = None if parameters is None else byref(place(parameters))
+            bound(members, byref(place(state)), given, byref(place(out)))  # type: ignore[arg-type]
 
         evaluate.arrays = like  # type: ignore[attr-defined]  # they live as long as the function
         return evaluate
