@@ -219,6 +219,21 @@ def test_numpy_kernel_refuses_shapes(state, parameters, out, found):
         namespace["rhs"](np.ones(state), np.ones(parameters), target)
 
 
+@pytest.mark.parametrize("size", [1, 5, 12_001])
+def test_numpy_kernel_divides_by_zero(size):
+    """Shared parameters of zero give infinities and NaN, as those of each member do."""
+    namespace = {}
+    exec(render_system(HEAVY_TOP)["kernel.py"], namespace)
+    parameters = np.array([0.0, 2.0, 3.0, 1.0, 9.0, 0.0, 0.0, 1.0])
+    state = np.random.default_rng(0).normal(size=(6, size))
+    for function in (namespace["rhs"], namespace["energy"]):
+        own = function(state, np.repeat(parameters[:, None], size, axis=1))
+        assert not np.isfinite(own).all()
+        assert np.array_equal(function(state, parameters), own, equal_nan=True)
+        if size == 1:
+            assert np.array_equal(function(state[:, 0], parameters), own[..., 0], equal_nan=True)
+
+
 def test_heads_say_where_a_file_comes_from(context):
     """Spec, template, command, licence, id, equations, arguments and costs stand in the head."""
     texts = render_system(context)
