@@ -125,9 +125,9 @@ class System(Functions):
     ) -> Array:
         """A function of a state that is ready, at once; or after all checks of the arguments."""
         time, out = rest
-        by_default = parameters is None and inputs is None and time is None and out is None
+        by_default = inputs is None and time is None
         if by_default and (ready := self._kernels.ready.get((function, target))):
-            values: Array | None = ready(state)
+            values: Array | None = ready(state, parameters, out)
             if values is not None:
                 return values
         from coadjoint.solve.arrays import check_call
