@@ -17,6 +17,7 @@ from coadjoint.systems import heavy_top, kepler, rigid_body
 from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
 from tests.kernels import COMPILER
+from tests.programs import BOUNDED
 from tests.solve.systems import POLE, build, pendulum
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
@@ -320,3 +321,31 @@ def test_inputs_of_an_ode_are_those_of_the_time(tmp_path):
     assert slow == [1.0, 1.0, 3.0, 5.0]
     with pytest.raises(KernelArgumentError, match=r"asked for at t = 2\.5"):
         ode.fun(2.5, [0.0, 0.0])
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+@pytest.mark.parametrize("method", ["taylor", "dop853", "rk4"])
+def test_members_end_where_each_leaves_the_domain(tmp_path, target, method):
+    """On a circle of radius 1, q = sin(t + a) reaches 1/2 + cos(t + a) at a known angle.
+
+    Samples before are on the circle and in the domain; a start below cos(a) = -3/4 is refused.
+    """
+    system = build(BOUNDED, tmp_path)
+    angles = np.array([0.0, 0.5, -2.0, 3.8])
+    start = np.array([np.sin(angles), np.cos(angles)])
+    named = {"method": method, "target": target} | ({"step": 0.02} if method == "rk4" else {})
+    with pytest.raises(KernelArgumentError, match=r"member 3: .*condition two"):
+        system.simulate(start, (0, 4), **named)
+    found = system.simulate(start[:, :3], (0, 4), samples=401, **named)
+    edge = np.pi / 4 + np.arcsin(np.sqrt(1 / 8))  # sin - cos = sqrt(2) sin(. - pi/4) = 1/2
+    assert (found.status == "DOMAIN").all()
+    close = 1e-6 if method == "rk4" else 1e-9
+    assert np.abs(found.time_reached - (edge - angles[:3])).max() < close
+    q, p = found.state
+    inside = np.isfinite(q)
+    assert (inside.sum(axis=-1) == np.floor(found.time_reached * 100 + 1)).all()
+    assert np.abs((q**2 + p**2)[inside] - 1).max() < 1e-15
+    assert (0.5 + p - q)[inside].min() > 0
+    one = system.simulate(start[:, 0], (0, 4), **named)
+    assert one.status == "DOMAIN"
+    assert "the condition one does not hold after t = 1.1467" in one.message

@@ -12,6 +12,7 @@ import ctypes
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,7 +23,7 @@ from coadjoint.build.compiler import _run, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import CompilerError, OutputError
-from coadjoint.solve.ensemble import Ensemble
+from coadjoint.solve.ensemble import Ensemble, Limits
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
@@ -120,37 +121,51 @@ def load_solver(path: Path, system: str) -> Advance:
     return advance
 
 
+#: A function of the NumPy kernel: state, parameters, inputs with the time below them.
+Function = Callable[[Array, Array, Array], Array]
+
+
 @dataclass(frozen=True)
 class NumpySolver:
     """The methods in NumPy.
 
     Attributes:
         expand: The function of ``solver.py``.
-        rates: The rates of the NumPy kernel: state, parameters, driving.
+        functions: Functions of the NumPy kernel, by their names in ``solver.c``.
+        strict: Whether each row of the domain may not be zero.
     """
 
     expand: Callable[..., Array]
-    rates: Callable[[Array, Array, Array], Array]
+    functions: Mapping[str, Function]
+    strict: tuple[bool, ...] = ()
 
     def method(self, name: str, ensemble: Ensemble) -> Method:
         """A method for the tolerances and the step of an ensemble."""
         rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
+        rates = partial(self._evaluate, "rates")
         if name == "taylor":
             return Taylor(self._expand, ORDER, rtol, atol, size)
         if name == "dop853":
-            return DormandPrince8(self._rates, rtol, atol, size)
-        return RungeKutta4(self._rates, size)
+            return DormandPrince8(rates, rtol, atol, size)
+        return RungeKutta4(rates, size)
 
     def advance(self, name: str) -> Advance:
         """What goes on by a method."""
-        return lambda ensemble, work: ensemble.advance(self.method(name, ensemble), work)
+        domain, projection = (
+            partial(self._evaluate, each) if each in self.functions else None
+            for each in ("domain", "projection")
+        )
+        limits = Limits(domain=domain, strict=self.strict, projection=projection)
+        return lambda ensemble, work: ensemble.advance(
+            self.method(name, ensemble), work, limits=limits
+        )
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
 
-    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+    def _evaluate(self, function: str, lanes: Lanes, after: Array, state: Array) -> Array:
         driving = lanes.driving + after * lanes.slopes
-        return self.rates(np.ascontiguousarray(state), lanes.parameters, driving)
+        return self.functions[function](np.ascontiguousarray(state), lanes.parameters, driving)
 
 
 def load_numpy(text: str) -> Callable[..., Array]:

@@ -7,7 +7,7 @@ Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.taylor`, its twin.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -94,9 +94,13 @@ class SolverText:
     fixed_reads: frozenset[str]
 
 
-def arrange(rhs: Program) -> SolverText:
-    """The recurrences of the rates of a system as its templates print them."""
-    jets = make_jets(rhs)
+def arrange(programs: Mapping[str, Program]) -> SolverText:
+    """The recurrences of the rates of a system as its templates print them.
+
+    Args:
+        programs: As `select_programs` has them.
+    """
+    jets = make_jets(programs["rates"])
     arrays = jets.kept.union(jets.state, jets.driving)
     first = list(_first(jets, arrays))
     stages = tuple(_stages(jets, arrays))
@@ -107,7 +111,8 @@ def arrange(rhs: Program) -> SolverText:
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
-    calls |= {n.function for v in rhs.values() for n in walk(v) if isinstance(n, Call)}
+    values = (value for program in programs.values() for value in program.values())
+    calls |= {n.function for value in values for n in walk(value) if isinstance(n, Call)}
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
     return SolverText(
         fixed=fixed,
@@ -124,7 +129,7 @@ def arrange(rhs: Program) -> SolverText:
 
 @dataclass(frozen=True)
 class FunctionText:
-    """A Program as lines, what depends on parameters alone left out.
+    """A Program as lines.
 
     Attributes:
         lines: Statements, then rows of the result.
@@ -135,15 +140,23 @@ class FunctionText:
     reads: frozenset[str]
 
 
-def arrange_function(program: Program, out: str) -> FunctionText:
-    """The lines of a Program for each member.
+def select_programs(programs: Iterable[Program]) -> dict[str, Program]:
+    """The rates and what bounds the motion, by their names in the texts of solvers."""
+    known = {program.name: program for program in programs}
+    names = {"rates": "rhs", "domain": "domain", "projection": "projection"}
+    return {name: known[source] for name, source in names.items() if source in known}
+
+
+def arrange_function(name: str, program: Program) -> FunctionText:
+    """The lines of a Program, whose rows go to ``_rows``.
 
     Args:
+        name: Its name in a solver. Of the rates, what depends on parameters alone is left out.
         program: What to arrange.
-        out: Name of the array of the result.
     """
-    lines = [Line(statement.name, statement.value) for statement in program.statements_at("member")]
-    lines += [Line(f"{out}[{row}]", each.value) for row, each in enumerate(program.outputs)]
+    statements = program.statements_at("member") if name == "rates" else program.statements
+    lines = [Line(statement.name, statement.value) for statement in statements]
+    lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
 
 

@@ -17,6 +17,8 @@ import numpy as np
 from coadjoint.solve.steps import Lanes
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from coadjoint.solve.steps import Attempt, Method
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Counts = NDArray[np.uint64]
     Mask = NDArray[np.bool_]
+    #: Rows of a function at states, some time after lanes.
+    Function = Callable[[Lanes, Array, Array], Array]
 
 
 class Status(IntEnum):
@@ -34,6 +38,45 @@ class Status(IntEnum):
     STEP_UNDERFLOW = 2
     NONFINITE = 3
     MAX_STEPS = 4
+    DOMAIN = 5
+
+
+#: Halvings of a step that leaves the domain: its last state inside is known to 1e-12 of it.
+HALVINGS = 40
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What bounds a motion.
+
+    Attributes:
+        domain: Rows that are positive in the domain; None where there is none.
+        strict: For each row, whether it may not be zero.
+        projection: The nearest states on the constraints; None where none are kept.
+    """
+
+    domain: Function | None = None
+    strict: tuple[bool, ...] = ()
+    projection: Function | None = None
+
+    def are_inside(self, lanes: Lanes, after: Array, state: Array) -> Mask:
+        """Where states are in the domain, some time after that of the lanes."""
+        if self.domain is None:
+            return np.ones(after.shape, bool)
+        rows = self.domain(lanes, after, state)
+        least = np.where(self.strict, np.nextafter(0.0, 1.0), 0.0)[:, np.newaxis]
+        return np.asarray(((rows >= least) & (rows < np.inf)).all(axis=0))
+
+    def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The nearest states on the constraints; where there is none, the state itself."""
+        if self.projection is None:
+            return state
+        nearest = self.projection(lanes, after, state)
+        return np.where(np.isfinite(nearest).all(axis=0), nearest, state)
+
+
+#: Nothing.
+NONE = Limits()
 
 
 @dataclass
@@ -114,13 +157,20 @@ class Ensemble:
         """When they end."""
         return float(self.samples[-1])
 
-    def advance(self, method: Method, work: int, members: slice = slice(None)) -> int:
+    def advance(
+        self,
+        method: Method,
+        work: int,
+        members: slice = slice(None),
+        limits: Limits = NONE,
+    ) -> int:
         """Go on with some members in NumPy, as ``NAME_advance`` of a solver does in C.
 
         Args:
             method: The method.
             work: So many steps are tried of each member, at most.
             members: Which ones.
+            limits: What bounds their motion.
 
         Returns:
             How many of them go on.
@@ -131,22 +181,29 @@ class Ensemble:
             for _ in range(work):
                 if not going.size:
                     break
-                self._step(method, going)
+                self._step(method, going, limits)
                 going = going[self.status[going] == Status.GOES_ON]
         return int(going.size)
 
-    def _step(self, method: Method, going: NDArray[np.intp]) -> None:
+    def _step(self, method: Method, going: NDArray[np.intp], limits: Limits) -> None:
         """Try one step of some members."""
         lanes = self._lanes(going)
         attempt = method.try_step(lanes)
-        time = lanes.time + attempt.took
-        time = np.where(attempt.took == lanes.end - lanes.time, lanes.end, time)
-        finite = np.isfinite(attempt.state).all(axis=0)
-        stuck = (time == lanes.time) | (attempt.took < 1e-300)
+        took, state = attempt.took, limits.project(lanes, attempt.took, attempt.state)
+        time = lanes.time + took
+        time = np.where(took == lanes.end - lanes.time, lanes.end, time)
+        finite = np.isfinite(state).all(axis=0)
+        stuck = (time == lanes.time) | (took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
-        if self.out is not None:
-            self._store_samples(going, lanes, attempt, time, accepted)
-        self.state[:, going] = np.where(accepted, attempt.state, lanes.state)
+        step = _Step(lanes, attempt, limits, time, accepted)
+        inside, outside = self._store_samples(going, step)
+        left = outside < took
+        left |= accepted & ~limits.are_inside(lanes, took, state)
+        if left.any():
+            inside, last = step.find_exit(inside, outside)
+            state = np.where(left, last, state)
+            time = np.where(left, lanes.time + inside, time)
+        self.state[:, going] = np.where(accepted, state, lanes.state)
         self.time[going] = np.where(accepted, time, lanes.time)
         self.step[going] = lanes.step
         self.steps[going] += accepted
@@ -155,6 +212,7 @@ class Ensemble:
         over = self.steps[going] >= self.max_steps
         status[accepted & over] = Status.MAX_STEPS
         status[accepted & (self.time[going] >= self.end)] = Status.OK
+        status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
@@ -182,25 +240,62 @@ class Ensemble:
             slopes=slopes,
         )
 
-    def _store_samples(
-        self,
-        going: NDArray[np.intp],
-        lanes: Lanes,
-        attempt: Attempt,
-        time: Array,
-        accepted: Mask,
-    ) -> None:
-        """States at the samples that a step passes."""
-        assert self.out is not None
-        while True:
+    def _store_samples(self, going: NDArray[np.intp], step: _Step) -> tuple[Array, Array]:
+        """Store states at the samples that a step passes.
+
+        Returns:
+            A time after its start at which a member is in the domain, and a later one: at which it
+            is outside, or the end of the step.
+        """
+        took, out = step.attempt.took, self.out
+        inside, outside, open_ = np.zeros(took.shape), took.copy(), step.accepted.copy()
+        while out is not None:
             place = self.next[going].astype(np.intp)
-            inside = place < len(self.samples)
-            at = self.samples[np.where(inside, place, 0)]
-            wanted = accepted & inside & (at <= time)
+            known = place < len(self.samples)
+            at = self.samples[np.where(known, place, 0)]
+            wanted = open_ & known & (at <= step.time)
             if not wanted.any():
-                return
-            after = np.where(wanted, at - lanes.time, attempt.took)
-            state = attempt.path(after)
+                break
+            after = np.where(wanted, at - step.lanes.time, took)
+            state = step.find_state(after)
+            good = step.limits.are_inside(step.lanes, after, state)
+            outside = np.where(wanted & ~good, after, outside)
+            open_ &= ~wanted | good
+            wanted &= good
+            inside = np.where(wanted, after, inside)
             members = going[wanted]
-            self.out[:, members, place[wanted]] = state[:, wanted]
+            out[:, members, place[wanted]] = state[:, wanted]
             self.next[members] += np.uint64(1)
+        return inside, outside
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step of some members.
+
+    Attributes:
+        lanes: Where it begins.
+        attempt: Where it leads.
+        limits: What bounds the motion.
+        time: When it ends.
+        accepted: Whether its end is taken.
+    """
+
+    lanes: Lanes
+    attempt: Attempt
+    limits: Limits
+    time: Array
+    accepted: Mask
+
+    def find_state(self, after: Array) -> Array:
+        """The state after a part of the step, on the constraints."""
+        return self.limits.project(self.lanes, after, self.attempt.path(after))
+
+    def find_exit(self, inside: Array, outside: Array) -> tuple[Array, Array]:
+        """How far the step is in the domain, and the last state there."""
+        for _ in range(HALVINGS):
+            middle = (inside + outside) * 0.5
+            good = self.limits.are_inside(self.lanes, middle, self.find_state(middle))
+            inside = np.where(good, middle, inside)
+            outside = np.where(good, outside, middle)
+        return inside, self.find_state(inside)

@@ -15,11 +15,13 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.driving import Linear, Previous, Signal, make_signal
+from coadjoint.solve.domain import Domain, Exit
+from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
+from coadjoint.solve.starts import check_starts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,10 +43,6 @@ def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) ->
     """
     if not all((system.folder / file).is_file() for file in FILES):
         return "its folder was generated without them: run `coadjoint regenerate`"
-    if "projection" in system.functions:
-        return "it keeps constraints, onto which each step has to be projected"
-    if system.DOMAIN:
-        return "it has a [domain], whose border has to be looked for at each step"
     if reconstruct is not False and reconstruct is not None:
         return "reconstruct integrates more than the state"
     if callable(inputs):
@@ -63,9 +61,11 @@ def simulate(system: System, request: Request) -> Solution:
     """
     batch = request.state.shape[1:]
     run, driven = _gather(system, request)
+    now = _drive(system, run, request.start)
+    check_starts(system, request, run, now)
     stepper = system._solvers.get(request.choice, request.target)
     run.begin(request.start)
-    _end_undefined(system, run)
+    _end_undefined(system, run, now)
     with ExitStack() as stack:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
@@ -167,17 +167,22 @@ def _lay_out(signal: Signal | Array | None, rows: int, members: int, start: floa
     return Inputs(knots, values, np.zeros(values.shape))
 
 
-def _end_undefined(system: System, run: Ensemble) -> None:
-    """Members whose rates are not finite at the start end there."""
+def _drive(system: System, run: Ensemble, start: float) -> dict[str, Any]:
+    """Inputs and time at the start, as functions of the System take them."""
     inputs, driving = run.inputs, dict[str, Any]()
     if system.INPUTS:
-        piece = int(np.searchsorted(inputs.knots[1:], run.time[0], side="right"))
-        after = run.time[0] - inputs.knots[piece]
+        piece = int(np.searchsorted(inputs.knots[1:], start, side="right"))
         here = slice(None) if inputs.own else piece
+        after = start - inputs.knots[piece]
         driving["inputs"] = inputs.values[:, here] + after * inputs.slopes[:, here]
     if system.TIME:
-        driving["time"] = run.time[0]
-    rates = system.rhs(run.state, run.parameters, target="numpy", **driving)
+        driving["time"] = start
+    return driving
+
+
+def _end_undefined(system: System, run: Ensemble, now: dict[str, Any]) -> None:
+    """Members whose rates are not finite at the start end there."""
+    rates = system.rhs(run.state, run.parameters, target="numpy", **now)
     run.status[~np.isfinite(rates).all(axis=0)] = Status.NONFINITE
 
 
@@ -205,7 +210,7 @@ def _make_solution(
     else:
         inputs = None if signal is None else signal.over(times)
     status = "" if batch else Status(int(run.status[0])).name
-    message = _explain_batch(run) if batch else _explain(run, request.max_steps)
+    message = _explain_batch(run) if batch else _explain(system, request, run)
     return Solution(
         system, times, states, parameters.copy(), status, message, None, inputs, course=course
     )
@@ -232,14 +237,25 @@ def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
     return times, states
 
 
-def _explain(run: Ensemble, max_steps: int) -> str:
+def _explain(system: System, request: Request, run: Ensemble) -> str:
     """Where one trajectory stopped and why; "" at its end."""
-    place = f"near t = {run.time[0]:.6g}"
+    status, time, state = Status(int(run.status[0])), float(run.time[0]), run.state[:, 0].copy()
+    if status == Status.OK:
+        return ""
+    parameters = run.parameters if run.parameters.ndim == 1 else run.parameters[:, 0].copy()
+    inputs = run.inputs.values[:, 0].copy() if run.inputs.own else request.inputs
+    driving = Driving(system, inputs, request.start, float(request.times[-1]))
+    driving.enter(time)
+    domain = Domain(system, parameters, request.target, driving)
+    if status == Status.DOMAIN:
+        rates = system.rhs(state, parameters, target="numpy", **driving.now)
+        return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
+    place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"the rates are not finite {place}",
         Status.STEP_UNDERFLOW: f"no step was small enough {place}",
-        Status.MAX_STEPS: f"{max_steps} steps came only {place}; raise max_steps",
-    }.get(Status(int(run.status[0])), "")
+        Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
+    }[status]
 
 
 def _explain_batch(run: Ensemble) -> str:

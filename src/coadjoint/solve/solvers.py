@@ -23,7 +23,7 @@ from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
-from coadjoint.solve.ensemble import Ensemble, Inputs
+from coadjoint.solve.ensemble import Ensemble, Inputs, Limits
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
@@ -231,14 +231,22 @@ class NumpyStepper:
 
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice = system, choice
+        self._kernel = NumpyKernel(system, "kernel.py")
+        self._rates = partial(self._evaluate, "rhs", system.STATE.size)
         if choice.name == "taylor":
             self._expansion = KernelModule(system, "solver.py").function("expand")
-        else:
-            self._kernel = NumpyKernel(system, "kernel.py")
+        self._limits = Limits(
+            domain=partial(self._evaluate, "domain", len(system.DOMAIN)) if system.DOMAIN else None,
+            strict=tuple(bound.strict for bound in system.DOMAIN),
+            projection=partial(self._evaluate, "projection", system.STATE.size)
+            if "projection" in system.functions
+            else None,
+        )
 
     def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
         """As `Stepper.advance`; a block is all of the members."""
-        return ensemble.advance(self._method(ensemble), work, slice(first, last))
+        method = self._method(ensemble)
+        return ensemble.advance(method, work, slice(first, last), self._limits)
 
     def _method(self, run: Ensemble) -> Method:
         """The method for the tolerances and the step of an ensemble."""
@@ -255,14 +263,17 @@ class NumpyStepper:
         )
         return path
 
-    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
-        """Rates some time after that of the lanes."""
+    def _evaluate(
+        self, function: str, rows: int, lanes: Lanes, after: Array, state: Array
+    ) -> Array:
+        """A function of the kernel some time after that of the lanes."""
         driving, inputs = lanes.driving + after * lanes.slopes, self._system.INPUTS.size
         named = {"inputs": driving[:inputs]} if inputs else {}
         if self._system.TIME:
             named["time"] = driving[inputs:]
-        call = Call(np.ascontiguousarray(state), lanes.parameters, np.empty(state.shape), named)
-        return self._kernel.values("rhs", call)
+        block = np.empty((rows, state.shape[1]))
+        call = Call(np.ascontiguousarray(state), lanes.parameters, block, named)
+        return self._kernel.values(function, call)
 
 
 # -- comparison ---------------------------------------------------------------------------------

@@ -271,7 +271,7 @@ class DormandPrince8:
             x = lanes.state + h * self._add(k, stage + 1)
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
-            accepted = self._control(lanes, h, k, x)
+            accepted = self._control(lanes, h, most, k, x)
         start = lanes.state
 
         def path(after: Array) -> Array:
@@ -308,7 +308,7 @@ class DormandPrince8:
         h1 = np.where(d <= 1e-15, _larger(np.full(d.shape, 1e-6), h0 * 1e-3), _root(0.01 / d))
         return _smaller(_smaller(100.0 * h0, h1), most)
 
-    def _control(self, lanes: Lanes, h: Array, k: list[Array], end: Array) -> Mask:
+    def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
         scale = self.atol + self.rtol * _larger(np.abs(lanes.state), np.abs(end))
         e5 = self._square_norm(self._add(k, FIFTH), scale)
@@ -320,6 +320,8 @@ class DormandPrince8:
         cut = _larger(np.full(h.shape, 0.2), _smaller(np.full(h.shape, 1.0), factor))
         wanted = h * np.where(accepted, factor, cut)
         wanted = np.where(np.isnan(error), h * 0.1, wanted)
+        # one that is rejected and rounds to the same would be tried for ever
+        wanted = np.where(~accepted & (_free(lanes, wanted, most) >= h), h * 0.25, wanted)
         short = accepted & (h < lanes.step)
         lanes.step = np.where(short, _larger(lanes.step, wanted), wanted)
         return accepted
