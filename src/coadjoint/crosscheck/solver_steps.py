@@ -46,12 +46,12 @@ from coadjoint.crosscheck.recurrences import (
     split,
 )
 from coadjoint.crosscheck.series import solve
-from coadjoint.crosscheck.solver_objects import FLAGS, ORDER, Advance
+from coadjoint.crosscheck.solver_objects import DEGREES, FLAGS, ORDER, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import run
 from coadjoint.render.solvers import SolverText
-from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.ensemble import ROOM, Ensemble, Inputs, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
 MEMBERS: Final = 13
@@ -399,15 +399,22 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed in _runs(batch, size):
         targets = solvers.advance[method]
-        found = {}
+        found, rows = {}, len(solvers.subject.programs["rhs"].state)
         for target, work in (("numpy", MOST_STEPS), ("c", 3)):
             ensemble = solvers.begin(given, samples, size=fixed, steps=MOST_STEPS)
+            record = Record.make(rows, DEGREES[method], given.size * MOST_STEPS + ROOM)
             for _ in range(2 * MOST_STEPS):
-                if not targets[target](ensemble, work):
+                if not targets[target](ensemble, work, record):
                     break
-            found[target] = ensemble
-        for name in _KEPT:
-            one, other = (np.asarray(getattr(found[t], name), float) for t in ("numpy", "c"))
+            found[target] = {name: np.asarray(getattr(ensemble, name), float) for name in _KEPT}
+            order = np.argsort(record.member, kind="stable")
+            found[target]["record"] = record.rows[: record.count][order]
+        for name, one in found["numpy"].items():
+            other = found["c"][name]
+            if one.shape != other.shape:
+                raise solvers.failure(
+                    5, f"{method}: {name} has the shape {one.shape} in NumPy, {other.shape} in C"
+                )
             different = np.argwhere(find_differing_bits(one, other))
             if len(different):
                 place = tuple(different[0].tolist())
@@ -418,7 +425,7 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
                     found=float(other[place]),
                     expected=float(one[place]),
                 )
-        equal[method] += int(np.isfinite(np.asarray(found["c"].out)).sum())
+        equal[method] += int(np.isfinite(found["c"]["out"]).sum())
     for method, count in equal.items():
         if not count:
             raise solvers.failure(5, f"nothing of {method} was compared")

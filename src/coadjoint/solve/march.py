@@ -14,12 +14,13 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from dataclasses import dataclass
 from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.ensemble import Status
+from coadjoint.solve.ensemble import Record, Status
 
 if TYPE_CHECKING:
     from coadjoint.solve.ensemble import Ensemble
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Told now and then: the part of the way that is done, from 0 to 1.
 Progress = Callable[[float], object]
+#: Shown the steps of each call by the thread that made them; it may stop members of these.
+Watch = Callable[["Record"], object]
 #: Seconds that one call of a solver is to take, and those between two reports.
 CALL_SECONDS, REPORT_SECONDS = 0.05, 0.1
 #: Seconds after which a bar appears.
@@ -34,8 +37,11 @@ BAR_SECONDS = 1.0
 #: Members of a slice, at the least, where threads share a batch: the last ones of a slice leave
 #: lanes idle.
 SLICE = 256
-#: Steps of a block in the first call, and how much more a later call may try than the one before.
-FIRST_WORK, GROWTH = 16, 4.0
+#: Steps of a block in the first call, how much more a later call may try than the one before, and
+#: the most of a call.
+FIRST_WORK, GROWTH, MOST_WORK = 16, 4.0, 2**40
+#: Numbers that a record of steps holds, about: 8 MB.
+RECORDED = 2**20
 
 
 def count_threads() -> int:
@@ -45,7 +51,30 @@ def count_threads() -> int:
     return os.cpu_count() or 1
 
 
-def march(stepper: Stepper, run: Ensemble, threads: int, progress: Progress | None = None) -> None:
+@dataclass(frozen=True)
+class _Going:
+    """Who advances what.
+
+    Attributes:
+        stepper: Who advances it.
+        run: Its members.
+        watch: Shown all steps; None for nobody.
+        stop: Set where all have to end.
+    """
+
+    stepper: Stepper
+    run: Ensemble
+    watch: Watch | None
+    stop: Event
+
+
+def march(
+    stepper: Stepper,
+    run: Ensemble,
+    threads: int,
+    progress: Progress | None = None,
+    watch: Watch | None = None,
+) -> None:
     """Advance an ensemble to its end.
 
     Args:
@@ -53,12 +82,14 @@ def march(stepper: Stepper, run: Ensemble, threads: int, progress: Progress | No
         run: Its members, begun.
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
+        watch: Shown all steps that are made; None for nobody. It is called by several threads.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; members stand where they came.
     """
     slices = _cut(run.state.shape[1], threads)
-    begun, stop = run.time.copy() if progress else run.time, Event()
+    begun = run.time.copy() if progress else run.time
+    going = _Going(stepper, run, watch, Event())
 
     def report() -> None:
         if progress is not None:
@@ -66,27 +97,22 @@ def march(stepper: Stepper, run: Ensemble, threads: int, progress: Progress | No
 
     if len(slices) == 1:
         reported = time.monotonic()
-        for _ in _advance(stepper, run, *slices[0], stop):
+        for _ in _advance(going, *slices[0]):
             if time.monotonic() - reported > REPORT_SECONDS:
                 report()
                 reported = time.monotonic()
     else:
-        _share(stepper, run, slices, threads, stop, report)
+        _share(going, slices, threads, report)
     report()
 
 
 def _share(
-    stepper: Stepper,
-    run: Ensemble,
-    slices: list[tuple[int, int]],
-    threads: int,
-    stop: Event,
-    report: Callable[[], None],
+    going: _Going, slices: list[tuple[int, int]], threads: int, report: Callable[[], None]
 ) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
 
     def work(first: int, last: int) -> None:
-        for _ in _advance(stepper, run, first, last, stop):
+        for _ in _advance(going, first, last):
             pass
 
     with ThreadPoolExecutor(min(threads, len(slices))) as pool:
@@ -98,20 +124,28 @@ def _share(
                     each.result()
                 report()
         except BaseException:  # Ctrl-C among them
-            stop.set()
+            going.stop.set()
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _advance(stepper: Stepper, run: Ensemble, first: int, last: int, stop: Event) -> Iterator[None]:
+def _advance(going: _Going, first: int, last: int) -> Iterator[None]:
     """Advance a slice, one short call after the other."""
-    work = FIRST_WORK
-    while not stop.is_set():
+    work, run, record = FIRST_WORK, going.run, None
+    if going.watch is not None:
+        n, degree = len(run.state), going.stepper.degree
+        record = Record.make(n, degree, RECORDED // (n * (degree + 1)))
+    while not going.stop.is_set():
         begun = time.perf_counter()
-        if not stepper.advance(run, first, last, work):
-            return
+        on = going.stepper.advance(run, first, last, work, record)
         took = max(time.perf_counter() - begun, 1e-9)
-        work = max(1, int(work * min(GROWTH, CALL_SECONDS / took)))
+        if going.watch is not None and record is not None:
+            going.watch(record)
+            record.clear()
+            on = int((run.status[first:last] == Status.GOES_ON).sum())
+        if not on:
+            return
+        work = min(max(1, int(work * min(GROWTH, CALL_SECONDS / took))), MOST_WORK)
         yield
 
 

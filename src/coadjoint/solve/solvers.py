@@ -23,7 +23,7 @@ from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
-from coadjoint.solve.ensemble import Ensemble, Inputs, Limits
+from coadjoint.solve.ensemble import Ensemble, Inputs, Limits, Record
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
@@ -73,15 +73,30 @@ class Choice:
         """What chooses it in ``solver.c``."""
         return (f"-DORDER={self.order}" if self.name == "taylor" else f"-D{self.name.upper()}",)
 
+    @property
+    def degree(self) -> int:
+        """Of the polynomials that are recorded of its steps."""
+        return {"dop853": 7, "rk4": 3}.get(self.name, self.order)
+
     def __str__(self) -> str:
         return self.name
 
 
 class Stepper(Protocol):
-    """Whoever advances members of an ensemble."""
+    """Whoever advances members of an ensemble.
 
-    def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
+    Attributes:
+        degree: Of the polynomials that are recorded.
+    """
+
+    degree: int
+
+    def advance(
+        self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
+    ) -> int:
         """Go on with the members ``first <= n < last``, by at most ``work`` steps of a block.
+
+        Steps that are accepted are added to a record; the call ends when it is full.
 
         Returns:
             How many of them still go on.
@@ -135,7 +150,7 @@ def load(system: System, choice: Choice, target: str) -> CStepper:
     kind = Source("solver", choice.defines, is_loops=False)
     verify = partial(_verify, system, choice, target)
     library = load_library(system.folder, system.name, system.id, FLAGS[target], verify, kind)
-    return CStepper(library)
+    return CStepper(library, choice)
 
 
 # -- C ------------------------------------------------------------------------------------------
@@ -172,6 +187,9 @@ class _Run(ctypes.Structure):
         ("size", _DOUBLE),
         ("max_steps", _SIZE),
         ("work", _SIZE),
+        ("record", _PLACE),
+        ("record_room", _SIZE),
+        ("recorded", _SIZE),
     )
 
 
@@ -180,17 +198,26 @@ class CStepper:
 
     Args:
         library: Its object.
+        choice: The method.
     """
 
-    def __init__(self, library: Library) -> None:
-        self.source = library.source
+    def __init__(self, library: Library, choice: Choice) -> None:
+        self.source, self.degree = library.source, choice.degree
         self._advance = library.take("advance")
 
-    def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
+    def advance(
+        self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
+    ) -> int:
         """As `Stepper.advance`; other threads run meanwhile."""
         run = _describe(ensemble)
         run.first, run.last, run.work = first, last, work
-        return self._advance(ctypes.byref(run))
+        if record is None:
+            return self._advance(ctypes.byref(run))
+        run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+        run.recorded = record.count
+        on = self._advance(ctypes.byref(run))
+        record.count = run.recorded
+        return on
 
 
 def _describe(ensemble: Ensemble) -> _Run:
@@ -233,7 +260,7 @@ class NumpyStepper:
     """
 
     def __init__(self, system: System, choice: Choice) -> None:
-        self._system, self._choice = system, choice
+        self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
         self._rates = partial(self._evaluate, "rhs", system.STATE.size)
         if choice.name == "taylor":
@@ -246,10 +273,12 @@ class NumpyStepper:
             else None,
         )
 
-    def advance(self, ensemble: Ensemble, first: int, last: int, work: int) -> int:
+    def advance(
+        self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
+    ) -> int:
         """As `Stepper.advance`; a block is all of the members."""
-        method = self._method(ensemble)
-        return ensemble.advance(method, work, slice(first, last), self._limits)
+        method, members = self._method(ensemble), slice(first, last)
+        return ensemble.advance(method, work, members, self._limits, record)
 
     def _method(self, run: Ensemble) -> Method:
         """The method for the tolerances and the step of an ensemble."""
@@ -293,13 +322,14 @@ def _verify(system: System, choice: Choice, target: str, library: Library) -> No
         OutputError: The NumPy twin does not run.
     """
     exact = target == "c" and not system.elementary
-    fresh, twin = CStepper(library), NumpyStepper(system, choice)
+    fresh, twin = CStepper(library, choice), NumpyStepper(system, choice)
     for size in (0.0, 2.0**-7) if exact and choice.name != "rk4" else (2.0**-7,):
         found, expected = (_probe(system, size) for _ in range(2))
-        while fresh.advance(found, 0, PROBES, 2):
+        one, other = (Record.make(system.STATE.size, choice.degree, 4 * PROBES) for _ in range(2))
+        while fresh.advance(found, 0, PROBES, 2, one):
             pass  # calls that break off now and then, so that this is compared as well
-        twin.advance(expected, 0, PROBES, 1000)
-        if not _agree(found, expected, exact=exact):
+        twin.advance(expected, 0, PROBES, 1000, other)
+        if not (_agree(found, expected, exact=exact) and _agree_steps(one, other, exact=exact)):
             raise CrossCheckError(
                 f"a wrong solver was compiled: {choice} of {system.name} for the target {target} "
                 "differs from its NumPy twin. Set CC to another compiler, or run `coadjoint "
@@ -349,6 +379,16 @@ def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
     if exact:
         return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
     return all(_are_close(a, b) for a, b in pairs)
+
+
+def _agree_steps(found: Record, expected: Record, *, exact: bool) -> bool:
+    """Whether two records have the same steps, whatever the order of the members."""
+    if found.count != expected.count:
+        return False
+    one, other = (each.rows[np.argsort(each.member, kind="stable")] for each in (found, expected))
+    if exact:
+        return np.array_equal(one, other, equal_nan=True)
+    return all(_are_close(a, b) for a, b in zip(one.T, other.T, strict=True))
 
 
 def _are_close(found: Array, expected: Array) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -58,12 +59,15 @@ class Attempt:
         state: Where it leads, ``(n, N)``.
         accepted: Whether its error is small enough, ``(N,)``.
         path: The state after a part of it.
+        coefficients: Those of the path as polynomials in the time since the step began, that of
+            order 0 first, ``(n, degree + 1, N)``.
     """
 
     took: Array
     state: Array
     accepted: Mask
     path: Callable[[Array], Array]
+    coefficients: Callable[[], Array]
 
 
 class Method(Protocol):
@@ -144,7 +148,13 @@ class Taylor:
                 total = total * after + path[:, k]
             return total
 
-        return Attempt(took, at(took), np.ones(took.shape, bool), at)
+        return Attempt(
+            took=took,
+            state=at(took),
+            accepted=np.ones(took.shape, bool),
+            path=at,
+            coefficients=lambda: path,
+        )
 
     def _choose(self, path: Array) -> Array:
         """The step in which the last two orders are as small as the tolerances ask."""
@@ -213,14 +223,26 @@ class RungeKutta4:
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
 
-        def path(after: Array) -> Array:
-            part, last = after / h, self.rates(lanes, h, end)
+        def parts() -> tuple[Array, Array, Array]:
             chord = end - x
             start = h * first - chord
-            both = h * (last - first) + 2.0 * start
+            return chord, start, h * (self.rates(lanes, h, end) - first) + 2.0 * start
+
+        def path(after: Array) -> Array:
+            part, (chord, start, both) = after / h, parts()
             return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
 
-        return Attempt(h, end, np.ones(h.shape, bool), path)
+        def coefficients() -> Array:
+            _, start, both = parts()
+            return np.stack([x, first, -(both + start) / h / h, both / h / h / h], axis=1)
+
+        return Attempt(
+            took=h,
+            state=end,
+            accepted=np.ones(h.shape, bool),
+            path=path,
+            coefficients=coefficients,
+        )
 
 
 class DormandPrince8:
@@ -259,12 +281,14 @@ class DormandPrince8:
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
             accepted = self._control(lanes, h, most, k, x)
-        start = lanes.state
-
-        def path(after: Array) -> Array:
-            return self._path(lanes, start, x, h, list(k), after)
-
-        return Attempt(h, x, accepted, path)
+        start, parts = lanes.state, partial(self._parts, lanes, h, k, x)
+        return Attempt(
+            took=h,
+            state=x,
+            accepted=accepted,
+            path=lambda after: _evaluate(start, parts(), after / h),
+            coefficients=lambda: _multiply_out(start, parts(), h),
+        )
 
     def _add(self, k: list[Array], row: int) -> Array:
         """The sum of a row of the table over rates."""
@@ -313,23 +337,39 @@ class DormandPrince8:
         lanes.step = np.where(short, _larger(lanes.step, wanted), wanted)
         return accepted
 
-    def _path(
-        self, lanes: Lanes, start: Array, end: Array, h: Array, k: list[Array], after: Array
-    ) -> Array:
-        """The state after a part of a step."""
+    def _parts(self, lanes: Lanes, h: Array, k: list[Array], end: Array) -> list[Array]:
+        """The coefficients of the path of a step, as the method has them."""
+        k, start = list(k), lanes.state
         k.append(self.rates(lanes, h, end))
         for extra in range(3):
             x = start + h * self._add(k, EXTRA + extra)
             k.append(self.rates(lanes, self.table.nodes[END + 1 + extra] * h, x))
         chord = end - start
-        coefficients = [chord, h * k[0] - chord, 2.0 * chord - h * (k[END] + k[0])]
-        coefficients += [h * self._add(k, PATH + row) for row in range(4)]
-        part = after / h
-        rest = 1.0 - part
-        total = np.zeros(start.shape)
-        for row in range(6, -1, -1):
-            total = (total + coefficients[row]) * (rest if row % 2 else part)
-        return start + total
+        parts = [chord, h * k[0] - chord, 2.0 * chord - h * (k[END] + k[0])]
+        return parts + [h * self._add(k, PATH + row) for row in range(4)]
+
+
+def _evaluate(start: Array, parts: list[Array], part: Array) -> Array:
+    """The state after a part of a step."""
+    total, rest = np.zeros(start.shape), 1.0 - part
+    for row in range(6, -1, -1):
+        total = (total + parts[row]) * (rest if row % 2 else part)
+    return start + total
+
+
+def _multiply_out(start: Array, parts: list[Array], h: Array) -> Array:
+    """The same as polynomials in the time since the step began."""
+    path = [np.zeros(start.shape) for _ in range(8)]
+    for row in range(6, -1, -1):
+        path[0] = path[0] + parts[row]
+        for order in range(7 - row, 0, -1):
+            path[order] = path[order] - path[order - 1] if row % 2 else path[order - 1]
+        path[0] = path[0] if row % 2 else np.zeros(start.shape)
+    path[0] = start
+    for order in range(1, 8):
+        for _ in range(order):
+            path[order] = path[order] / h
+    return np.stack(path, axis=1)
 
 
 def _root(a: Array) -> Array:
