@@ -188,16 +188,6 @@ ADVICE = [
         "Write what acts along a momentum in [forces].",
         write('[dissipation]\nR = "dot(Pi, Pi)"', '[forces]\nPi = "-Pi"'),
     ),
-    *(
-        (
-            PARTICLE,
-            [('"w == y*u"', '"2*w == y*u"'), ("[claims]", f"[claims]\n{asked}")],
-            "Solve the constraints for velocities, as w == y*u, or name what is conserved in",
-            done,
-        )
-        for asked in ('casimirs = ["m"]', 'brackets = { "{x, u}" = "m" }')
-        for done in ([('"2*w == y*u"', '"w == y*u/2"')], [(asked, "")])
-    ),
     (
         PARTICLE,
         before_claims(

@@ -90,12 +90,6 @@ def has_fixed_constraints(motion: Motion) -> bool:
     return not frozenset[str]().union(*reached) & {*motion.setting.driving}
 
 
-def has_linear_constraints(motion: Motion) -> bool:
-    """Whether the distribution has no affine term, so that the motion has a bracket."""
-    distribution = motion.equations.distribution
-    return distribution is not None and distribution.is_linear
-
-
 def is_free(motion: Motion) -> bool:
     """Whether momenta or velocities of coordinates are the state, or a bracket is declared."""
     return not has_frame(motion)
@@ -150,7 +144,7 @@ EXAMINATIONS = (
     Examination(about=about_integrals),
     Examination(about=about_galilean),
     Examination(about=about_momenta),
-    Examination(about=about_reduced_bracket, applies=has_linear_constraints),
+    Examination(about=about_reduced_bracket, applies=has_frame),
     Examination(about=about_symmetries, applies=has_bracket),
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
     Examination(about=about_constrained_symmetries, applies=has_constraints),
@@ -165,7 +159,7 @@ EXAMINATIONS = (
     ),
     Examination(
         about=about_reduced_jacobi,
-        applies=has_linear_constraints,
+        applies=has_frame,
         kind="jacobi",
         subject="the Jacobi identity of the reduced bracket",
     ),

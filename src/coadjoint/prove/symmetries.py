@@ -47,7 +47,8 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     for place, claim in enumerate(spec.brackets):
         text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
         statement = f"{text} = {claim.value.in_one_line}"
-        claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
+        defects = partial(_claimed_bracket, first, claim, known)
+        claimed = [(statement, "bracket", partial(_decide_on, motion, defects))]
         yield from mark_accepted(spec, ("claims", "brackets", place), claimed, field)
 
 
