@@ -93,8 +93,26 @@ MUTANTS = (
     ),
     *of(
         "prove/almost_poisson",
-        "motion_defects: flip explicit",
+        "added: flip explicit",
         tests=("tests/prove/test_driven.py",),
+    ),
+    *of(
+        "prove/almost_poisson",
+        "added: flip x in moved",
+        "gradient_defects: flip drift",
+        tests=("tests/prove/test_almost_poisson.py",),
+    ),
+    *of(
+        "prove/carried",
+        "_carry_added: flip explicit",
+        "_carry_tensor: flip value",
+        tests=("tests/prove/test_kept_brackets.py",),
+    ),
+    *of(
+        "prove/reached",
+        "_commute: flip along_Y",
+        "list_reached: leave newest",
+        tests=("tests/prove/test_kept_brackets.py",),
     ),
     *of(
         "numpy/kernel.py.j2",

@@ -196,8 +196,8 @@ def search_summands(
 def select_independent(structure: PoissonStructure, functions: Iterable[Element]) -> list[Element]:
     """Those functions whose gradients are independent of all before them at a generic point."""
     whole = list(functions)
-    places = independent_rows(structure.field, list(map(structure.gradient, whole)))
-    return [whole[place] for place in places]
+    slopes = [structure.gradient(function) for function in whole]
+    return [whole[place] for place in independent_rows(structure.field, slopes)]
 
 
 def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:

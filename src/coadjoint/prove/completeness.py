@@ -53,7 +53,7 @@ class Reach:
     """What bounds the number of Casimirs of an almost-Poisson bracket.
 
     Attributes:
-        rows: Independent rows of the fields and their commutators, until there are so many.
+        rows: Independent rows of the fields and their commutators, beside so many known Casimirs.
         is_poisson: Whether no point is known where the Jacobi identity fails.
     """
 
@@ -163,11 +163,7 @@ def completeness(
         claimed = [c for casimir in setting.spec.casimirs for c in setting.components(casimir)]
         proved = [c for c in claimed if is_proved_casimir(equations, c)]
     known = select_independent(structure, map(equations.close, proved))
-    rows = (
-        list(map(drop_zeros, structure.tensor))
-        if reach is None
-        else reach.rows(structure.dimension - len(known))
-    )
+    rows = [*map(drop_zeros, structure.tensor)] if reach is None else reach.rows(len(known))
     expected = structure.dimension - generic_rank(setting.field, rows)
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
     given = [setting.formula(function) for function in declared]

@@ -23,13 +23,14 @@ from coadjoint.prove.almost_poisson import ReducedBracket
 from coadjoint.prove.completeness import SparseRow, drop_zeros
 
 
-def list_reached(bracket: ReducedBracket, enough: int) -> list[SparseRow]:
+def list_reached(bracket: ReducedBracket, known: int) -> list[SparseRow]:
     """Independent rows among the Hamiltonian fields and their iterated commutators.
 
     Args:
         bracket: In momenta and positions.
-        enough: The number of independent rows at which the search ends; there are no more.
+        known: How many independent Casimirs there are at least, which leave room for the others.
     """
+    enough = len(bracket.names) - known
     back = inverse(bracket.turn)
     first = _select(bracket, bracket.tensor)
     whole = newest = first
