@@ -40,6 +40,7 @@ from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.exact import Element
 from coadjoint.exact.dense import dot, inverse
 from coadjoint.exact.witness import is_entire
@@ -122,7 +123,15 @@ class ReducedBracket:
 
     @cached_property
     def added(self) -> Row:
-        """What is added to ``J grad H``, in all velocities and reactions.
+        """What is added to ``J grad H``: by a symmetric bracket, and `forces`."""
+        along = relaxed(self.distribution.setting)
+        if along is None:
+            return self.forces
+        return tuple(x + along.closed[n] for n, x in zip(self.names, self.forces, strict=True))
+
+    @cached_property
+    def forces(self) -> Row:
+        """What forces, time and affine terms add, in all velocities and reactions.
 
         To the momenta the forces along the fields, ``<p, dD/dt>`` where fields depend on time, and
         ``<p, [beta, D]>``; to positions ``beta z``.
@@ -236,7 +245,9 @@ def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
     first, affine = motion.equations, not motion.distribution.is_linear
     bracket = ReducedBracket(first)
     momenta = ", ".join(map(bracket.label, range(len(bracket.names))))
-    added = " and the forces" * first.spec.is_forced + " and the drift along beta" * affine
+    relaxation = first.spec.relaxation
+    added = "" if relaxation is None else f" and {relaxation.added}"
+    added += " and the forces" * first.spec.is_forced + " and the drift along beta" * affine
     energy = " and H = E - <p, beta>" * affine
     yield (
         f"dH/dM = eta and dH/dz = -dl_c/dz, with M = dl_c/deta along the distribution{energy}",

@@ -17,6 +17,7 @@ Read next: `coadjoint.prove.brackets`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from itertools import combinations
@@ -54,7 +55,7 @@ class CarriedMotion(Motion):
             rates=() if motion.spec.constraints else tuple(motion.written_rates.values()),
             poisson_tensor=_carry_tensor(motion, bracket),
             solves=(),
-            forces=_carry_added(motion, bracket),
+            forces=_carry_added(motion, bracket, bracket.added),
         )
         super().__init__(replace(motion.equations, exact=exact, distribution=None))
         self._source, self._bracket = motion, bracket
@@ -62,6 +63,12 @@ class CarriedMotion(Motion):
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of the state."""
         return self._source.rate(function)
+
+    @property
+    def others(self) -> Sequence[Element]:
+        """What is added to the rates besides a symmetric bracket."""
+        own = _carry_added(self._source, self._bracket, self._bracket.forces)
+        return own or (self.field.zero,) * len(self.setting.state)
 
     @cached_property
     def where(self) -> Ideal:
@@ -85,9 +92,10 @@ class CarriedMotion(Motion):
 
 
 @once
-def carry_over(motion: Motion) -> Motion:
-    """The motion with its bracket in the state; a motion in momenta has that already."""
-    return CarriedMotion(motion) if isinstance(motion, ConstrainedRates) else motion
+def carry_over(motion: Motion) -> CarriedMotion:
+    """A motion along a frame with its bracket in the state."""
+    assert isinstance(motion, ConstrainedRates), "a motion in momenta has that already"
+    return CarriedMotion(motion)
 
 
 def _carry_tensor(motion: ConstrainedRates, bracket: ReducedBracket) -> Tensor:
@@ -106,12 +114,20 @@ def _carry_tensor(motion: ConstrainedRates, bracket: ReducedBracket) -> Tensor:
     return tuple(tuple(whole.get((a, b), field.zero) for b in state) for a in state)
 
 
-def _carry_added(motion: ConstrainedRates, bracket: ReducedBracket) -> tuple[Element, ...]:
-    """What is added to the brackets with H; nothing of velocities that constraints give."""
+def _carry_added(
+    motion: ConstrainedRates, bracket: ReducedBracket, added: Sequence[Element]
+) -> tuple[Element, ...]:
+    """What is added to the brackets with H; zeros for velocities that constraints give.
+
+    Args:
+        motion: The motion.
+        bracket: In momenta and positions.
+        added: What is added to the rates of these.
+    """
     field, setting = motion.field, motion.setting
     own = [
-        motion.in_state(added) - explicit(setting, bracket.momenta.get(name, field.zero))
-        for name, added in zip(bracket.names, bracket.added, strict=True)
+        motion.in_state(value) - explicit(setting, bracket.momenta.get(name, field.zero))
+        for name, value in zip(bracket.names, added, strict=True)
     ]
     if all(map(field.is_zero, own)):
         return ()

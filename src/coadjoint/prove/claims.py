@@ -110,6 +110,17 @@ def names_bracket(motion: Motion) -> bool:
     return has_frame(motion) and bool(spec.casimirs or spec.brackets or symmetric)
 
 
+def relaxes_along_frame(motion: Motion) -> bool:
+    """Whether a symmetric bracket acts where velocities along a frame are the state."""
+    return has_frame(motion) and motion.spec.relaxation is not None
+
+
+def _about_relaxation_along(motion: Motion) -> Iterator[Examined]:
+    """The same conditions by the bracket that is carried over to velocities."""
+    whole = carry_over(motion)
+    yield from about_relaxation(whole.equations, whole.others)
+
+
 def has_constraints(motion: Motion) -> bool:
     """Whether constraints bind the motion."""
     return bool(motion.spec.constraints)
@@ -139,6 +150,7 @@ EXAMINATIONS = (
     Examination(about=lambda motion: about_projection(motion.equations), applies=has_frame),
     Examination(about=about_rolling, applies=has_frame),
     Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
+    Examination(about=_about_relaxation_along, applies=relaxes_along_frame),
     Examination(about=about_casimirs, applies=has_bracket),
     Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
     Examination(about=about_integrals),
