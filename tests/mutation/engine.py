@@ -93,12 +93,12 @@ MUTANTS = (
     ),
     *of(
         "prove/almost_poisson",
-        "added: flip explicit",
+        "forces: flip explicit",
         tests=("tests/prove/test_driven.py",),
     ),
     *of(
         "prove/almost_poisson",
-        "added: flip x in moved",
+        "forces: flip x in moved",
         "gradient_defects: flip drift",
         tests=("tests/prove/test_almost_poisson.py",),
     ),
@@ -107,6 +107,17 @@ MUTANTS = (
         "_carry_added: flip explicit",
         "_carry_tensor: flip value",
         tests=("tests/prove/test_kept_brackets.py",),
+    ),
+    *of(
+        "derive/mechanics/relaxed",
+        "_without_positions: flip dot",
+        "_pull: flip x",
+        tests=("tests/prove/test_relaxed_velocities.py",),
+    ),
+    *of(
+        "prove/bound_symmetries",
+        "Action._make_field: flip tau",
+        tests=("tests/prove/test_motion_symmetries.py",),
     ),
     *of(
         "prove/reached",

@@ -19,7 +19,7 @@ from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
-from coadjoint.prove.bound_symmetries import about_constrained_symmetries
+from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from coadjoint.prove.brackets import (
     about_algebra,
     about_bracket,
@@ -121,9 +121,9 @@ def _about_relaxation_along(motion: Motion) -> Iterator[Examined]:
     yield from about_relaxation(whole.equations, whole.others)
 
 
-def has_constraints(motion: Motion) -> bool:
-    """Whether constraints bind the motion."""
-    return bool(motion.spec.constraints)
+def lacks_bracket(motion: Motion) -> bool:
+    """Whether symmetries are claimed of the motion alone: no Poisson bracket is there."""
+    return bool(motion.spec.constraints) or not (has_frame(motion) or has_bracket(motion))
 
 
 def has_energy(motion: Motion) -> bool:
@@ -159,7 +159,7 @@ EXAMINATIONS = (
     Examination(about=about_reduced_bracket, applies=has_frame),
     Examination(about=about_symmetries, applies=has_bracket),
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
-    Examination(about=about_constrained_symmetries, applies=has_constraints),
+    Examination(about=about_motion_symmetries, applies=lacks_bracket),
     Examination(about=about_transformations),
     Examination(about=about_spatial),
     Examination(about=about_pairs, of_routes=True),

@@ -241,7 +241,8 @@ def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Ele
     images = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
         images |= {name: -field[name] for name in list_time_reversed(setting)}
-    return images | moved_components(setting, transformation.map)
+    moved = moved_components(setting, transformation.map)
+    return images | {name: motion.close(image) for name, image in moved.items()}
 
 
 def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:
