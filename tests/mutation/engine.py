@@ -115,8 +115,8 @@ MUTANTS = (
         tests=("tests/prove/test_relaxed_velocities.py",),
     ),
     *of(
-        "prove/bound_symmetries",
-        "Action._make_field: flip tau",
+        "bound_symmetries",
+        "_make_field: flip tau",
         tests=("tests/prove/test_motion_symmetries.py",),
     ),
     *of(
@@ -330,7 +330,7 @@ MUTANTS = (
         "bound_symmetries",
         "lift: flip explicit",
         "motion_defects: flip explicit",
-        "constraint_defects: rewrite each.residual -> each.residual - each.residual",
+        "ConstrainedAction.constraint_defects: rewrite each.residual -> each.residual - each.residual",
         "_changes: flip in_state",
         tests=("tests/prove/test_bound_symmetries.py",),
     ),
