@@ -25,6 +25,19 @@ SUM = "v1 + v2 + v3 + v4 + v5 + v6 + v7 + v8 + v9 + v10 + v11 + v12 + v13"
 CHAIN = "v1*v2 + v2*v3 + v3*v4"
 PLANES = [('"so(3)"', '"so(4)"'), ('"lie-poisson"]', '"lie-poisson", "manakov"]')]
 ADVECTED = ("[hamiltonian]", 'S = { role = "advected", representation = "ROLE" }\n[hamiltonian]')
+#: Four velocities that the kinetic energy couples, along a frame.
+COUPLED = f"""
+title = "A chain"
+routes = ["nonholonomic", "hamel"]
+[variables]
+q = {{ role = "coordinate", shape = [4] }}
+v = {{ role = "velocity", of = "q" }}
+[parameters]
+k = {{ positive = true, default = 1 }}
+[lagrangian]
+l = "2*dot(v, v) + {CHAIN}"
+[claims]
+"""
 TURN = '\n[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\n'
 BY_BRACKETS = (
     'basis = ["A", "B", "C"]\nbrackets = { "[A, B]" = "C", "[B, C]" = "A", "[C, A]" = "B" }'
@@ -227,6 +240,12 @@ ADVICE = [
         change("[newton]", f'{TURN}generators = {{ x = "s*x" }}\nmap = "s"\ntime = "s"\n[newton]'),
         "Leave time out.",
         change('\ntime = "s"', ""),
+    ),
+    (
+        COUPLED,
+        change("[claims]", '[double_bracket]\nG = "k"\n[claims]'),
+        "Write dissipation of velocities in [dissipation].",
+        change('[double_bracket]\nG = "k"', '[dissipation]\nR = "k*dot(v, v)/2"'),
     ),
 ]
 

@@ -118,8 +118,37 @@ MUTANTS = (
     ),
     *of(
         "prove/almost_poisson",
-        "motion_defects: flip explicit",
+        "forces: flip explicit",
         tests=("tests/prove/test_driven.py",),
+    ),
+    *of(
+        "prove/almost_poisson",
+        "forces: flip x in moved",
+        "gradient_defects: flip drift",
+        tests=("tests/prove/test_almost_poisson.py",),
+    ),
+    *of(
+        "prove/carried",
+        "_carry_added: flip explicit",
+        "_carry_tensor: flip value",
+        tests=("tests/prove/test_kept_brackets.py",),
+    ),
+    *of(
+        "derive/mechanics/relaxed",
+        "_without_positions: flip dot",
+        "_pull: flip x",
+        tests=("tests/prove/test_relaxed_velocities.py",),
+    ),
+    *of(
+        "bound_symmetries",
+        "_make_field: flip tau",
+        tests=("tests/prove/test_motion_symmetries.py",),
+    ),
+    *of(
+        "prove/reached",
+        "_commute: flip along_Y",
+        "list_reached: leave newest",
+        tests=("tests/prove/test_kept_brackets.py",),
     ),
     *of(
         "numpy/kernel.py.j2",
@@ -326,7 +355,7 @@ MUTANTS = (
         "bound_symmetries",
         "lift: flip explicit",
         "motion_defects: flip explicit",
-        "constraint_defects: rewrite each.residual -> each.residual - each.residual",
+        "ConstrainedAction.constraint_defects: rewrite each.residual -> each.residual - each.residual",
         "_changes: flip in_state",
         tests=("tests/prove/test_bound_symmetries.py",),
     ),

@@ -58,9 +58,7 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     """
     setting, structure = equations.setting, structure_of(equations)
     values = tuple(map(equations.close, _values(setting, symmetry, equations.exact.energy)))
-    motion = VectorField(
-        setting.field, setting.state, tuple(map(equations.close, equations.exact.rates))
-    )
+    motion = _flow_of_energy(equations)
     generators = []
     for element, value in _maps_at_rest(setting)[symmetry.name]:
         resting = equations.close(value)
@@ -81,9 +79,25 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     )
 
 
+def _flow_of_energy(equations: Equations) -> VectorField:
+    """The motion without what forces add."""
+    setting, exact = equations.setting, equations.exact
+    forces = exact.forces or (setting.field.zero,) * len(exact.rates)
+    free = (x - force for x, force in zip(exact.rates, forces, strict=True))
+    return VectorField(setting.field, setting.state, tuple(map(equations.close, free)))
+
+
 def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:
     """The components that each basis vector of the algebra moves, as declared."""
     return [_moves(setting, symmetry, element) for element in _elements(setting, symmetry)]
+
+
+def shifts_of(setting: Setting, symmetry: Symmetry) -> list[Element]:
+    """The shift of time along each basis vector: zero unless it is declared."""
+    if symmetry.time is None:
+        return [setting.field.zero] * symmetry.algebra.dimension
+    elements = _elements(setting, symmetry)
+    return [_evaluate_at(setting, symmetry.time, symmetry, each) for each in elements]
 
 
 def structure_of(equations: Equations) -> PoissonStructure:

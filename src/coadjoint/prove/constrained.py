@@ -34,6 +34,7 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.relaxation import lost
 from coadjoint.prove.zero import Decision, Examined
 
 #: No combination of the equations of motion.
@@ -258,7 +259,8 @@ class ConstrainedRates(Motion):
     def energy_balance(self) -> Element:
         """``dE/dt`` minus the power of declared forces and of constraints that move."""
         balance = Balance(self.equations)
-        return self.value(self._differentiate(self.close(balance.energy)) - balance.power)
+        power = balance.power + lost(self.equations, balance.energy)
+        return self.value(self._differentiate(self.close(balance.energy)) - power)
 
 
 @once

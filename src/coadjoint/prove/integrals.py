@@ -92,7 +92,7 @@ def is_conserved(equations: Equations, each: Emitted) -> bool:
         return keeps_energy(equations)
     if each.kept is Kept.UNLESS_WORKED_ON:
         motion = motion_of(equations)
-        return all(motion.field.is_zero(motion.rate(value)) for value in each.values)
+        return all(motion.where.contains(motion.rate(value)) for value in each.values)
     return each.kept is Kept.ALWAYS
 
 

@@ -47,7 +47,8 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     for place, claim in enumerate(spec.brackets):
         text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
         statement = f"{text} = {claim.value.in_one_line}"
-        claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
+        defects = partial(_claimed_bracket, first, claim, known)
+        claimed = [(statement, "bracket", partial(_decide_on, motion, defects))]
         yield from mark_accepted(spec, ("claims", "brackets", place), claimed, field)
 
 
@@ -240,7 +241,8 @@ def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Ele
     images = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
         images |= {name: -field[name] for name in list_time_reversed(setting)}
-    return images | moved_components(setting, transformation.map)
+    moved = moved_components(setting, transformation.map)
+    return images | {name: motion.close(image) for name, image in moved.items()}
 
 
 def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:

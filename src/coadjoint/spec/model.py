@@ -269,7 +269,16 @@ class Spec:
             for variable in self.variables
         )
         records = {key: each for key, each in self.records.items() if key != "charts"}
-        whole = replace(self, observables=(), conserved=(), reduction=None, records=records)
+        whole = replace(
+            self,
+            observables=(),
+            conserved=(),
+            reduction=None,
+            records=records,
+            symmetries=(),
+            transformations=(),
+            reconstruction=(),
+        )
         return replace(
             self,
             algebra=None,
