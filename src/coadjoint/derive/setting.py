@@ -401,7 +401,7 @@ def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:
         return weigh(parts, quantity.elements)
-    form = quantity.form if isinstance(quantity, Variable | Parameter) else ""
+    form = "" if isinstance(quantity, Time) else quantity.form
     return unpack(parts, form) if form in FORMS else shape(parts, quantity.shape)
 
 
