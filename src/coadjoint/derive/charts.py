@@ -17,11 +17,11 @@ from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value
-from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
+from coadjoint.derive.mechanics.configuration import inverse_in_blocks
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.solver import Definition
 from coadjoint.derive.records import Chart, Exact, Relation, write_rates, write_step
-from coadjoint.derive.setting import Setting, shape
+from coadjoint.derive.setting import Setting, fault, shape
 from coadjoint.derive.symmetries import moved_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element

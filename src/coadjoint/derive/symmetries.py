@@ -16,7 +16,7 @@ from types import MappingProxyType
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.mechanics.configuration import kept_entries, mechanics
-from coadjoint.derive.setting import Setting, once, shape
+from coadjoint.derive.setting import Setting, fault, once, shape
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
@@ -291,10 +291,8 @@ def _fault(
     symmetry: Symmetry | None = None,
 ) -> DerivationError:
     """An error at a formula, or at a symmetry without one."""
-    path = str(setting.spec.path)
-    line = f":{formula.line}" if formula is not None else ""
-    key = formula.key if formula is not None else f"symmetries.{symmetry.name if symmetry else ''}"
-    text = formula.text if formula is not None else ""
-    return DerivationError(
-        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=text
-    )
+    message = f"{problem}. {hint}".rstrip()
+    if formula is not None:
+        return fault(setting, formula, message, formula.text)
+    path, key = str(setting.spec.path), f"symmetries.{symmetry.name if symmetry else ''}"
+    return DerivationError(f"{path}: {key}: {message}", path=path, key=key, found="")

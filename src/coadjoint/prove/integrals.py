@@ -23,8 +23,8 @@ from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
-from coadjoint.spec.model import Integral
-from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
+from coadjoint.spec.model import DerivedMomentum, Integral
+from coadjoint.spec.spatial import spatial_momenta
 
 
 def about_energy(motion: Motion) -> Iterator[Examined]:
@@ -103,7 +103,7 @@ def about_spatial(motion: Motion) -> Iterator[Examined]:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, motion, seen)
 
 
-def _seen_from_space(motion: Motion, seen: SpatialMomentum) -> Decision:
+def _seen_from_space(motion: Motion, seen: DerivedMomentum) -> Decision:
     """The rates of a momentum as seen from space, at matrices of the group's form."""
     emitted, fixed = dict(motion.equations.exact.observables), fixed_row(motion.setting)
     text = ", ".join(relation.text for relation in fixed)

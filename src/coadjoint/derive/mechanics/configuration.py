@@ -17,7 +17,7 @@ from functools import cached_property
 
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
-from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import apply, determinant, dot, inverse
@@ -218,17 +218,6 @@ def conjugates(
     rest = dict.fromkeys(names, field.zero)
     known = [y - field.substitute(slope, rest) for y, slope in zip(values, slopes, strict=True)]
     return apply(inverse_in_blocks(field, hessian, refuse), known)
-
-
-def fault(setting: Setting, formula: Formula, message: str, found: str) -> DerivationError:
-    """An error that points at a formula."""
-    return DerivationError(
-        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
-        path=str(setting.spec.path),
-        line=formula.line,
-        key=formula.key,
-        found=found,
-    )
 
 
 def kept_entries(

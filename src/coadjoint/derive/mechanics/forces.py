@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
-from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.mechanics.configuration import inverse_in_blocks
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.derive.symmetries import moved_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element

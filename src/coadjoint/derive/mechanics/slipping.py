@@ -13,8 +13,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 
 from coadjoint.derive import setting as settings
-from coadjoint.derive.mechanics.configuration import fault
-from coadjoint.derive.setting import Setting, list_components, once
+from coadjoint.derive.setting import Setting, fault, list_components, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.signs import sign

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, product
 from math import isqrt
-from typing import Any
+from typing import Any, Protocol
 
 Shape = tuple[int, ...]
 
@@ -91,6 +91,22 @@ def unpack(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
         elif form == "symmetric":
             entries[j, i] = value
     return tuple(tuple(entries.get((i, j), zero) for j in range(size)) for i in range(size))
+
+
+class Named(Protocol):
+    """What has a name, a shape and names for its components."""
+
+    @property
+    def name(self) -> str:
+        """As it is called in formulas."""
+
+    @property
+    def shape(self) -> Shape:
+        """``()``, ``(n,)`` or ``(n, m)``."""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, in order."""
 
 
 class Components:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.components import Named, Shape
 from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
@@ -22,20 +22,12 @@ from coadjoint.spec.core.source import Source, write_key
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
-class HasComponents(Protocol):
-    """What has components: a variable, a parameter, an input or the time."""
-
-    @property
-    def name(self) -> str:
-        """As declared."""
+class HasComponents(Named, Protocol):
+    """What is declared and has components: a variable, a parameter, an input or the time."""
 
     @property
     def role(self) -> str:
         """One of `ROLES`."""
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, in order."""
 
     @property
     def value_shape(self) -> Shape:
