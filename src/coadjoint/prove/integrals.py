@@ -16,7 +16,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.reconstruction import fixed_row
 from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element
-from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
@@ -82,7 +82,7 @@ def _conserved_on(
         with suppress(UndecidedError):  # of a branch without points
             left = decide_zero(kept, where.field, where, parts)
             if left.verdict is Verdict.REFUTED:
-                return replace(left, leaves=True)
+                return replace(left, shown=Shown.RATE_OF_RELATION)
     return decision
 
 
