@@ -251,7 +251,7 @@ def test_a_force_along_a_matrix_is_a_matrix_or_a_vector_along_its_components():
         with_force(MATRIX, "hat(vector(1, 2, 3))")
     said = str(caught.value)
     assert "the value is a 3 by 3 matrix; expected a 3-vector, along the components" in said
-    assert "V11, V12, V22 of the matrix 'V', or the symmetric matrix itself" in said
+    assert "V11, V12, V22 of the matrix 'V', or a 2 by 2 matrix that is symmetric" in said
     advice = said.partition("Write ")[2].partition(" for ")[0]
     assert advice == "vector(V11, 0, 0)"
     with pytest.raises(DerivationError, match="the value is not symmetric"):

@@ -177,9 +177,11 @@ def _check_roles(tree: Node, scope: Scope) -> None:
     """Refuse a declared name that this kind of formula may not use, saying why."""
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
-            problem = f"{node.name!r} is {ROLES[scope.outside[node.name]]}"
+            role = scope.outside[node.name]
+            problem = f"{node.name!r} is {ROLES[role]}"
             expected = f"{scope.kind} in terms of {scope.takes}"
-            hint = did_you_mean(node.name, scope.shapes)
+            constant = "Put a parameter in its place." if role in DRIVING else ""
+            hint = did_you_mean(node.name, scope.shapes, constant)
             raise fault_at(node, problem, node.name, expected, hint)
 
 

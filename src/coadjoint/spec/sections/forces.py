@@ -90,8 +90,8 @@ def read_along(
     if formula.shape not in (along.shape, *([along.value_shape] if as_matrix else [])):
         names = list_names(along.components)
         expected = f"{words(along.shape)}, along the components {names} of the matrix {name!r}"
-        kind = "" if along.form == "matrix" else f"{along.form} "
-        expected += f", or the {kind}matrix itself" * as_matrix
+        expected += f", or {words(along.value_shape)}" * as_matrix
+        expected += f" that is {along.form}" * (as_matrix and along.form != "matrix")
         zeros = ", ".join(["0"] * (len(along.components) - 1))
         hint = f"Write vector({along.components[0]}, {zeros}) for one along {along.components[0]}."
         raise misfit(reading.source, key, formula, expected, hint if zeros else "")
