@@ -31,7 +31,7 @@ SIGNS = (
     *of("algebra/invariants", "structure: flip c"),
     *of(
         "poisson/brackets",
-        "_from_constants: rewrite mu[k] if _1 else opposite[k] if _2 else _3"
+        "lie_poisson: rewrite mu[k] if _1 else opposite[k] if _2 else _3"
         " -> opposite[k] if _1 else mu[k] if _2 else _3",
     ),
 )
