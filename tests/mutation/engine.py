@@ -124,7 +124,6 @@ MUTANTS = (
         "jacobi_violation: rewrite -inner * outer -> inner * outer",
         "ad_star: rewrite xi[i] * mu[k] -> xi[j] * mu[k]",
         "bracket: flip multiply_constant",
-        "ad: flip multiply_constant",
     ),
     *of(
         "representation",
