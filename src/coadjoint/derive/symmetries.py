@@ -150,10 +150,10 @@ def _moves(setting: Setting, symmetry: Symmetry, element: Value) -> Moves:
             name: setting.field.sum(a * x for a, x in zip(row, symbols, strict=True) if a)
             for name, row in zip(names, element, strict=True)
         }
-    return moved_components(setting, symmetry.generators, _name_element(symmetry, element))
+    return evaluate_components(setting, symmetry.generators, _name_element(symmetry, element))
 
 
-def moved_components(
+def evaluate_components(
     setting: Setting, formulas: Mapping[str, Formula], known: Mapping[str, Value] = _NOTHING
 ) -> dict[str, Element]:
     """Values of formulas for variables of the state, by the components of these.

@@ -230,7 +230,7 @@ def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
 
 
 def about_reduced_jacobi(motion: ConstrainedRates) -> Iterator[Examined]:
-    """Whether the bracket in momenta satisfies the Jacobi identity, which nobody claims."""
+    """Whether the bracket in momenta satisfies the Jacobi identity, which is not claimed."""
     if not motion.distribution.is_linear:
         return
     bracket = ReducedBracket(motion.equations)

@@ -1,7 +1,7 @@
 """The Certificate: claims with their verdicts, and findings with their scope.
 
 A claim is asserted by the spec or by the engine, and is proved, refuted or numerically supported. A
-finding is what a search, a rank or a count gave: nobody asserted it, so that it decides nothing.
+finding is what a search, a rank or a count gave: it was not claimed, so that it decides nothing.
 Comes in: what the proofs found. Goes out: a frozen record, as a table for people and as JSON for
 programs; times are shown and never stored, since generated files are the same bytes everywhere.
 """

@@ -75,7 +75,7 @@ class Decision:
 
 @dataclass(frozen=True)
 class Discovery:
-    """How something was found that nobody claims: a rank, the end of a search, a count.
+    """How something was found that is not claimed: a rank, the end of a search, a count.
 
     Attributes:
         method: How it was found.
