@@ -17,7 +17,7 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.mechanics.driving import explicit, list_time_reversed
-from coadjoint.derive.symmetries import momentum_map, evaluate_components, positions, structure_of
+from coadjoint.derive.symmetries import evaluate_components, momentum_map, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import MomentumMap
