@@ -31,7 +31,7 @@ SIGNS = (
     *of("algebra/invariants", "structure: flip c"),
     *of(
         "poisson/brackets",
-        "_from_constants: rewrite mu[k] if _1 else opposite[k] if _2 else _3"
+        "lie_poisson: rewrite mu[k] if _1 else opposite[k] if _2 else _3"
         " -> opposite[k] if _1 else mu[k] if _2 else _3",
     ),
 )
@@ -178,7 +178,6 @@ MUTANTS = (
         "jacobi_violation: rewrite -inner * outer -> inner * outer",
         "ad_star: rewrite xi[i] * mu[k] -> xi[j] * mu[k]",
         "bracket: flip multiply_constant",
-        "ad: flip multiply_constant",
     ),
     *of(
         "representation",
@@ -355,7 +354,8 @@ MUTANTS = (
         "bound_symmetries",
         "lift: flip explicit",
         "motion_defects: flip explicit",
-        "ConstrainedAction.constraint_defects: rewrite each.residual -> each.residual - each.residual",
+        "ConstrainedAction.constraint_defects: "
+        "rewrite each.residual -> each.residual - each.residual",
         "_changes: flip in_state",
         tests=("tests/prove/test_bound_symmetries.py",),
     ),

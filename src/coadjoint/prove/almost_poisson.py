@@ -263,7 +263,7 @@ def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
 
 
 def about_reduced_jacobi(motion: ConstrainedRates) -> Iterator[Examined]:
-    """Whether the bracket in momenta satisfies the Jacobi identity, which nobody claims."""
+    """Whether the bracket in momenta satisfies the Jacobi identity, which is not claimed."""
     bracket = ReducedBracket(motion.equations)
     defect = bracket.defect_somewhere()
     if defect is None:

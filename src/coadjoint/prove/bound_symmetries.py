@@ -184,7 +184,7 @@ def _about_action(motion: Motion, action: Action) -> Iterator[Examined]:
         f"{moved} keeps the constraints": action.constraint_defects,
         f"{moved} takes motions to motions{motion.at_all_times}": action.motion_defects,
     }
-    if not (action.sections or motion.kept):  # whatever the state is, these hold
+    if not (action.sections or motion.kept):  # these hold for every state
         del claims[f"{moved} keeps the constraints"]
     for statement, defects in claims.items():
         yield statement, "symmetry", partial(_decide, motion, defects)

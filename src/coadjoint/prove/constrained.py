@@ -265,7 +265,7 @@ class ConstrainedRates(Motion):
 
 @once
 def motion_of(equations: Equations) -> Motion:
-    """The motion of Equations, whatever binds it."""
+    """The motion of Equations, with constraints or without."""
     return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)
 
 
@@ -380,7 +380,7 @@ def same_accelerations(first: Equations, other: Equations) -> list[Element]:
 def same_solves(first: Equations, other: Equations) -> list[Element]:
     """Differences of the linear equations of two routes, of the rates and of the reactions.
 
-    The equations are compared entry by entry, whatever blocks each route has found in them.
+    The equations are compared entry by entry, for any blocks that each route has found in them.
     Reactions, and rates of velocities that constraints give, rest on their solution; they are
     compared where both routes have them.
     """

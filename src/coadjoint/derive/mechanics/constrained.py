@@ -23,7 +23,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
-from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
+from coadjoint.derive.mechanics.configuration import coupled_blocks, mechanics
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.frames import Frame
@@ -37,7 +37,7 @@ from coadjoint.derive.mechanics.kinematics import (
 from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.records import Exact, Step, write_entries, write_step
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank

@@ -24,7 +24,7 @@ from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.mechanics.configuration import Matrix, mechanics
+from coadjoint.derive.mechanics.configuration import Matrix, kept_entries, mechanics
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.parts import in_parts, slopes
 from coadjoint.derive.records import rate, write_step
@@ -32,6 +32,8 @@ from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
 from coadjoint.spec import Spec
+from coadjoint.spec.model import Variable
+from coadjoint.spec.sections.poisson import pairing_weights
 
 #: What may be added, as LaTeX.
 LATEX = {
@@ -61,16 +63,35 @@ def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Elemen
 
 def _declared_forces(setting: Setting, *roles: str) -> dict[str, Element]:
     """The declared forces along variables of some roles, by component."""
+    spec = setting.spec
     return {
         name: part
-        for variable in setting.spec.variables
-        if variable.name in setting.spec.forces and variable.role in roles
+        for variable in spec.variables
+        if variable.name in spec.forces and variable.role in roles
         for name, part in zip(
             variable.components,
-            in_parts(setting, setting.spec.forces[variable.name]),
+            force_components(setting, variable, in_parts(setting, spec.forces[variable.name])),
             strict=True,
         )
     }
+
+
+def force_components(
+    setting: Setting, variable: Variable, parts: tuple[Element, ...]
+) -> tuple[Element, ...]:
+    """What acts along each component of a variable, from the entries of its declared force.
+
+    A force that is a matrix is added to the rate of the momentum, which is paired with the velocity
+    as ``{q, p}`` says: by ``tr(P dS/dt)`` where they are symmetric.
+    """
+    formula = setting.spec.forces[variable.name]
+    if formula.shape != variable.value_shape or not variable.form:
+        return parts
+    kept = kept_entries(setting, parts, variable.form, formula)
+    if variable.role != "velocity" or not variable.of:
+        return kept
+    weights = pairing_weights(len(kept), variable.form)
+    return tuple(part / weight for part, weight in zip(kept, weights, strict=True))
 
 
 def add_forces(free: Equations) -> Equations:

@@ -24,14 +24,13 @@ from coadjoint.derive.mechanics.almost_poisson import Tensor, almost_poisson
 from coadjoint.derive.mechanics.configuration import (
     Matrix,
     Mechanics,
-    fault,
     inverse_in_blocks,
     mechanics,
 )
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.external import metric, symbols
 from coadjoint.derive.mechanics.solver import Definition
-from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, dot, transpose

@@ -22,18 +22,13 @@ from fractions import Fraction
 
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.configuration import (
-    conjugates,
-    fault,
-    in_state_order,
-    mechanics,
-)
+from coadjoint.derive.mechanics.configuration import conjugates, in_state_order, mechanics
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.external import external_forces, metric
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, fault
 from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, transpose
