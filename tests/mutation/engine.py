@@ -204,7 +204,7 @@ MUTANTS = (
         "_square_of: flip partner",
     ),
     *of(
-        "dense",
+        "exact/dense",
         "_expand: omit 1 j",
         "inverse: omit 1 i j",
         "subtract: use add for sub",
