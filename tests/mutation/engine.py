@@ -122,7 +122,6 @@ MUTANTS = (
     *of(
         "prove/reached",
         "_commute: flip along_Y",
-        "list_reached: leave newest",
         tests=("tests/prove/test_kept_brackets.py",),
     ),
     *of(
