@@ -116,7 +116,7 @@ MUTANTS = (
     ),
     *of(
         "bound_symmetries",
-        "_make_field: flip tau",
+        "_shift: flip tau",
         tests=("tests/prove/test_motion_symmetries.py",),
     ),
     *of(
@@ -329,7 +329,12 @@ MUTANTS = (
         "bound_symmetries",
         "lift: flip explicit",
         "motion_defects: flip explicit",
-        "ConstrainedAction.constraint_defects: rewrite each.residual -> each.residual - each.residual",
+        "ConstrainedAction.law: flip energy",
+        "_rate: flip explicit",
+        "ConstrainedAction.constraint_defects: flip X",
+        "ConstrainedAction.constraint_defects: flip late",
+        "lift: flip v",
+        "ConstrainedAction.law: flip power",
         "_changes: flip in_state",
         tests=("tests/prove/test_bound_symmetries.py",),
     ),
