@@ -141,13 +141,12 @@ MUTANTS = (
     ),
     *of(
         "bound_symmetries",
-        "_make_field: flip tau",
+        "_shift: flip tau",
         tests=("tests/prove/test_motion_symmetries.py",),
     ),
     *of(
         "prove/reached",
         "_commute: flip along_Y",
-        "list_reached: leave newest",
         tests=("tests/prove/test_kept_brackets.py",),
     ),
     *of(
@@ -354,8 +353,12 @@ MUTANTS = (
         "bound_symmetries",
         "lift: flip explicit",
         "motion_defects: flip explicit",
-        "ConstrainedAction.constraint_defects: "
-        "rewrite each.residual -> each.residual - each.residual",
+        "ConstrainedAction.law: flip energy",
+        "_rate: flip explicit",
+        "ConstrainedAction.constraint_defects: flip X",
+        "ConstrainedAction.constraint_defects: flip late",
+        "lift: flip v",
+        "ConstrainedAction.law: flip power",
         "_changes: flip in_state",
         tests=("tests/prove/test_bound_symmetries.py",),
     ),

@@ -113,6 +113,16 @@ def test_a_symmetry_may_move_time():
     assert "J is conserved" in found
     found = verdicts(SECTION, *shift, ('time = "s"', 'time = "s*q1"'))
     assert found[MOVES] is Verdict.REFUTED
+    free = [
+        ("(q1^2 + q2^2)/2 + ", ""),
+        ("[hamiltonian]", '[time]\nname = "t"\n[hamiltonian]'),
+        ('map = "s*(q1^2 + p2^2)/2"', 'map = "0*s"\ntime = "s*t"'),
+        ('q1 = "s*p2", p1 = "-s*q1"', 'q1 = "s*q1"'),
+    ]
+    found = verdicts(SECTION, *free)  # q/t is p, which keeps its value
+    assert found[f"{MOVES}, at all times"] is Verdict.PROVED
+    found = verdicts(SECTION, *free, ('time = "s*t"', 'time = "-s*t"'))
+    assert found[f"{MOVES}, at all times"] is Verdict.REFUTED
     with pytest.raises(CoadjointError, match="Leave time out"):
         verdicts(NEWTON, ('"cross(s, x)" }', '"cross(s, x)" }\ntime = "s[1]"'))
 

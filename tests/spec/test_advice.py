@@ -189,14 +189,6 @@ ADVICE = [
         "Write what acts along a momentum in [forces].",
         write('[dissipation]\nR = "dot(Pi, Pi)"', '[forces]\nPi = "-Pi"'),
     ),
-    (
-        PARTICLE,
-        before_claims(
-            '[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\ngenerators = { x = "s" }\ntime = "s"'
-        ),
-        "Remove time: the balance of the energy is proved of every motion.",
-        write('\ntime = "s"', ""),
-    ),
     *(
         (
             MASSLESS,

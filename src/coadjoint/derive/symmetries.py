@@ -221,7 +221,7 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())
     formula = next(iter(symmetry.generators.values()), None)
     if setting.spec.constraints or not has_structure(setting):
-        problem = "the motion has no bracket in which something could generate it"
+        problem = "only a Poisson bracket says what generates it, and none is declared here"
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
         structure = poisson_structure(setting)

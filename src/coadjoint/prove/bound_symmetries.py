@@ -12,9 +12,11 @@ Krishnaprasad, Marsden and Murray 1996; Holm 2011, section 12.3.2):
     \dot J = \Sigma\, l + \langle p, [\xi, \Sigma] + \partial_t \Sigma \rangle
         + \langle f, \Sigma \rangle + \langle \lambda, A \Sigma \rangle.
 
+With a shift of time tau as well, X is :math:`X - \tau\Gamma`, where velocities change by
+:math:`-\dot\tau\xi` in addition, and J is :math:`\langle p, \Sigma \rangle - E \tau`.
 Of a field on the whole state the momentum is a declared function, which is conserved or not. So it
 is on motions that have no bracket: by Newton's law, by a Lax pair alone, or restricted to a
-section. A shift of time tau makes X there :math:`X - \tau \Gamma`.
+section.
 Comes in: such a motion with declared symmetries. Goes out: claims for the certificate.
 Read next: `coadjoint.prove.momenta`.
 """
@@ -32,6 +34,7 @@ from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import action_defects
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.driven import while_constant
+from coadjoint.prove.energy import Balance
 from coadjoint.prove.findings import SHOWN, finding
 from coadjoint.prove.momenta import law_along
 from coadjoint.prove.motion import Motion
@@ -57,22 +60,36 @@ class Action:
         return []
 
     @cached_property
+    def shifts(self) -> list[Element]:
+        """The shift of time, tau, along each basis vector."""
+        return list(map(self.motion.close, shifts_of(self.motion.setting, self.symmetry)))
+
+    def law(self, place: int) -> Element:
+        """The rate of the momentum along a section."""
+        raise AssertionError(f"component {place} is along no field of a frame")
+
+    @cached_property
     def generators(self) -> list[VectorField]:
         """The field on the state of each basis vector, written in the state."""
-        shifts = shifts_of(self.motion.setting, self.symmetry)
-        return [self._make_field(*pair) for pair in zip(self.moves, shifts, strict=True)]
+        return [self._make_field(*pair) for pair in zip(self.moves, self.shifts, strict=True)]
 
-    def _make_field(self, moves: Moves, shift: Element) -> VectorField:
+    def _make_field(self, moves: Moves, tau: Element) -> VectorField:
         """One of them; velocities follow where positions alone are moved."""
         setting, zero = self.motion.setting, self.field.zero
         whole = {name: self.motion.close(x) for name, x in moves.items()}
         partners = dict(zip(setting.positions, setting.velocities, strict=False))
-        tau = self.motion.close(shift)
         if partners and whole.keys() <= partners.keys():
             whole |= {v: self.motion.rate(whole.get(q, zero)) for q, v in partners.items()}
-        rates = self.motion.written_rates.items()
-        parts = (whole.get(x, zero) - tau * rate for x, rate in rates)
-        return VectorField(self.field, setting.state, tuple(parts))
+        return self._shift(whole, tau)
+
+    def _shift(self, moves: Moves, tau: Element) -> VectorField:
+        """``X - tau Gamma``."""
+        state, zero = self.motion.setting.state, self.field.zero
+        parts = [self.motion.close(moves.get(name, zero)) for name in state]
+        if tau:
+            rates = self.motion.written_rates.values()
+            parts = [x - tau * rate for x, rate in zip(parts, rates, strict=True)]
+        return VectorField(self.field, state, tuple(parts))
 
     def action_defects(self) -> list[Element]:
         """What must vanish for the generators to be those of an action."""
@@ -112,9 +129,8 @@ class ConstrainedAction(Action):
         setting, known = self.motion.setting, {*self.motion.setting.positions}
         known |= {*setting.parameters, *setting.time}
         moved = {name for each in self.moves for name in each}
-        reached = {
-            x for each in self.moves for value in each.values() for x in self.field.reach(value)
-        }
+        values = [value for each in self.moves for value in each.values()]
+        reached = {x for value in (*values, *self.shifts) for x in self.field.reach(value)}
         if not moved <= {*setting.positions} or not reached <= known:
             return []
         own = len(self.frame.velocities) - len(setting.positions)
@@ -124,37 +140,47 @@ class ConstrainedAction(Action):
             for each in self.moves
         ]
 
-    def lift(self, section: Row) -> dict[str, Element]:
-        """How positions and all velocities change along a field of the frame."""
+    def lift(self, section: Row, tau: Element) -> dict[str, Element]:
+        """How positions and all velocities change: these by ``-xi dtau/dt`` where time does."""
         setting, frame = self.motion.setting, self.frame
-        turned = frame.bracket(setting.elements(frame.velocities), section)
-        parts = zip(frame.velocities, turned, section, strict=True)
-        return frame.rates(section) | {name: x + explicit(setting, own) for name, x, own in parts}
+        xi = setting.elements(frame.velocities)
+        late = self._rate(tau)
+        parts = zip(frame.velocities, frame.bracket(xi, section), section, xi, strict=True)
+        return frame.rates(section) | {
+            name: x + explicit(setting, own) - v * late for name, x, own, v in parts
+        }
 
     @cached_property
     def generators(self) -> list[VectorField]:
         """The field on the state of each basis vector, written in the state."""
-        moves: Sequence[Moves] = [*map(self.lift, self.sections)] or self.moves
-        return [
-            VectorField(
-                self.field,
-                self.motion.setting.state,
-                tuple(
-                    self.motion.close(each.get(x, self.field.zero))
-                    for x in self.motion.setting.state
-                ),
-            )
-            for each in moves
-        ]
+        moves: Sequence[Moves] = [*map(self.lift, self.sections, self.shifts)] or self.moves
+        return [self._shift(*pair) for pair in zip(moves, self.shifts, strict=True)]
+
+    def law(self, place: int) -> Element:
+        """The momentum equation, less the rate of ``E tau``."""
+        equations, tau = self.motion.equations, self.shifts[place]
+        law, balance = law_along(equations, self.sections[place]), Balance(equations)
+        if not tau:
+            return law
+        return law - balance.energy * self._rate(tau) - tau * balance.power
+
+    def _rate(self, tau: Element) -> Element:
+        """``dtau/dt`` in the velocities."""
+        setting = self.motion.setting
+        xi = setting.elements(self.frame.velocities)
+        return self.frame.along(xi, tau) + explicit(setting, tau)
 
     def constraint_defects(self) -> list[Element]:
         """How the residuals of all constraints change along a lift; else of those kept."""
         if not self.sections:
             return super().constraint_defects()
         rates = []
-        for changes in map(self.lift, self.sections):
+        for section, tau in zip(self.sections, self.shifts, strict=True):
+            changes = self.lift(section, tau)
             X = VectorField(self.field, tuple(changes), tuple(changes.values()))
-            rates += [X.derivative(each.residual) for each in self.equations]
+            own = (explicit(self.motion.setting, each.residual) for each in self.equations)
+            parts = zip(self.equations, own, strict=True)
+            rates += [X.derivative(each.residual) + tau * late for each, late in parts]
         return list(map(self.motion.close, rates))
 
 
@@ -204,8 +230,8 @@ def _about_momenta(
     for n, (name, value) in enumerate(parts):
         held = while_constant(motion.equations, [value])
         if action.sections:
-            law = law_along(motion.equations, action.sections[n])
-            text = f"{_write_law(motion, name, law)}{held}"
+            law = action.law(n)
+            text = f"{_write_law(motion, name, law, action.shifts[n])}{held}"
             yield text, "momentum", partial(_changes, motion, value, law)
             continue
         yield finding(
@@ -216,14 +242,14 @@ def _about_momenta(
         )
 
 
-def _write_law(motion: Motion, name: str, law: Element) -> str:
+def _write_law(motion: Motion, name: str, law: Element, tau: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     if motion.where.contains(motion.in_state(law)):
         return f"{name} is conserved, by its momentum equation"
     text = element_text(motion.field, motion.field.normal(motion.equations.close(law)).combine())
     if len(text) > SHOWN:
         text = "Sigma l + <dl/dxi, [xi, Sigma]> + <lambda, A Sigma>"
-        text += " + <f, Sigma>" * motion.spec.is_forced
+        text += " + <f, Sigma>" * motion.spec.is_forced + " - d(E tau)/dt" * bool(tau)
     return f"d{name}/dt = {text}"
 
 

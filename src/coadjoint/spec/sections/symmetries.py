@@ -187,14 +187,6 @@ class _Actions:
             variable: self._read_generator(key, variable, text, shapes)
             for variable, text in (part.generators or {}).items()
         }
-        if part.time is not None and self.reading.file.constraints:
-            raise self.source.fault(
-                (*key, "time"),
-                "time moves under [constraints]",
-                found="time",
-                expected="generators of the state, since the momentum of time is minus the energy",
-                hint="Remove time: the balance of the energy is proved of every motion.",
-            )
         scalar = {
             table: self._read_scalar((*key, table), getattr(part, table), shapes)
             for table in ("time", "map")
