@@ -103,20 +103,15 @@ def _is_in_domain(setting: Setting, point: Point) -> bool:
     sides = (
         left - right
         for each in setting.spec.constraints
-        for left, right in zip(
-            setting.components(each.left), setting.components(each.right), strict=True
-        )
+        for left, right in zip(*map(setting.components, (each.left, each.right)), strict=True)
     )
-    if not all(field.is_zero(field.substitute(side, point)) for side in sides):
-        return False
-    for condition in field.region.conditions:
-        value = field.substitute(condition.element, point)
-        if field.is_zero(value):
-            if condition.strict:
-                return False
-        elif sign(field, value, strict=not condition.strict) == -1:
-            return False
-    return True
+    values = (
+        (field.substitute(each.element, point), each.strict) for each in field.region.conditions
+    )
+    return all(field.is_zero(field.substitute(side, point)) for side in sides) and all(
+        not strict if field.is_zero(value) else sign(field, value, strict=not strict) != -1
+        for value, strict in values
+    )
 
 
 def _without_value(setting: Setting, formula: Formula, divisor: Element) -> DerivationError:
