@@ -269,6 +269,27 @@ def test_a_domain_excludes_zero_slip_or_does_not(condition, excludes):
             derive(declared)
 
 
+MOMENTUM = ("[parameters]", 'p = { role = "momentum", of = "q" }\n[parameters]')
+HAMILTONIAN = ('l = "dot(v, v)/2 - dot(q, q)/2"', 'h = "dot(p, p)/2 + dot(q, q)/2"')
+ONE_ROUTE = ('"euler-lagrange", "canonical"', '"canonical"')
+
+
+@pytest.mark.parametrize(("least", "excludes"), [("0.01", True), ("-1", False)])
+@pytest.mark.parametrize(
+    "changes",
+    [[MOMENTUM], [MOMENTUM, HAMILTONIAN, ("[lagrangian]", "[hamiltonian]"), ONE_ROUTE]],
+    ids=["lagrangian", "hamiltonian"],
+)
+def test_a_domain_of_momenta_excludes_zero_slip_or_does_not(changes, least, excludes):
+    """The momenta at rest are those of the Lagrangian or the Hamiltonian: zero."""
+    declared = spec(f'{SLIDES}[domain]\nmoves = "dot(p, p) > {least}"\n', *changes)
+    if excludes:
+        assert derive(declared).exact.rates
+    else:
+        with pytest.raises(DerivationError, match="as friction at zero slip"):
+            derive(declared)
+
+
 @pytest.mark.parametrize(
     "force", ["-mu*norm(v)*v", "-mu*v/(norm(v) + slow)", "-q/norm(q)^3", "v/(mu + v1)"]
 )

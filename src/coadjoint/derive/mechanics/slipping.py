@@ -20,7 +20,7 @@ from coadjoint.exact.signs import sign
 from coadjoint.exact.text import element_text
 from coadjoint.spec import Formula
 
-#: Velocities by name.
+#: Velocities, and momenta, by name.
 Point = Mapping[str, Element]
 
 
@@ -70,7 +70,7 @@ def _may_vanish(setting: Setting, divisor: Element, names: tuple[str, ...]) -> b
     """Whether velocities in the domain are known at which a divisor is zero."""
     with suppress(ZeroDivisionError, OverflowError):  # where other divisors vanish, too
         point = _find_zero(setting, divisor, names)
-        return point is not None and _is_in_domain(setting, point)
+        return point is not None and _is_in_domain(setting, {**point, **_momenta(setting, point)})
     return False
 
 
@@ -95,6 +95,19 @@ def _find_zero(setting: Setting, divisor: Element, names: tuple[str, ...]) -> Po
     if not field.is_zero(divisor):
         return None
     return rest | {name: field.substitute(value, rest) for name, value in point.items()}
+
+
+def _momenta(setting: Setting, point: Point) -> Point:
+    """The momenta at velocities: ``dl/dv``, or 0 at rest where ``dh/dp`` is 0 there."""
+    field, spec, names = setting.field, setting.spec, setting.momenta
+    if names and spec.lagrangian is not None:
+        slopes = field.gradient(setting.lagrangian, setting.velocities)
+        weighted = zip(names, slopes, setting.weights, strict=True)
+        return {name: field.substitute(p * weight, point) for name, p, weight in weighted}
+    none = dict.fromkeys(names, field.zero)
+    slopes = field.gradient(setting.hamiltonian, names) if names else ()
+    rest = (field.substitute(slope, none) for slope in slopes)
+    return none if not any(point.values()) and all(map(field.is_zero, rest)) else {}
 
 
 def _is_in_domain(setting: Setting, point: Point) -> bool:
