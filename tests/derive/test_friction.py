@@ -226,6 +226,7 @@ slow = { default = 1 }
 l = "dot(v, v)/2 - dot(q, q)/2"
 """
 SLIDES = SLIDER + '[forces]\nv = "-mu*v/norm(v)"\n'
+LOGS = SLIDER + '[forces]\nv = "mu*log(dot(v, v))*v"\n'
 LOSES = SLIDER + '[dissipation]\nR = "mu*norm(v)"\n'
 
 
@@ -235,6 +236,7 @@ LOSES = SLIDER + '[dissipation]\nR = "mu*norm(v)"\n'
         (ROD, [DRY], DRY[1], "sqrt(slip^2 + eps^2)"),
         (ROD, [BELT], BELT[1], "sqrt((slip - eps)^2 + eps^2)"),
         (SLIDES, [], "norm(v)", "sqrt(dot(v, v) + slow^2)"),
+        (LOGS, [], "dot(v, v))*v", "dot(v, v) + slow^2)*v"),
         (LOSES, [], "norm(v)", "sqrt(dot(v, v) + slow^2)"),
     ],
 )

@@ -56,9 +56,11 @@ def _acting(setting: Setting, names: tuple[str, ...]) -> Iterator[tuple[Formula,
 
 
 def _list_divisors(setting: Setting, part: Element) -> Iterator[Element]:
-    """The factors of a denominator; of square roots, their arguments."""
+    """The factors of a denominator, of square roots their arguments; arguments of logarithms."""
     field = setting.field
     roots = {each.generator for each in field.adjoined.values() if each.function == "sqrt"}
+    called = (field.adjoined[name] for name in sorted(field.functions_in(part)))
+    yield from (each.argument for each in called if each.function == "log")
     for factor, _ in field.fraction(part.combine())[1] if part.parts else ():
         divisor = field.from_polynomial(factor)
         (name, *others) = field.names_in(divisor)
@@ -134,7 +136,7 @@ def _without_value(setting: Setting, formula: Formula, divisor: Element) -> Deri
         setting,
         formula,
         f"the force has no value where {text} is 0, as friction at zero slip; expected a force "
-        "with a value at every velocity in the domain. Add the square of a slip speed to what is "
-        f'under the root, or write [domain] with slipping = "{text} > 0.0001".',
+        f"with a value at every velocity in the domain. Add the square of a slip speed to {text}, "
+        f'or write [domain] with slipping = "{text} > 0.0001".',
         text,
     )
