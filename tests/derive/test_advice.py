@@ -282,7 +282,7 @@ ELSEWHERE = {
     "Add it to routes to have it proved too.": "above",
     "Write constraints as Y == ..., which gives velocities.": "test_nonholonomic.py",
     "Write what presses as a scalar constraint of its own": "test_friction.py",
-    "Add the square of a slip speed to what is under the root": "test_friction.py",
+    "Add the square of a slip speed to": "test_friction.py",
     "Remove ": "above, and test_friction.py",
     "Declare that input and name it": "test_driving.py",
     "Declare the functions: [poisson] nambu = [...].": "test_nambu.py",

@@ -226,6 +226,7 @@ slow = { default = 1 }
 l = "dot(v, v)/2 - dot(q, q)/2"
 """
 SLIDES = SLIDER + '[forces]\nv = "-mu*v/norm(v)"\n'
+LOGS = SLIDER + '[forces]\nv = "mu*log(dot(v, v))*v"\n'
 LOSES = SLIDER + '[dissipation]\nR = "mu*norm(v)"\n'
 
 
@@ -235,6 +236,7 @@ LOSES = SLIDER + '[dissipation]\nR = "mu*norm(v)"\n'
         (ROD, [DRY], DRY[1], "sqrt(slip^2 + eps^2)"),
         (ROD, [BELT], BELT[1], "sqrt((slip - eps)^2 + eps^2)"),
         (SLIDES, [], "norm(v)", "sqrt(dot(v, v) + slow^2)"),
+        (LOGS, [], "dot(v, v))*v", "dot(v, v) + slow^2)*v"),
         (LOSES, [], "norm(v)", "sqrt(dot(v, v) + slow^2)"),
     ],
 )
@@ -262,6 +264,27 @@ def test_friction_without_a_slip_speed_or_a_domain_is_refused(text, changes, roo
 def test_a_domain_excludes_zero_slip_or_does_not(condition, excludes):
     """On the belt zero slip is the speed eps of the foot, and rest is not."""
     declared = spec(f'{ROD}[domain]\nhere = "{condition}"\n', BELT)
+    if excludes:
+        assert derive(declared).exact.rates
+    else:
+        with pytest.raises(DerivationError, match="as friction at zero slip"):
+            derive(declared)
+
+
+MOMENTUM = ("[parameters]", 'p = { role = "momentum", of = "q" }\n[parameters]')
+HAMILTONIAN = ('l = "dot(v, v)/2 - dot(q, q)/2"', 'h = "dot(p, p)/2 + dot(q, q)/2"')
+ONE_ROUTE = ('"euler-lagrange", "canonical"', '"canonical"')
+
+
+@pytest.mark.parametrize(("least", "excludes"), [("0.01", True), ("-1", False)])
+@pytest.mark.parametrize(
+    "changes",
+    [[MOMENTUM], [MOMENTUM, HAMILTONIAN, ("[lagrangian]", "[hamiltonian]"), ONE_ROUTE]],
+    ids=["lagrangian", "hamiltonian"],
+)
+def test_a_domain_of_momenta_excludes_zero_slip_or_does_not(changes, least, excludes):
+    """The momenta at rest are those of the Lagrangian or the Hamiltonian: zero."""
+    declared = spec(f'{SLIDES}[domain]\nmoves = "dot(p, p) > {least}"\n', *changes)
     if excludes:
         assert derive(declared).exact.rates
     else:

@@ -526,6 +526,15 @@ ADVICE = [
         'Without one, declare an angle: theta = "omega".',
         write('q = { attitude = "quaternion" }', 'theta = "omega"'),
     ),
+    (
+        MOMENTA_ONLY,
+        write("[hamiltonian]", '[reconstruction]\nq = { attitude = "quaternion" }\n[hamiltonian]'),
+        'Write Omega = { role = "velocity", block = ["J1", "J2", "J3"] } in [variables].',
+        write(
+            "[reconstruction]",
+            'Omega = { role = "velocity", block = ["J1", "J2", "J3"] }\n[reconstruction]',
+        ),
+    ),
     # -- form of the file
     (
         RIGID_BODY,

@@ -256,7 +256,9 @@ class Setting:
         return self.field.vector(by_name[name] for name in self.state)
 
 
-def fault(setting: Setting, formula: Formula, message: str, found: str) -> DerivationError:
+def fault(
+    setting: Setting, formula: Formula, message: str, found: str, **parts: str
+) -> DerivationError:
     """An error that points at a formula."""
     return DerivationError(
         f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
@@ -264,6 +266,7 @@ def fault(setting: Setting, formula: Formula, message: str, found: str) -> Deriv
         line=formula.line,
         key=formula.key,
         found=found,
+        **parts,
     )
 
 

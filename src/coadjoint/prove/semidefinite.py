@@ -57,7 +57,7 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
             least = min(mpmath.eigsy(values / 2, eigvals_only=True))
             seen += 1
             if least < -ROUNDING * max(map(abs, values)):
-                method = f"an eigenvalue of {DIGITS} digits"
+                method = f"{DIGITS}-digit eigenvalues"
                 shown = show_point(points, point)
                 return Decision(
                     verdict=Verdict.REFUTED,

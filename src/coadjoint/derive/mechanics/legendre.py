@@ -157,6 +157,7 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
             f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
             f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
             f"that decouple them, or give {_way_out(setting)}.",
+            names[0],
         )
         raise LimitError(str(refused), **refused.parts)
     minors = certain_minors(setting.field, matrix)
@@ -169,6 +170,7 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
         f"the kinetic energy of {', '.join(names[: minors + 1])} alone is degenerate, and the "
         "kernel solves for velocities in the order of the algebra; expected a kinetic energy that "
         f"is positive for each. Give {_way_out(setting)} instead.",
+        names[minors],
     )
 
 
@@ -189,11 +191,11 @@ def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationE
         problem = "the Legendre transform may be invertible nowhere: no point was found at which "
         problem += f"{what} is certainly not 0"
         remedy = "expected a kinetic energy that is positive. Write it in simpler functions."
-    return _refusal(setting, f"{problem}; {remedy}")
+    return _refusal(setting, f"{problem}; {remedy}", names[0])
 
 
-def _refusal(setting: Setting, message: str) -> DerivationError:
+def _refusal(setting: Setting, message: str, velocity: str) -> DerivationError:
     """An error that points at the Lagrangian."""
     formula = setting.spec.lagrangian
     assert formula is not None
-    return fault(setting, formula, message, formula.text)
+    return fault(setting, formula, message, formula.text, velocity=velocity)

@@ -20,7 +20,7 @@ from coadjoint.exact.signs import sign
 from coadjoint.exact.text import element_text
 from coadjoint.spec import Formula
 
-#: Velocities by name.
+#: Velocities, and momenta, by name.
 Point = Mapping[str, Element]
 
 
@@ -56,9 +56,11 @@ def _acting(setting: Setting, names: tuple[str, ...]) -> Iterator[tuple[Formula,
 
 
 def _list_divisors(setting: Setting, part: Element) -> Iterator[Element]:
-    """The factors of a denominator; of square roots, their arguments."""
+    """The factors of a denominator, of square roots their arguments; arguments of logarithms."""
     field = setting.field
     roots = {each.generator for each in field.adjoined.values() if each.function == "sqrt"}
+    called = (field.adjoined[name] for name in sorted(field.functions_in(part)))
+    yield from (each.argument for each in called if each.function == "log")
     for factor, _ in field.fraction(part.combine())[1] if part.parts else ():
         divisor = field.from_polynomial(factor)
         (name, *others) = field.names_in(divisor)
@@ -70,7 +72,7 @@ def _may_vanish(setting: Setting, divisor: Element, names: tuple[str, ...]) -> b
     """Whether velocities in the domain are known at which a divisor is zero."""
     with suppress(ZeroDivisionError, OverflowError):  # where other divisors vanish, too
         point = _find_zero(setting, divisor, names)
-        return point is not None and _is_in_domain(setting, point)
+        return point is not None and _is_in_domain(setting, {**point, **_momenta(setting, point)})
     return False
 
 
@@ -97,26 +99,34 @@ def _find_zero(setting: Setting, divisor: Element, names: tuple[str, ...]) -> Po
     return rest | {name: field.substitute(value, rest) for name, value in point.items()}
 
 
+def _momenta(setting: Setting, point: Point) -> Point:
+    """The momenta at velocities: ``dl/dv``, or 0 at rest where ``dh/dp`` is 0 there."""
+    field, spec, names = setting.field, setting.spec, setting.momenta
+    if names and spec.lagrangian is not None:
+        slopes = field.gradient(setting.lagrangian, setting.velocities)
+        weighted = zip(names, slopes, setting.weights, strict=True)
+        return {name: field.substitute(p * weight, point) for name, p, weight in weighted}
+    none = dict.fromkeys(names, field.zero)
+    slopes = field.gradient(setting.hamiltonian, names) if names else ()
+    rest = (field.substitute(slope, none) for slope in slopes)
+    return none if not any(point.values()) and all(map(field.is_zero, rest)) else {}
+
+
 def _is_in_domain(setting: Setting, point: Point) -> bool:
     """Whether velocities satisfy the constraints and no condition of [domain] excludes them."""
     field = setting.field
     sides = (
         left - right
         for each in setting.spec.constraints
-        for left, right in zip(
-            setting.components(each.left), setting.components(each.right), strict=True
-        )
+        for left, right in zip(*map(setting.components, (each.left, each.right)), strict=True)
     )
-    if not all(field.is_zero(field.substitute(side, point)) for side in sides):
-        return False
-    for condition in field.region.conditions:
-        value = field.substitute(condition.element, point)
-        if field.is_zero(value):
-            if condition.strict:
-                return False
-        elif sign(field, value, strict=not condition.strict) == -1:
-            return False
-    return True
+    values = (
+        (field.substitute(each.element, point), each.strict) for each in field.region.conditions
+    )
+    return all(field.is_zero(field.substitute(side, point)) for side in sides) and all(
+        not strict if field.is_zero(value) else sign(field, value, strict=not strict) != -1
+        for value, strict in values
+    )
 
 
 def _without_value(setting: Setting, formula: Formula, divisor: Element) -> DerivationError:
@@ -126,7 +136,7 @@ def _without_value(setting: Setting, formula: Formula, divisor: Element) -> Deri
         setting,
         formula,
         f"the force has no value where {text} is 0, as friction at zero slip; expected a force "
-        "with a value at every velocity in the domain. Add the square of a slip speed to what is "
-        f'under the root, or write [domain] with slipping = "{text} > 0.0001".',
+        f"with a value at every velocity in the domain. Add the square of a slip speed to {text}, "
+        f'or write [domain] with slipping = "{text} > 0.0001".',
         text,
     )
