@@ -211,8 +211,8 @@ SPOILED = [
     ("solver.c", "sum = sum + weights[q]", "sum = sum - weights[q]"),
     (
         "solver.c",
-        "block.time = choose(accepted, time,",
-        "block.time = choose(accepted, block.time,",
+        "block->time = choose(accepted, time,",
+        "block->time = choose(accepted, block->time,",
     ),
     ("solver.c", "error < 1.0", "error < 2.0"),
     ("solver.c", "two) - 0.7", "two) - 0.9"),
@@ -362,7 +362,7 @@ def test_c_and_numpy_have_the_same_bits(tmp_path, context, least):
 WRONG_LIMITS_IN_C = [
     ("_p1 + p - q", "_p1 + p + q"),
     ("_rows[0] = _t1 * q", "_rows[0] = _t1 * q * 1.0000000000000002"),
-    ("left |= accepted & ~are_inside(&block, took, state)", "left |= accepted & block.active & 0"),
+    ("left |= accepted & ~are_inside(block, took, state)", "left |= accepted & block->active & 0"),
     ("left |= wanted & ~good;", ""),
     ("n < 40", "n < 20"),
 ]
@@ -382,9 +382,13 @@ def test_wrong_limits_in_c_are_caught_by_bits(good, bad, tmp_path, monkeypatch):
 
 WRONG_IN_C = [
     ("rk4", "h * 0.16666666666666666", "h * 0.16666666666666669"),
-    ("rk4", "block.time = choose(accepted, time, block.time)", "block.time = time + took * 1e-9"),
+    (
+        "rk4",
+        "block->time = choose(accepted, time, block->time)",
+        "block->time = time + took * 1e-9",
+    ),
     ("rk4", "run->samples[s] - block->time[w]", "run->samples[s] - 0.5"),
-    ("rk4", "block.steps + choose(accepted", "block.steps + choose(~accepted"),
+    ("rk4", "block->steps + choose(accepted", "block->steps + choose(~accepted"),
     ("dop853", "sum = sum + weights[q]", "sum = weights[q] + sum * 1.0000000000000002"),
     ("dop853", "all(10.0), 0.9", "all(10.0), 0.8"),
     ("taylor", "_m < _k;", "_m <= _k;"),
