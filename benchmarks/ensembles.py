@@ -126,7 +126,7 @@ def our_competitors(name: str, states: Any) -> list[Competitor]:
 
 
 def peer_competitors(name: str, states: Any) -> list[Competitor]:
-    """heyoka and SciPy, where they are installed."""
+    """Peers, where they are installed."""
     end, parameters = SYSTEMS[name]
     found: list[Competitor] = []
     for tolerance in PEER_TOLERANCES if peers.has("heyoka") else ():
@@ -272,13 +272,8 @@ def measure(names: Sequence[str] = tuple(SYSTEMS)) -> list[Figure]:
             continue
         figures = compare(name, points)
         end, parameters = SYSTEMS[name]
-        setting = {"system": name, "members": MEMBERS, "rounds": ROUNDS, "end": end}
-        write(
-            f"ensembles_{name}",
-            setting | {"parameters": parameters, "reference": note},
-            points,
-            figures,
-        )
+        setting = {"members": MEMBERS, "rounds": ROUNDS, "end": end, "parameters": parameters}
+        write(f"ensembles_{name}", {**setting, "reference": note}, points, figures)
         found += figures
     return found
 

@@ -196,7 +196,7 @@ class Heyoka:
 
 
 def exact_integrator(name: str, parameters: Sequence[float], state: Array) -> Any:
-    """heyoka's integrator of one in numbers of 64 bits after the point, to 1e-18."""
+    """The integrator of one in numbers of 64 bits after the point, to 1e-18."""
     import heyoka
 
     variables = heyoka.make_vars(*(f"x{i}" for i in range(len(state))))

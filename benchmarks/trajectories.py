@@ -29,7 +29,7 @@ from results import FOLDER, write
 from coadjoint.cli.arguments import load_system
 
 NAME, ROUNDS = "heavy_top", 7
-PARAMETERS = dict(I=(1, 1.5, 2), m=1, g=1, chi=(0.1, 0.2, 1))
+PARAMETERS = {"I": (1, 1.5, 2), "m": 1, "g": 1, "chi": (0.1, 0.2, 1)}
 STEP, STEPS, MEMBERS, MANY = 0.02, 200, 1000, 20000
 
 
