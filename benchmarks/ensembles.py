@@ -175,7 +175,7 @@ def reference_of(name: str, states: Any) -> tuple[Any, str]:
 def check_equations(name: str, states: Any) -> None:
     """The equations by hand are those of the system."""
     parameters = SYSTEMS[name][1]
-    expected = load_system(name).rhs(states, np.array(parameters, float))
+    expected = load_system(name).rhs(states, np.array(parameters, float), target="numpy")
     found = np.array(peers.EQUATIONS[name](states, parameters))
     assert np.allclose(found, expected, rtol=1e-12, atol=1e-12), name
 
