@@ -39,16 +39,32 @@ from coadjoint.render.kernels import render_system
 from coadjoint.render.solvers import Line, arrange, select_programs
 from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
 from tests.kernels import COMPILER, ProgramReference
-from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM
+from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM, program
 
 needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM, "bounded": BOUNDED}
+#: Rates with statements that are named as those of kinematics are.
+NAMED = replace(
+    PENDULUM,
+    name="named",
+    programs=(
+        program(
+            "rhs",
+            "q p",
+            "k",
+            "_u1 = sin(q)*p; _s1 = q + p",
+            "_u1*_s1*p; _u1*_s1*(q - p) - k*q*cos(q)",
+            (2,),
+        ),
+        *PENDULUM.programs[1:],
+    ),
+)
 
 
 @cache
 def texts_by_name(name):
     """The files of a system."""
-    return render_system(CONTEXTS[name])
+    return render_system(NAMED if name == "named" else CONTEXTS[name])
 
 
 def rates_of(context):
@@ -104,7 +120,7 @@ def replaced(file, good, bad):
 # -- rung 2 ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("context", CONTEXTS.values(), ids=CONTEXTS)
+@pytest.mark.parametrize("context", [*CONTEXTS.values(), NAMED], ids=[*CONTEXTS, "named"])
 def test_recurrences_are_the_power_series(context):
     """Seven coefficients of each component are compared at two points."""
     rates = rates_of(context)
