@@ -218,7 +218,7 @@ class _Scan:
     ) -> None:
         self.watch, self.function, self.steps = watch, function, steps
         self.row, self.part, self.value = knots.row, knots.part, knots.value
-        self.piece = knots.piece
+        self.piece, self.band = knots.piece, band
         member = steps.member[knots.row]
         sign = np.where(np.abs(self.value) <= band[knots.row], 0, np.sign(self.value))
         gap = np.isnan(self.value)
@@ -347,7 +347,7 @@ class _Scan:
 
             part[place] = find_roots(value, left[place], right[place], *ends, close)
             there = np.abs(self.function(rows, part[place][:, np.newaxis])[0][:, 0])
-            real[place] = there <= np.maximum(*np.abs(ends))
+            real[place] = (there < np.minimum(*np.abs(ends))) | (there <= self.band[rows])
         return row, part, real
 
     def _locate(self, row: Places, part: Array, ended: Places, sign: NDArray[np.int8]) -> Crossings:

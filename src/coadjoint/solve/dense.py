@@ -180,7 +180,8 @@ class Dense:
         """The steps of one member of a batch."""
         inside = tuple(p % n for p, n in zip(place, batch, strict=True))
         member = int(np.ravel_multi_index(inside, batch))
-        steps = self.steps.take(np.flatnonzero(self.steps.member == member))
+        steps: Any = self.steps.take(np.flatnonzero(self.steps.member == member))
+        steps = replace(steps, member=np.zeros(len(steps.member), np.intp))
         signal = self.signal
         if isinstance(signal, np.ndarray):
             at: Any = (slice(None), *place)
