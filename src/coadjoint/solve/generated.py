@@ -20,7 +20,6 @@ from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.march import count_threads, march, progress_bar
-from coadjoint.solve.request import check_memory
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
@@ -106,8 +105,6 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         parameters = parameters.reshape(-1, members)
     signal = _find_signal(system, request, batch)
     times = request.times
-    if request.samples > 1:
-        check_memory((n, members, times.size))
     run = Ensemble(
         state=request.state.reshape(n, members).copy(),
         parameters=parameters,
