@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 
@@ -23,15 +23,24 @@ from coadjoint.build.compiler import _run, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import CompilerError, OutputError
-from coadjoint.solve.ensemble import Ensemble, Limits
+from coadjoint.solve.ensemble import Ensemble, Limits, Record
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
 ORDER: Final = 7
 #: Each method with what makes an object of it.
 FLAGS: Final = {"taylor": f"-DORDER={ORDER}", "dop853": "-DDOP853", "rk4": "-DRK4"}
-#: Goes on with all members of an ensemble for so many steps at most; how many still go on.
-Advance = Callable[[Ensemble, int], int]
+#: The degree of the path of each method.
+DEGREES: Final = {"taylor": ORDER, "dop853": 7, "rk4": 3}
+
+
+class Advance(Protocol):
+    """Goes on with all members of an ensemble for so many steps at most; how many still go on."""
+
+    def __call__(self, ensemble: Ensemble, work: int, record: Record | None = None) -> int:
+        """Accepted steps are added to a record; the call ends when it is full."""
+        ...
+
 
 _SIZE, _DOUBLE, _PLACE = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 _PLACES: Final = ("state", "time", "step", "next", "steps", "rejected", "status")
@@ -51,6 +60,8 @@ class Run(ctypes.Structure):
         ("out", _PLACE),
         *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
         *((name, _SIZE) for name in ("max_steps", "work")),
+        ("record", _PLACE),
+        *((name, _SIZE) for name in ("record_room", "recorded")),
     )
 
 
@@ -97,7 +108,7 @@ def load_solver(path: Path, system: str) -> Advance:
     function = ctypes.CDLL(str(path))[f"{system}_advance"]
     function.restype, function.argtypes = _SIZE, [_PLACE]
 
-    def advance(ensemble: Ensemble, work: int) -> int:
+    def advance(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
         members, given, inputs = ensemble.state.shape[1], ensemble.parameters, ensemble.inputs
         arrays = {name: getattr(ensemble, name) for name in (*_PLACES, "samples", "out")}
         arrays |= {"parameters": given, "knots": inputs.knots}
@@ -116,7 +127,13 @@ def load_solver(path: Path, system: str) -> Advance:
             max_steps=ensemble.max_steps,
             work=work,
         )
-        return int(function(ctypes.byref(run)))
+        if record is not None:
+            run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+            run.recorded = record.count
+        on = int(function(ctypes.byref(run)))
+        if record is not None:
+            record.count = run.recorded
+        return on
 
     return advance
 
@@ -156,9 +173,12 @@ class NumpySolver:
             for each in ("domain", "projection")
         )
         limits = Limits(domain=domain, strict=self.strict, projection=projection)
-        return lambda ensemble, work: ensemble.advance(
-            self.method(name, ensemble), work, limits=limits
-        )
+
+        def go(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
+            method = self.method(name, ensemble)
+            return ensemble.advance(method, work, limits=limits, record=record)
+
+        return go
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)

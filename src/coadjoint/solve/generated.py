@@ -74,7 +74,8 @@ def simulate(system: System, request: Request) -> Solution:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
             told = stack.enter_context(progress_bar())
-        march(stepper, run, request.start, request.threads or count_threads(), told, checkpoint)
+        threads = request.threads or count_threads()
+        march(stepper, run, request.start, threads, told, checkpoint=checkpoint)
     course = Course(
         method=request.choice.name,
         order=request.choice.order,

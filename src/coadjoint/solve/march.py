@@ -15,12 +15,13 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from dataclasses import dataclass
 from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.ensemble import Status
+from coadjoint.solve.ensemble import Record, Status
 
 if TYPE_CHECKING:
     from coadjoint.solve.checkpoints import Checkpoint
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 #: Told now and then: the part of the way that is done, from 0 to 1.
 Progress = Callable[[float], object]
+#: Shown the steps of each call by the thread that made them; it may stop members of these.
+Watch = Callable[["Record"], object]
 #: Seconds that one call of a solver is to take, and those between two reports.
 CALL_SECONDS, REPORT_SECONDS = 0.05, 0.1
 #: Seconds after which a bar appears.
@@ -36,8 +39,11 @@ BAR_SECONDS = 1.0
 #: Members of a slice, at the least, where threads share a batch: the last ones of a slice leave
 #: lanes idle.
 SLICE = 256
-#: Steps of a block in the first call, and how much more a later call may try than the one before.
-FIRST_WORK, GROWTH = 16, 4.0
+#: Steps of a block in the first call, how much more a later call may try than the one before, and
+#: the most of a call.
+FIRST_WORK, GROWTH, MOST_WORK = 16, 4.0, 2**40
+#: Numbers that a record of steps holds, about: 8 MB.
+RECORDED = 2**20
 
 
 def count_threads() -> int:
@@ -47,12 +53,34 @@ def count_threads() -> int:
     return os.cpu_count() or 1
 
 
+@dataclass(frozen=True)
+class _Going:
+    """Who advances what.
+
+    Attributes:
+        stepper: Who advances it.
+        run: Its members.
+        watch: Shown all steps; None for nobody.
+        report: Tells how far it is.
+        until: When all have to end, by the clock.
+        stop: Set where they have to end sooner.
+    """
+
+    stepper: Stepper
+    run: Ensemble
+    watch: Watch | None
+    report: Callable[[], None]
+    until: float
+    stop: Event
+
+
 def march(
     stepper: Stepper,
     run: Ensemble,
     start: float,
     threads: int,
     progress: Progress | None = None,
+    watch: Watch | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> None:
     """Advance an ensemble to its end.
@@ -63,6 +91,7 @@ def march(
         start: When they began.
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
+        watch: Shown all steps that are made; None for nobody. It is called by several threads.
         checkpoint: Written now and then, and at the end; None for none.
 
     Raises:
@@ -76,48 +105,36 @@ def march(
             progress(_find_part(run, start))
 
     while (run.status == Status.GOES_ON).any():
-        seconds = math.inf if checkpoint is None else checkpoint.seconds
-        _go_on(stepper, run, slices, threads, report, time.monotonic() + seconds)
+        until = time.monotonic() + (math.inf if checkpoint is None else checkpoint.seconds)
+        going = _Going(
+            stepper=stepper, run=run, watch=watch, report=report, until=until, stop=Event()
+        )
+        _go_on(going, slices, threads)
         if checkpoint is not None:
             checkpoint.write(run)
     report()
 
 
-def _go_on(
-    stepper: Stepper,
-    run: Ensemble,
-    slices: list[tuple[int, int]],
-    threads: int,
-    report: Callable[[], None],
-    until: float,
-) -> None:
+def _go_on(going: _Going, slices: list[tuple[int, int]], threads: int) -> None:
     """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
     if len(slices) > 1:
-        _share(stepper, run, slices, threads, report, until)
+        _share(going, slices, threads)
         return
     reported = time.monotonic()
-    for _ in _advance(stepper, run, *slices[0], Event()):
+    for _ in _advance(going, *slices[0]):
         now = time.monotonic()
-        if now > until:
+        if now > going.until:
             return
         if now - reported > REPORT_SECONDS:
-            report()
+            going.report()
             reported = now
 
 
-def _share(
-    stepper: Stepper,
-    run: Ensemble,
-    slices: list[tuple[int, int]],
-    threads: int,
-    report: Callable[[], None],
-    until: float,
-) -> None:
+def _share(going: _Going, slices: list[tuple[int, int]], threads: int) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
-    stop = Event()
 
     def work(first: int, last: int) -> None:
-        for _ in _advance(stepper, run, first, last, stop):
+        for _ in _advance(going, first, last):
             pass
 
     with ThreadPoolExecutor(min(threads, len(slices))) as pool:
@@ -127,24 +144,32 @@ def _share(
                 done, left = wait(left, REPORT_SECONDS, FIRST_EXCEPTION)
                 for each in done:
                     each.result()
-                report()
-                if time.monotonic() > until:
-                    stop.set()
+                going.report()
+                if time.monotonic() > going.until:
+                    going.stop.set()
         except BaseException:  # Ctrl-C among them
-            stop.set()
+            going.stop.set()
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _advance(stepper: Stepper, run: Ensemble, first: int, last: int, stop: Event) -> Iterator[None]:
+def _advance(going: _Going, first: int, last: int) -> Iterator[None]:
     """Advance a slice, one short call after the other."""
-    work = FIRST_WORK
-    while not stop.is_set():
+    work, run, record = FIRST_WORK, going.run, None
+    if going.watch is not None:
+        n, degree = len(run.state), going.stepper.degree
+        record = Record.make(n, degree, RECORDED // (n * (degree + 1)))
+    while not going.stop.is_set():
         begun = time.perf_counter()
-        if not stepper.advance(run, first, last, work):
-            return
+        on = going.stepper.advance(run, first, last, work, record)
         took = max(time.perf_counter() - begun, 1e-9)
-        work = max(1, int(work * min(GROWTH, CALL_SECONDS / took)))
+        if going.watch is not None and record is not None:
+            going.watch(record)
+            record.clear()
+            on = int((run.status[first:last] == Status.GOES_ON).sum())
+        if not on:
+            return
+        work = min(max(1, int(work * min(GROWTH, CALL_SECONDS / took))), MOST_WORK)
         yield
 
 
