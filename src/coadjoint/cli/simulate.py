@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coadjoint.cli.arguments import load_system, seconds_option, system_argument
+from coadjoint.cli.events import describe_events, events_options, print_events, take_events
 from coadjoint.cli.members import (
     describe_members,
     find_members,
@@ -122,6 +123,7 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     type=click.Path(path_type=Path),
     help="Table of the trajectory to write, e.g. top.csv.",
 )
+@events_options
 @seconds_option
 @json_option
 def command(
@@ -141,6 +143,8 @@ def command(
 ) -> int:
     """Integrate a trajectory, or many; show the drift of invariants."""
     _check_outputs(table, *filter(None, (plot, trace)))
+    asked = take_events(options)
+    asked.check()
     if members is not None and (plot or trace):
         raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
     loaded = load_system(system, seconds)
@@ -158,7 +162,7 @@ def command(
     else:
         many = find_members(loaded, members, seed, start, given, driven)
         start, given, driven, origin = many.state, many.parameters, many.inputs, many.origin
-    solution = loaded.simulate(start, span, given, driven, **options)
+    solution = loaded.simulate(start, span, given, driven, events=asked.events, **options)
     _show(loaded, solution, origin, as_json=as_json)
     if table is not None:
         solution.to_csv(table)
@@ -166,13 +170,8 @@ def command(
         solution.plot(plot)
     if trace is not None:
         solution.trace(trace)
-    return 0 if has_arrived(solution) else 1
-
-
-def has_arrived(solution: Solution) -> bool:
-    """Whether all trajectories reached the end."""
-    statuses = solution.status if solution.batch else [solution.status]
-    return all(status == "OK" for status in statuses)
+    asked.write(solution)
+    return 0 if asked.has_arrived(solution) else 1
 
 
 def _check_outputs(table: Path | None, *pictures: Path) -> None:
@@ -256,15 +255,14 @@ def _shown_names(system: System) -> tuple[str, ...]:
 
 
 def _show(system: System, solution: Solution, origin: str, *, as_json: bool) -> None:
-    """Tables or JSON, of one trajectory or of members."""
-    if origin:
-        (
-            print_json(describe_members(solution, origin))
-            if as_json
-            else print_members(solution, origin)
-        )
-    else:
-        (print_json(_record(system, solution)) if as_json else _print(system, solution))
+    """Tables or JSON, of one trajectory or of members, and of their events."""
+    if as_json:
+        record = describe_members(solution, origin) if origin else _record(system, solution)
+        events = {"events": describe_events(solution)} if solution.events else {}
+        print_json(record | events)
+        return
+    print_events(solution)
+    (print_members(solution, origin) if origin else _print(system, solution))
 
 
 def _print(system: System, solution: Solution) -> None:

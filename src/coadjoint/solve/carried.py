@@ -19,6 +19,8 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.course import Course, read_record
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.event_tables import describe_events, read_events_back
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -98,6 +100,7 @@ def describe_run(solution: Solution) -> dict[str, Any]:
         **solution.settings,
         **versions,
         "course": solution.course.as_record(),
+        **({"events": describe_events(solution.events)} if solution.events else {}),
     }
 
 
@@ -140,17 +143,32 @@ def rebuild(
         codes=None if codes is None else codes.reshape(status.shape),
         **_read_course(said["course"], path),
     )
+    parameters = np.array(form["parameters"], dtype=np.float64)
     return Solution(
         system=system,
         time=np.array(form["time"], dtype=np.float64),
         state=stack(system.STATE),
-        parameters=np.array(form["parameters"], dtype=np.float64),
+        parameters=parameters,
         status="" if status.ndim else str(status),
         message=said["message"],
         reconstructed=stack(system.RECONSTRUCTED) if form["reconstructed"] else None,
         inputs=inputs,
         course=course,
+        events=_read_events(system, parameters, said.get("events", []), path),
     )
+
+
+def _read_events(system: System, parameters: Array, said: Any, path: Path) -> Events:
+    """What a file says of events, a list or its text.
+
+    Raises:
+        KernelArgumentError: It is no such list.
+    """
+    try:
+        records = json.loads(said) if isinstance(said, str) else said
+        return Events(read_events_back(system, parameters, records))
+    except (KeyError, TypeError, ValueError) as error:
+        raise explain_unread(path, f"its events are damaged: {error}") from error
 
 
 def _take_inputs(inputs: Array, form: str) -> Array:

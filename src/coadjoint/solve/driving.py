@@ -152,6 +152,11 @@ class Driving:
         self.enter(start)
 
     @property
+    def signal(self) -> Signal | None:
+        """The inputs as a function of time; None where a system has none."""
+        return self._signal
+
+    @property
     def is_constant(self) -> bool:
         """Whether inputs are constants, or there are none."""
         return self._signal is None or type(self._signal) is Signal

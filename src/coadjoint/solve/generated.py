@@ -16,10 +16,13 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.course import Course, Start
+from coadjoint.solve.dense import make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
+from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
@@ -70,12 +73,16 @@ def simulate(system: System, request: Request) -> Solution:
     run.begin(request.start)
     _end_undefined(system, run, now)
     checkpoint = _resume(system, request, run, stepper)
+    recording = _make_recording(system, request, run, driven)
     with ExitStack() as stack:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
             told = stack.enter_context(progress_bar())
         threads = request.threads or count_threads()
-        march(stepper, run, request.start, threads, told, checkpoint=checkpoint)
+        watch = None if recording is None else recording.look
+        march(stepper, run, request.start, threads, told, checkpoint, watch)
+    if recording is not None:
+        recording.finish()
     course = Course(
         method=request.choice.name,
         order=request.choice.order,
@@ -90,7 +97,28 @@ def simulate(system: System, request: Request) -> Solution:
         driven=_find_driven(driven, run, batch),
         start=_find_start(request, driven) if request.samples == 1 else None,
     )
-    return _make_solution(system, request, run, course, driven)
+    return _make_solution(system, request, run, course, driven, recording)
+
+
+def _make_recording(
+    system: System, request: Request, run: Ensemble, signal: Signal | Array | None
+) -> Recording | None:
+    """Who looks at the steps; None where nobody has to.
+
+    Raises:
+        KernelArgumentError: There is to be a checkpoint, which holds no steps and no events.
+    """
+    if not (request.events or request.dense):
+        return None
+    if request.checkpoint is not None:
+        asked = "events" if request.events else "dense"
+        raise KernelArgumentError(
+            f"checkpoint is given, and {asked} as well; a checkpoint keeps neither events nor "
+            "steps. Expected one or the other.",
+            found=str(request.checkpoint),
+        )
+    surroundings = Surroundings(system, run.parameters, make_driving(signal))
+    return Recording(run, request.events, surroundings, keeps=request.dense)
 
 
 # -- before the first step ----------------------------------------------------------------------
@@ -213,6 +241,7 @@ def _make_solution(
     run: Ensemble,
     course: Course,
     signal: Signal | Array | None,
+    recording: Recording | None,
 ) -> Solution:
     """The Solution of a run."""
     batch, times = request.state.shape[1:], request.times
@@ -228,9 +257,22 @@ def _make_solution(
     else:
         inputs = None if signal is None else signal.over(times)
     status = "" if batch else Status(int(run.status[0])).name
-    message = _explain_batch(run) if batch else _explain(system, request, run)
+    if recording is not None and status == "EVENT":
+        message = recording.explain_end()
+    else:
+        message = _explain_batch(run) if batch else _explain(system, request, run)
     return Solution(
-        system, times, states, parameters.copy(), status, message, None, inputs, course=course
+        system,
+        times,
+        states,
+        parameters.copy(),
+        status,
+        message,
+        None,
+        inputs,
+        course=course,
+        events=None if recording is None else recording.list_events(batch),
+        dense=None if recording is None else recording.make_dense(signal, request.start),
     )
 
 

@@ -61,16 +61,12 @@ class _Going:
         stepper: Who advances it.
         run: Its members.
         watch: Shown all steps; None for nobody.
-        report: Tells how far it is.
-        until: When all have to end, by the clock.
-        stop: Set where they have to end sooner.
+        stop: Set where all have to end.
     """
 
     stepper: Stepper
     run: Ensemble
     watch: Watch | None
-    report: Callable[[], None]
-    until: float
     stop: Event
 
 
@@ -80,8 +76,8 @@ def march(
     start: float,
     threads: int,
     progress: Progress | None = None,
-    watch: Watch | None = None,
     checkpoint: Checkpoint | None = None,
+    watch: Watch | None = None,
 ) -> None:
     """Advance an ensemble to its end.
 
@@ -91,8 +87,8 @@ def march(
         start: When they began.
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
-        watch: Shown all steps that are made; None for nobody. It is called by several threads.
         checkpoint: Written now and then, and at the end; None for none.
+        watch: Shown all steps that are made; None for nobody. It is called by several threads.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; members stand where they came.
@@ -105,32 +101,42 @@ def march(
             progress(_find_part(run, start))
 
     while (run.status == Status.GOES_ON).any():
-        until = time.monotonic() + (math.inf if checkpoint is None else checkpoint.seconds)
-        going = _Going(
-            stepper=stepper, run=run, watch=watch, report=report, until=until, stop=Event()
-        )
-        _go_on(going, slices, threads)
+        seconds = math.inf if checkpoint is None else checkpoint.seconds
+        going = _Going(stepper, run, watch, Event())
+        _go_on(going, slices, threads, report, time.monotonic() + seconds)
         if checkpoint is not None:
             checkpoint.write(run)
     report()
 
 
-def _go_on(going: _Going, slices: list[tuple[int, int]], threads: int) -> None:
+def _go_on(
+    going: _Going,
+    slices: list[tuple[int, int]],
+    threads: int,
+    report: Callable[[], None],
+    until: float,
+) -> None:
     """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
     if len(slices) > 1:
-        _share(going, slices, threads)
+        _share(going, slices, threads, report, until)
         return
     reported = time.monotonic()
     for _ in _advance(going, *slices[0]):
         now = time.monotonic()
-        if now > going.until:
+        if now > until:
             return
         if now - reported > REPORT_SECONDS:
-            going.report()
+            report()
             reported = now
 
 
-def _share(going: _Going, slices: list[tuple[int, int]], threads: int) -> None:
+def _share(
+    going: _Going,
+    slices: list[tuple[int, int]],
+    threads: int,
+    report: Callable[[], None],
+    until: float,
+) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
 
     def work(first: int, last: int) -> None:
@@ -144,8 +150,8 @@ def _share(going: _Going, slices: list[tuple[int, int]], threads: int) -> None:
                 done, left = wait(left, REPORT_SECONDS, FIRST_EXCEPTION)
                 for each in done:
                     each.result()
-                going.report()
-                if time.monotonic() > going.until:
+                report()
+                if time.monotonic() > until:
                     going.stop.set()
         except BaseException:  # Ctrl-C among them
             going.stop.set()

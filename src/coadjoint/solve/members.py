@@ -49,6 +49,8 @@ def take_member(solution: Solution, place: tuple[int, ...]) -> Solution:
         None,
         inputs,
         course=course,
+        events=solution.events.of(*place),
+        dense=None if solution.dense is None else solution.dense.take(place, solution.batch),
     )
 
 

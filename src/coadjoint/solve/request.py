@@ -24,6 +24,7 @@ from coadjoint.solve.solvers import GENERATED, Choice, choose_order
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.events import Sought
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -58,6 +59,8 @@ class Request:
         threads: How many threads, at the most; None for all processors.
         progress: Whether to show a bar, or whom to tell.
         checkpoint: Where a run on its way is kept; None for nowhere.
+        events: What to look for.
+        dense: Whether the steps are kept.
     """
 
     state: Array
@@ -76,6 +79,8 @@ class Request:
     threads: int | None
     progress: bool | Callable[[float], object]
     checkpoint: Path | None
+    events: tuple[Sought, ...]
+    dense: bool
 
     @property
     def choice(self) -> Choice:

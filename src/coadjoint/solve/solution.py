@@ -17,10 +17,12 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.course import UNTOLD, Course, relative, relative_of_each
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.dense import Dense
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -40,11 +42,14 @@ class Solution:
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
             the last point inside), ``NONFINITE`` (rates or steps are not finite),
-            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
+            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances), ``MAX_STEPS`` or
+            ``EVENT`` (a terminal event; the last sample is where it occurred).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
             each trajectory has constants of its own; None if there are none.
+        events: The events that were looked for, by name: times, states and members of each.
+        dense: The steps, from which `at` has the state at any time; None without ``dense=True``.
     """
 
     def __init__(
@@ -59,6 +64,8 @@ class Solution:
         inputs: Array | None = None,
         *,
         course: Course | None = None,
+        events: Events | None = None,
+        dense: Dense | None = None,
     ) -> None:
         self.system = system
         self.time = time
@@ -69,6 +76,8 @@ class Solution:
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
         self.inputs = inputs
+        self.events = events or Events()
+        self.dense = dense
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: all but what is computed from the rest on demand."""
@@ -129,6 +138,22 @@ class Solution:
         from coadjoint.solve.members import take_member
 
         return take_member(self, place)
+
+    def at(self, t: ArrayLike) -> Solution:
+        """The same motion at other times, by the polynomials of its steps.
+
+        The states are those that samples at these times have, to the last bit; observables and the
+        drift since the start follow from them. What a trajectory of a batch did not reach is NaN.
+
+        Args:
+            t: A time, or several in any order, within the span of the solution.
+
+        Raises:
+            KernelArgumentError: It was simulated without ``dense=True``, or a time is outside.
+        """
+        from coadjoint.solve.dense import evaluate_at
+
+        return evaluate_at(self, t)
 
     def _check_alone(self, what: str) -> None:
         """Refuse what is of one trajectory.

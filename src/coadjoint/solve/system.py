@@ -30,6 +30,7 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.events import Event
     from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
     from coadjoint.solve.ode import Ode
@@ -195,6 +196,8 @@ class System(Functions):
         progress: bool | Callable[[float], object] = True,
         reconstruct: bool | Mapping[str, ArrayLike] = False,
         checkpoint: str | PathLike[str] | None = None,
+        events: str | Event | Sequence[str | Event] | None = None,
+        dense: bool = False,
     ) -> Solution:
         """Integrate one trajectory, or many at a time.
 
@@ -234,6 +237,10 @@ class System(Functions):
                 often where writing it takes longer than half a second, and at the end. Called again
                 with the same arguments, it goes on from there, with the bits of a run that was not
                 broken off. A finished run stands there, too: remove the file to begin anew.
+            events: What to look for: names of components or scalar quantities, where these are 0;
+                formulas such as ``"Gamma3 == 0.5"``; or `Event` records, which have a direction or
+                end the trajectory. `Solution.events` has them by name.
+            dense: Whether to keep the steps, from which `Solution.at` has the state at any time.
 
         Returns:
             The labelled trajectory or trajectories, with observables and the drift of what is
@@ -268,6 +275,8 @@ class System(Functions):
             progress=progress,
             reconstruct=reconstruct,
             checkpoint=checkpoint,
+            events=events,
+            dense=dense,
         )
 
     def ode(
