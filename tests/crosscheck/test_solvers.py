@@ -31,7 +31,6 @@ from coadjoint.lower.program import (
     Call,
     Multiply,
     Negate,
-    Number,
     Symbol,
     children,
     with_children,
@@ -141,42 +140,29 @@ def flip_term(part, line):
     return None
 
 
-def drop_start(part, line):
-    """A sum without its first term."""
-    if part == "starts" and isinstance(line.value, Multiply):
-        return Line(line.name, Number(0))
+def drop_end(part, line):
+    """A sum without its last term."""
+    if part == "lines" and isinstance(line.value, Add):
+        return Line(line.name, line.value.left)
     return None
 
 
 def take_other_order(part, line):
     """A coefficient of the order before."""
-    if part == "starts" and isinstance(line.value, Multiply):
-        name = line.value.right.name.replace("[_k]", "[0]")
-        return Line(line.name, Multiply(line.value.left, Symbol(name)))
+    if part == "lines" and isinstance(line.value, Add):
+        left, right = line.value.right.left, line.value.right.right
+        before = Symbol(left.name.replace("[_k]", "[0]"))
+        return Line(line.name, Add(line.value.left, Multiply(before, right)))
     return None
 
 
-@pytest.mark.parametrize("change", [flip_term, drop_start, take_other_order])
+@pytest.mark.parametrize("change", [flip_term, drop_end, take_other_order])
 def test_a_wrong_recurrence_is_caught(change):
     """By the power series of the equations."""
     spoiled = changed(recurrences_of(HEAVY_TOP), change)
     with pytest.raises(CrossCheckError, match=r"rung 2.*recurrences") as caught:
         check_recurrences(spoiled, subject(HEAVY_TOP))
     assert caught.value.rung == 2
-
-
-@pytest.mark.parametrize("bound", [("_k", "_k - 1"), ("_k", "_k")])
-def test_a_wrong_bound_of_a_loop_is_caught(bound):
-    """A sum that ends a term too early; the right bound passes."""
-    text = recurrences_of(HEAVY_TOP)
-    old, new = bound
-    stages = tuple(replace(s, last=new if s.last == old else s.last) for s in text.stages)
-    spoiled = replace(text, stages=stages)
-    if old == new:
-        assert check_recurrences(spoiled, subject(HEAVY_TOP))
-        return
-    with pytest.raises(CrossCheckError, match="rung 2"):
-        check_recurrences(spoiled, subject(HEAVY_TOP))
 
 
 def test_a_wrong_partner_is_caught():
@@ -204,11 +190,11 @@ def test_texts_read_back(context):
 
 
 SPOILED = [
-    ("solver.c", "_m <= _k;", "_m < _k;"),
-    ("solver.c", "_m <= _k;", "_m <= _k - 1;"),
-    ("solver.c", "Pi1[_k] * _q5", "-Pi1[_k] * _q5"),
-    ("solver.c", "Omega3[_m] * Pi2[_k - _m]", "Omega3[_m] * Pi2[_k + _m]"),
-    ("solver.c", "Omega3[_m] * Pi2[_k - _m]", "Pi2[_m] * Pi2[_k - _m]"),
+    ("solver.c", "_m < _k;", "_m <= _k;"),
+    ("solver.c", "_m < _k;", "_m < _k - 1;"),
+    ("solver.c", "_q8 * _j1 +", "-_q8 * _j1 +"),
+    ("solver.c", "Pi2[_m] * Pi3[_k - _m]", "Pi2[_m] * Pi3[_k + _m]"),
+    ("solver.c", "Pi2[_m] * Pi3[_k - _m]", "Pi2[_m] * Pi2[_k - _m]"),
     ("solver.c", "_block->fixed[1] = _p2", "_block->fixed[1] = _p3"),
     ("solver.c", "m = _block->parameters[3]", "m = _block->parameters[4]"),
     ("solver.c", "Pi2 = _path[1]", "Pi2 = _path[2]"),
@@ -229,12 +215,12 @@ SPOILED = [
         "block.time = choose(accepted, block.time,",
     ),
     ("solver.c", "error < 1.0", "error < 2.0"),
-    ("solver.c", "(2.0 + 0.7", "(1.0 + 0.7"),
+    ("solver.c", "two) - 0.7", "two) - 0.9"),
     ("solver.c", "half = h * 0.5", "half = h * 0.25"),
     ("solver.h", "rtol, atol, size", "atol, rtol, size"),
-    ("solver.py", "range(1, _k + 1)", "range(1, _k)"),
+    ("solver.py", "range(1, _k)", "range(1, _k - 1)"),
     ("solver.py", "for _k in range(1, order)", "for _k in range(1, order - 1)"),
-    ("solver.py", "Omega3[_m] * Pi2[_k - _m]", "Omega3[_m] * Pi2[_m]"),
+    ("solver.py", "Pi2[_m] * Pi3[_k - _m]", "Pi2[_m] * Pi3[_m]"),
     ("solver.py", "m = parameters[3]", "m = parameters[4]"),
     ("solver.py", "Pi2 = path[1]", "Pi2 = path[2]"),
     ("solver.py", "1.0 / max(k, 1)", "1.0 / max(k, 2)"),
@@ -356,7 +342,7 @@ def test_a_sample_at_another_place_is_caught(monkeypatch):
 
 
 def test_another_choice_of_the_step_is_caught(monkeypatch):
-    """Steps of half an octave more are not those of Jorba and Zou."""
+    """Steps of half an octave more are not those of the tolerance."""
     right = Taylor._choose
     monkeypatch.setattr(Taylor, "_choose", lambda self, path: right(self, path) * 1.5)
     made = solvers(HEAVY_TOP, ("taylor",))
@@ -401,7 +387,7 @@ WRONG_IN_C = [
     ("rk4", "block.steps + choose(accepted", "block.steps + choose(~accepted"),
     ("dop853", "sum = sum + weights[q]", "sum = weights[q] + sum * 1.0000000000000002"),
     ("dop853", "all(10.0), 0.9", "all(10.0), 0.8"),
-    ("taylor", "_m <= _k;", "_m < _k;"),
+    ("taylor", "_m < _k;", "_m <= _k;"),
 ]
 
 

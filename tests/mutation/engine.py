@@ -78,15 +78,18 @@ CHECKS = (
 MUTANTS = (
     *of(
         "lower/jets",
-        "_multiply: rewrite Multiply(factor, tail) -> tail",
-        "_recurrence: rewrite PARTNERS[_1] -> _1",
-        "_combine: rewrite Negate(tail) -> tail",
-        "_add: rewrite right if _1 else left -> left if _1 else right",
+        "_partner: rewrite PARTNERS[_1] -> _1",
+        "_times: rewrite Multiply(factor, node) -> node",
         tests=("tests/lower/test_jets.py",),
     ),
     *of(
+        "lower/polynomials",
+        "sum_of: rewrite Negate(term) if _1 else term -> term",
+        "multiply: rewrite x * y -> x",
+        tests=("tests/lower/test_jets.py", "tests/lower/test_motion.py"),
+    ),
+    *of(
         "render/solvers",
-        "_stage: rewrite '_k - 1' if _1 else '_k' -> '_k'",
         "_recurrence: rewrite Negate(result) if _1 else result -> result",
         "_divisor: rewrite Number(Fraction(2)) -> Number(Fraction(1))",
         tests=("tests/lower/test_jets.py",),
@@ -94,7 +97,7 @@ MUTANTS = (
     *of(
         "solve/steps",
         "RungeKutta4.try_step: rewrite h * 0.5 -> h",
-        "Taylor._choose: rewrite 0.7 / _1 -> 7 / _1",
+        "Taylor._choose: rewrite 0.7 / _1 -> 0.9 / _1",
         "Taylor.try_step.at: rewrite total * after + _1 -> total + _1",
         tests=("tests/crosscheck/test_solvers.py -k steps_of_numpy",),
     ),

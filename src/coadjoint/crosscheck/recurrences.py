@@ -89,7 +89,7 @@ class _Running:
         for k in range(1, order):
             for stage in self.text.stages:
                 self._run(stage.starts, k)
-                for m in range(1, {"_k": k, "_k - 1": k - 1}[stage.last] + 1):
+                for m in range(1, k):
                     self._run(stage.terms, k, m)
                 self._run(stage.lines, k)
             self._run(self.text.rates, k)

@@ -115,7 +115,7 @@ def _orders(solver: SolverText) -> Iterable[Pair | Loop]:
     for stage in solver.stages:
         yield from _pairs(stage.starts)
         if stage.terms:
-            yield Loop(stage.last, tuple(_pairs(stage.terms)))
+            yield Loop(tuple(_pairs(stage.terms)))
         yield from _pairs(stage.lines)
     yield from _pairs(solver.rates)
 

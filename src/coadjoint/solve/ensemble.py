@@ -289,7 +289,7 @@ class Ensemble:
         finite = np.isfinite(state).all(axis=0)
         stuck = (time == lanes.time) | (took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
-        step = _Step(lanes, attempt, limits, time, accepted)
+        step = _Step(lanes=lanes, attempt=attempt, limits=limits, time=time, accepted=accepted)
         inside, outside = self._store_samples(going, step)
         left = outside < took
         left |= accepted & ~limits.are_inside(lanes, took, state)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -86,20 +86,6 @@ class Method(Protocol):
 
 # -- Taylor -------------------------------------------------------------------------------------
 
-#: The mantissa of 2^(i/8), i = 0..7.
-_PARTS: Final = np.array(
-    [
-        1.0,
-        1.0905077326652577,
-        1.189207115002721,
-        1.2968395546510096,
-        1.4142135623730951,
-        1.5422108254079407,
-        1.681792830507429,
-        1.8340080864093424,
-    ]
-)
-
 
 def rough_log2(a: Array) -> Array:
     """The logarithm to base 2 within 0.01, by operations that round alike everywhere.
@@ -113,15 +99,17 @@ def rough_log2(a: Array) -> Array:
     return np.asarray(exponent + ((2.0 - m * 0.3333333333333333) * m - 1.6666666666666667))
 
 
-def power_of_eighths(eighths: Array) -> Array:
-    """Two to the power of a number of eighths, which is rounded to an integer.
+def rough_power(octaves: Array) -> Array:
+    """Two to a power between -1000 and 1000, within one part in 5000, alike everywhere.
 
-    >>> power_of_eighths(np.array([8.2, -4.0])).tolist()
-    [2.0, 0.7071067811865476]
+    >>> bool(abs(rough_power(np.array([0.5])) - np.sqrt(2))[0] < 3e-4)
+    True
     """
-    whole = (eighths + 6755399441055744.0).view(np.int64) - 0x4338000000000000
-    scale = (((whole >> 3) + 1023) << 52).view(np.float64)
-    return np.asarray(_PARTS[whole & 7] * scale)
+    shifted = octaves + 6755399441055744.0
+    rest = octaves - (shifted - 6755399441055744.0)
+    part = ((rest * 0.055008 + 0.242209) * rest + 0.693283) * rest + 1.0
+    scale = ((shifted.view(np.int64) - 0x4338000000000000 + 1023) << 52).view(np.float64)
+    return np.asarray(part * scale)
 
 
 class Taylor:
@@ -169,16 +157,15 @@ class Taylor:
         )
 
     def _choose(self, path: Array) -> Array:
-        """The step of Jorba and Zou, rounded to eighths of an octave."""
+        """The step in which the last two orders are as small as the tolerances ask."""
         order = self.order
-        floor = np.full(path.shape[2], self.atol / self.rtol)
-        size = rough_log2(_larger(_norm(path[:, 0]), floor))
+        least = np.full(path.shape[2], self.atol)
+        size = rough_log2(_larger(self.rtol * _norm(path[:, 0]), least))
         one = (size - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
         two = (size - rough_log2(_norm(path[:, order]))) * (1.0 / order)
-        octaves = _smaller(one, two) - (2.0 + 0.7 / (order - 1)) * 1.4426950408889634
+        octaves = _smaller(one, two) - 0.7 / (order - 1) * 1.4426950408889634
         limit = np.full(octaves.shape, 1000.0)
-        bounded = _smaller(_larger(octaves, -limit), limit)
-        return power_of_eighths(bounded * 8.0 - 0.5)
+        return rough_power(_smaller(_larger(octaves, -limit), limit))
 
 
 def _norm(rows: Array) -> Array:

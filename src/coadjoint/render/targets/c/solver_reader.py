@@ -40,7 +40,7 @@ _UNROLLED = re.compile(
     r"#pragma GCC unroll 32\n#endif\n",
     re.MULTILINE,
 )
-_TERMS = re.compile(r"for \(int _m = 1; _m <= (_k|_k - 1); \+\+_m\)")
+_TERMS = "for (int _m = 1; _m < _k; ++_m)"
 _ASSIGNED = re.compile(r"((?:const )?V )?(\w+(?:\[(?:\d+|_k|_k \+ 1)\])?) = (.*)", re.DOTALL)
 _DRIVING = (
     "V _driving[DRIVING + 1]; for (int _i = 0; _i < DRIVING; ++_i) "
@@ -201,9 +201,8 @@ class _Reading:
     def _read_orders(self, statements: Iterator[tuple[str, str]]) -> None:
         """The loop over orders, to its end."""
         for kind, statement in statements:
-            terms = _TERMS.fullmatch(statement) if kind == "loop" else None
-            if terms:
-                self.body.orders.append(Loop(terms[1], tuple(self._read_terms(statements))))
+            if kind == "loop" and statement == _TERMS:
+                self.body.orders.append(Loop(tuple(self._read_terms(statements))))
             elif kind == "plain":
                 declared, name, value = self._assignment(statement)
                 if declared == "V ":
