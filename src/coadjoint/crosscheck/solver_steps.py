@@ -192,7 +192,7 @@ def _measure(
     worst, out, compared = 0.0, ensemble.out, 0
     assert out is not None
     for member, step in known.items():
-        if ensemble.status[member] == Status.DOMAIN:
+        if ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW):
             continue
         compared += 1
         for row, name in enumerate(solvers.subject.programs["rhs"].state):
@@ -345,7 +345,7 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
         advance(ensemble, 1)
         for member in range(few.size):
             taken = float(ensemble.time[member]) - START
-            if ensemble.status[member] == Status.DOMAIN:
+            if ensemble.status[member] == Status.DOMAIN or not ensemble.steps[member]:
                 continue
             try:
                 octaves = _choose(solvers, _point(solvers, few, member))
@@ -371,8 +371,9 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
 def _choose(solvers: Solvers, point: Mapping[str, float]) -> float:
     """The logarithm to base 2 of the step in which the last two orders are below the tolerance.
 
-    With the factor of A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99. It is that of all
-    the time there is where the last two orders vanish.
+    With the factor of A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99. No step is longer
+    than all the time there is, or than one in which the first order is four times the state, where
+    rates have branch points.
     """
     state, given = split(solvers.subject.programs["rhs"], point)
     series = solve(rates_of(solvers.subject), state, given, ORDER)
@@ -380,7 +381,9 @@ def _choose(solvers: Solvers, point: Mapping[str, float]) -> float:
     size = TOLERANCE * max(norms[0], 1.0)
     last = [k for k in (ORDER - 1, ORDER) if norms[k]]
     radius = min(((size / norms[k]) ** (1 / k) for k in last), default=math.inf)
-    return math.log2(min(radius * math.exp(-0.7 / (ORDER - 1)), FAR))
+    bounded = norms[1] > 0 and solvers.text.branches
+    change = 4 * max(norms[0], 1.0) / norms[1] if bounded else math.inf
+    return math.log2(min(radius * math.exp(-0.7 / (ORDER - 1)), change, FAR))
 
 
 # -- rung 5 ---------------------------------------------------------------------------------------
@@ -459,7 +462,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
             ensemble = solvers.begin(few, samples, size=float(samples[-1] - START), steps=2)
             solvers.advance[method][target](ensemble, 1)
             found.append(ensemble.state)
-            left |= ensemble.status == Status.DOMAIN
+            left |= np.isin(ensemble.status, (Status.DOMAIN, Status.STEP_UNDERFLOW))
         for member, step in known.items():
             if left[member]:
                 continue

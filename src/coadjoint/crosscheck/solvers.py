@@ -142,7 +142,7 @@ def _load(subject: Subject, text: str, compiling: Compiling) -> dict[str, dict[s
     """What advances members, by method and target."""
     programs = select_programs(subject.programs.values())
     functions = {name: _numpy_function(subject, each) for name, each in programs.items()}
-    numpy = NumpySolver(load_numpy(text), functions, _list_strict(subject))
+    numpy = NumpySolver(*load_numpy(text), functions, _list_strict(subject))
     advance = {method: {"numpy": numpy.advance(method)} for method in FLAGS}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), subject.system.name)

@@ -322,7 +322,9 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
-        Status.STEP_UNDERFLOW: f"no step was small enough {place}",
+        Status.STEP_UNDERFLOW: f"no step was small enough {place}"
+        if request.step is None
+        else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
 
