@@ -43,7 +43,7 @@ class Solution:
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
             the last point inside), ``NONFINITE`` (rates or steps are not finite),
             ``STEP_UNDERFLOW`` (no step was small enough for the tolerances), ``MAX_STEPS`` or
-            ``EVENT`` (a terminal event; the last sample is where it occurred).
+            ``EVENT`` (a terminal event, at the last sample).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
@@ -140,10 +140,7 @@ class Solution:
         return take_member(self, place)
 
     def at(self, t: ArrayLike) -> Solution:
-        """The same motion at other times, by the polynomials of its steps.
-
-        The states are those that samples at these times have, to the last bit; observables and the
-        drift since the start follow from them. What a trajectory of a batch did not reach is NaN.
+        """The same motion at other times, by its steps; NaN where one of a batch did not come.
 
         Args:
             t: A time, or several in any order, within the span of the solution.
@@ -310,27 +307,12 @@ class Solution:
             return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
-    @property
-    def _last_inputs(self) -> dict[str, float]:
-        """The last inputs by component."""
-        names = self.system.INPUTS.components
-        return dict(zip(names, self._inputs_over_time[:, -1].tolist(), strict=True))
-
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values, of one trajectory."""
+        from coadjoint.solve.summary import summarize
+
         self._check_alone("a summary")
-        parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
-        return {
-            "system": self.system.name,
-            "status": self.status,
-            "message": self.message,
-            "time": self.time_reached,
-            "samples": len(self),
-            "parameters": dict(parameters),
-            "final": self.final,
-            "drift": self.drift,
-            **({} if self.inputs is None else {"inputs": self._last_inputs}),
-        } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
+        return summarize(self)
 
     def to_xarray(self) -> Any:
         """The solution as an `xarray.Dataset` with units; see `coadjoint.solve.datasets`.
