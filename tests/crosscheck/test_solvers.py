@@ -8,6 +8,7 @@ import pytest
 
 from coadjoint.crosscheck import solver_steps
 from coadjoint.crosscheck.recurrences import check_recurrences, draw_points
+from coadjoint.crosscheck.solver_exact import Solvers
 from coadjoint.crosscheck.solver_objects import (
     NumpySolver,
     compile_solver,
@@ -16,7 +17,6 @@ from coadjoint.crosscheck.solver_objects import (
 )
 from coadjoint.crosscheck.solver_steps import (
     MEMBERS,
-    Solvers,
     check_bits,
     check_choice,
     check_steps,
