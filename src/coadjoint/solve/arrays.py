@@ -66,7 +66,7 @@ def check_call(
             "bind reads the state in place; expected a C-contiguous float64 array.",
             found=str(type(state).__name__),
         )
-    _check_rows(packed, rows, "state", system.name)
+    check_rows(packed, rows, "state", system.name)
     batch = packed.shape[1:]
     given = {
         "parameters": pack_parameters(system, parameters),
@@ -128,9 +128,12 @@ def as_float64(value: Any, name: str) -> Array:
             f"{name} is ragged: {error}. Expected rows of one length.", found=name
         ) from error
     if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        is_number = array.dtype.kind in "biufc"
+        shows_type = is_number or isinstance(value, np.ndarray)
+        found = f"has the type {array.dtype}" if shows_type else f"is {_short(value)}"
         raise KernelTypeError(
-            f"{name} has the type {array.dtype}; expected real numbers that float64 holds. "
-            "Convert it yourself if a loss is meant.",
+            f"{name} {found}; expected real numbers that float64 holds."
+            + " Convert it yourself if a loss is meant." * is_number,
             found=str(array.dtype),
             expected="float64",
         )
@@ -190,7 +193,7 @@ def pack_parameters(system: System, parameters: Any) -> Array:
         packed = _assemble(quantities.defaults, parameters or {}, quantities, "parameters")
     else:
         packed = as_float64(parameters, "parameters")
-        _check_rows(packed, quantities, "parameters", system.name)
+        check_rows(packed, quantities, "parameters", system.name)
     signed = packed[list(quantities.positive)]
     if not (signed > 0).all():  # a NaN is not positive either
         place = np.argwhere(~(signed > 0))[0]
@@ -238,7 +241,7 @@ def pack_inputs(system: System, inputs: Any) -> Array:
     if isinstance(inputs, Mapping):
         return _assemble(quantities.defaults, inputs, quantities, "inputs")
     packed = as_float64(inputs, "inputs")
-    _check_rows(packed, quantities, "inputs", system.name)
+    check_rows(packed, quantities, "inputs", system.name)
     return packed
 
 
@@ -311,7 +314,7 @@ def _assemble(
         batch = np.broadcast_shapes(*(np.shape(part) for part in ordered))
     except ValueError as error:
         raise KernelArgumentError(
-            f"{name} have batch shapes that do not fit together: "
+            f"the batch shapes of {name} do not fit together: "
             f"{', '.join(str(np.shape(part)) for part in ordered)}.",
             found=name,
         ) from error
@@ -339,15 +342,32 @@ def _components(key: str, value: Any, quantities: Quantities, name: str) -> dict
     return dict(zip(quantity.components, flat, strict=True))
 
 
-def _check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
+def check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
     """The first axis must have one row per component."""
     if array.ndim == 0 or array.shape[0] != quantities.size:
         raise KernelArgumentError(
-            f"{name} of {system} has the shape {array.shape}; expected ({quantities.size},) or "
-            f"({quantities.size}, ...), the rows being {', '.join(quantities.components)}.",
+            f"the shape of {name} of {system} is {array.shape}; expected ({quantities.size},) or "
+            f"({quantities.size}, *batch), the rows being {', '.join(quantities.components)}."
+            f"{suggest_axes(array.shape, quantities.size, name)}",
             found=list(array.shape),
             expected=quantities.size,
         )
+
+
+def suggest_axes(shape: tuple[int, ...], rows: int, name: str) -> str:
+    """What to do with an array whose components are not on the first axis; "" for other faults.
+
+    >>> suggest_axes((9, 6), 6, "state")
+    ' It looks transposed: pass state.T.'
+    >>> suggest_axes((2, 6, 9), 6, "state")
+    ' Components come first: pass np.moveaxis(state, 1, 0).'
+    """
+    if rows not in shape[1:]:
+        return ""
+    if len(shape) == 2:
+        return f" It looks transposed: pass {name}.T."
+    axis = len(shape) - 1 - shape[::-1].index(rows)
+    return f" Components come first: pass np.moveaxis({name}, {axis}, 0)."
 
 
 def _check_out(out: Any, shape: tuple[int, ...]) -> Array:

@@ -23,7 +23,6 @@ from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.recording import Recording
-from coadjoint.solve.request import check_memory
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
@@ -135,8 +134,6 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         parameters = parameters.reshape(-1, members)
     signal = _find_signal(system, request, batch)
     times = request.times
-    if request.samples > 1:
-        check_memory((n, members, times.size))
     run = Ensemble(
         state=request.state.reshape(n, members).copy(),
         parameters=parameters,
