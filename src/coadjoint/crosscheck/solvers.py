@@ -24,6 +24,7 @@ import numpy as np
 from coadjoint.crosscheck.compare import Figures
 from coadjoint.crosscheck.points import Array
 from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_points
+from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     FLAGS,
     Advance,
@@ -35,8 +36,6 @@ from coadjoint.crosscheck.solver_objects import (
 )
 from coadjoint.crosscheck.solver_steps import (
     MEMBERS,
-    START,
-    Solvers,
     check_bits,
     check_choice,
     check_steps,
