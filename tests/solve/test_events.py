@@ -10,8 +10,10 @@ from scipy.special import ellipk
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.events import Event
 from coadjoint.systems import rigid_body
+from tests.constrained import PENDULUM as ROD
 from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
+from tests.solve.domains import STONE, built
 from tests.solve.systems import FALL, OSCILLATOR, SWING, build
 
 PI = np.pi
@@ -310,6 +312,39 @@ def test_events_have_the_same_bits_for_any_threads_and_target(monkeypatch, optio
                 )
         assert other.at([0.1, 3.3]).state.tobytes() == first.at([0.1, 3.3]).state.tobytes()
     assert len(first.events["up"]) > 50
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "dop853"}, {"method": "scipy:DOP853"}], ids=str)
+def test_states_at_events_keep_the_constraints(options):
+    """A particle on a rod swings as a pendulum: at its lowest point x is 0 and y is -1."""
+    system = built(ROD)
+    run = {"t": (0, 20), "target": "numpy", **options}
+    start = [np.sin(1.5), -np.cos(1.5), 0.0, 0.0]
+    found = system.simulate(start, events=["x", "u"], samples=41, dense=True, **run)
+    quarter = ellipk(np.sin(0.75) ** 2)
+    lowest = found.events["x"]
+    assert np.abs(lowest.time - quarter * np.arange(1, 2 * len(lowest), 2)).max() < 1e-7
+    assert np.abs(lowest["y"] + 1).max() < 1e-8
+    for states in (lowest.state, found.events["u"].state, found.at([0.3, 7.7]).state):
+        assert np.abs(system.constraint_residual(states, target="numpy")).max() < 1e-14
+    assert np.abs(found.at(found.time).state - found.state).max() < 1e-12
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "dop853"}, {"method": "scipy:DOP853"}], ids=str)
+def test_events_before_the_edge_of_a_domain_are_found(options):
+    """A stone passes h = 1 after sqrt(2), and leaves the domain after 2: later events are none."""
+    system = built(STONE)
+    asked = ["h == 1", "h == -0.5", "t == 1.9"]
+    found = system.simulate([2.0, 0.0], (0, 5), events=asked, target="numpy", dense=True, **options)
+    assert found.status == "DOMAIN"
+    assert found.events["h == 1"].time == pytest.approx([np.sqrt(2)], abs=1e-9)
+    assert found.events["t == 1.9"]["h"] == pytest.approx([2 - 1.9**2 / 2], abs=1e-9)
+    assert len(found.events["h == -0.5"]) == 0
+    assert found.at(found.time_reached)["h"][0] == pytest.approx(0, abs=1e-9)
+    early = system.simulate(
+        [2.0, 0.0], (0, 5), events=Event("h == 1", terminal=True), target="numpy", **options
+    )
+    assert (early.status, early["h"][-1]) == ("EVENT", pytest.approx(1.0, abs=1e-12))
 
 
 def test_a_checkpoint_with_events_is_refused(tmp_path):

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 class Solution:
     """One trajectory, or a batch of them.
 
-    ``solution["Pi"]`` is ``(3, T)``, ``solution["Pi1"]`` and ``solution["energy"]`` are ``(T,)``.
-    Of a batch they are ``(3, *batch, T)`` and ``(*batch, T)``.
+    ``solution["Pi"]`` is ``(3, T)`` or ``(3, *batch, T)``; ``solution["energy"]`` is ``(T,)`` or
+    ``(*batch, T)``.
 
     Attributes:
         system: The System that was simulated.
@@ -42,14 +42,13 @@ class Solution:
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
             the last point inside), ``NONFINITE`` (rates or steps are not finite),
-            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances), ``MAX_STEPS`` or
-            ``EVENT`` (a terminal event, at the last sample).
+            ``STEP_UNDERFLOW`` (no step was small enough), ``MAX_STEPS`` or ``EVENT`` (terminal).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
             each trajectory has constants of its own; None if there are none.
         events: The events that were looked for, by name: times, states and members of each.
-        dense: The steps, from which `at` has the state at any time; None without ``dense=True``.
+        dense: The steps, by which `at` knows the state at any time; None without ``dense=True``.
     """
 
     def __init__(
