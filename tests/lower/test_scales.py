@@ -73,3 +73,26 @@ def test_products_of_momenta_stay_where_they_are_cheaper(name):
     program = lower(equations)["rhs"]
     most = {"rigid_body": 6, "so4_body": 30, "manakov_so4": 30, "heavy_top": 30}
     assert cost(program) <= most[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "most", "gone"),
+    [("chaplygin_ball", 119, {"Y1", "_e1", "_c1"}), ("routh_sphere", 90, set())],
+)
+def test_definitions_that_cancel_are_written_out(name, most, gone):
+    """Rates take fewer operations without them, and are the same function."""
+    equations = derive(read_spec(derivations_folder() / f"{name}.toml"))
+    program = lower(equations)["rhs"]
+    check_inverse(equations, program)
+    assert cost(program) <= most
+    assert not gone & {statement.name for statement in program.statements}
+    assert gone <= {name for name, _ in equations.definitions_of(equations.exact.rates)}
+
+
+def test_a_definition_that_cancels_wrongly_is_seen(monkeypatch):
+    """The exact check of lowering fails where another value is written out."""
+    equations = derive(read_spec(derivations_folder() / "chaplygin_ball.toml"))
+    close = type(equations).close
+    monkeypatch.setattr(type(equations), "close", lambda self, element: close(self, element) * 2)
+    with pytest.raises(CrossCheckError, match="dOmega"):
+        check_inverse(equations, lower(equations)["rhs"])

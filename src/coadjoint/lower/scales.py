@@ -18,9 +18,6 @@ from coadjoint.exact import Element
 from coadjoint.lower.products import Product
 from coadjoint.lower.program import Program
 
-#: How an operation of each member counts: a quotient keeps a unit busy for so many products.
-_DIVISION = 8
-
 
 def find_scales(equations: Equations) -> dict[str, Element]:
     """The scale of each component of the state that has one."""
@@ -81,6 +78,5 @@ class Scales:
 
 
 def cost(program: Program) -> int:
-    """What a Program costs for each member."""
-    counts = program.operation_counts()
-    return sum(count * (_DIVISION if kind == "divide" else 1) for kind, count in counts.items())
+    """Operations of a Program for each member."""
+    return sum(program.operation_counts().values())
