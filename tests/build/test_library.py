@@ -112,9 +112,11 @@ def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
         library._key(replace(compiler, version="another"), SOURCES, "exact"),
         library._key(replace(compiler, command=("/bin/true",)), SOURCES, "exact"),
     ]
-    for name in ("__version__", "_processor", "SUPPORT"):
+    for name in ("__version__", "tell_processor", "SUPPORT"):
         with monkeypatch.context() as patch:
-            patch.setattr(library, name, (lambda: "another") if name == "_processor" else "another")
+            patch.setattr(
+                library, name, (lambda: "another") if name == "tell_processor" else "another"
+            )
             keys.append(library._key(compiler, SOURCES, "exact"))
     assert len(set(keys)) == len(keys) == 9
     assert library._key(compiler, SOURCES, "exact") == keys[0]

@@ -44,6 +44,7 @@ class Library:
         build: The build that it must say it is, ``exact`` or ``fast``.
         source: SHA-256 of the C file that it was compiled from.
         kind: What that file is.
+        key: Hash of all that the object depends on.
 
     Raises:
         CompilerError: It cannot be loaded, carries another id, or is another build.
@@ -57,8 +58,9 @@ class Library:
         build: str,
         source: str = "",
         kind: Source = KERNEL,
+        key: str = "",
     ) -> None:
-        self.name, self.source = name, source
+        self.name, self.source, self.key = name, source, key
         self._places: dict[str, int] = {}
         try:
             # CDLL, not PyDLL: calls release the interpreter lock.
@@ -180,7 +182,7 @@ def load_library(
             raise CompilerError(
                 f"the {kind.stem} of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error
-        library = Library(fresh, name, identity, build, source, kind)
+        library = Library(fresh, name, identity, build, source, kind, key)
         verify(library)
         with suppress(OSError, OutputError):  # it is good; the next process compiles again
             store(key, fresh.read_bytes())
@@ -197,11 +199,12 @@ def find_library(
         OutputError: The folder has no such source.
     """
     sources = _sources(folder, kind)
-    cached = fetch(_key(find_compiler(), sources, build, kind))
+    key = _key(find_compiler(), sources, build, kind)
+    cached = fetch(key)
     if cached is not None:
         with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
             source = _hash(sources[kind.files[0]])
-            return Library(cached, name, identity, build, source, kind)
+            return Library(cached, name, identity, build, source, kind, key)
     return None
 
 
@@ -230,7 +233,7 @@ def _key(compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source
         "flags": compiler.flags(build, kind),
         "support": SUPPORT,
         "engine": __version__,
-        "machine": [platform.system(), platform.machine(), _processor()],
+        "machine": [platform.system(), platform.machine(), tell_processor()],
     }
     return _hash(json.dumps(content, sort_keys=True).encode())
 
@@ -240,7 +243,7 @@ def _hash(content: bytes) -> str:
 
 
 @cache
-def _processor() -> str:
+def tell_processor() -> str:
     """What tells processors apart that share a home folder."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()

@@ -20,7 +20,7 @@ from coadjoint.lower.program import FUNCTIONS, ZERO, Output, Program, Statement,
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH
-from coadjoint.render.solvers import arrange, arrange_function
+from coadjoint.render.solvers import arrange, arrange_function, select_programs
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
@@ -113,7 +113,7 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
-    rhs = next(program for program in context.programs if program.name == "rhs")
+    solved = select_programs(context.programs)
     table = dop853()
     rendered = render_templates(
         tuple(TEMPLATES.values()),
@@ -145,8 +145,9 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
                 for table, quantities in _tables(context).items()
             },
             "domain": list(map(declaration, context.domain)),
-            "solver": arrange(rhs),
-            "rates": arrange_function(rhs, "_rates"),
+            "solver": arrange(solved),
+            "solved": {name: arrange_function(name, each) for name, each in solved.items()},
+            "strict": [bound.strict for bound in context.domain],
             "dop853": {
                 each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
             },

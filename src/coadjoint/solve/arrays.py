@@ -197,11 +197,22 @@ def pack_parameters(system: System, parameters: Any) -> Array:
         component = quantities.components[quantities.positive[place[0]]]
         value = float(signed[tuple(place)])
         raise KernelArgumentError(
-            f"parameter {component} of {system.name} is {value:g}; expected a positive value.",
+            f"parameter {component}{tell_member(place)} of {system.name} is {value:g}; expected a "
+            "positive value.",
             found=value,
             component=component,
         )
     return packed if parameters is not None else _keep(packed, quantities)
+
+
+def tell_member(place: NDArray[np.intp]) -> str:
+    """Where in a batch something is, given its row and member; "" without a batch.
+
+    >>> tell_member(np.array([0, 4])), tell_member(np.array([0, 4, 1])), tell_member(np.array([0]))
+    (' of member 4', ' of member (4, 1)', '')
+    """
+    member = tuple(place[1:].tolist())
+    return f" of member {member[0] if len(member) == 1 else member}" if member else ""
 
 
 def pack_inputs(system: System, inputs: Any) -> Array:
