@@ -60,8 +60,8 @@ CHECKS = (
         tests=("tests/derive/test_projection.py -k undone",),
     ),
     *of(
-        "lowering",
-        "_shorten: then element",
+        "lower/definitions",
+        "shorten: then element",
         tests=("tests/lower/test_lowering.py -k 'careful_hand and kirchhoff'",),
     ),
     *of(
@@ -156,7 +156,7 @@ MUTANTS = (
     ),
     *of(
         "numpy/kernel.py.j2",
-        "driving: use :1 for chunk in array chunk ndim",
+        "driving: use 2 for 1 in given ndim reshape",
         tests=("tests/crosscheck/test_driven.py",),
     ),
     *of(
