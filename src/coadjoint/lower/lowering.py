@@ -17,7 +17,7 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.derive import Equations
-from coadjoint.derive.formulas import Rows, rows_of
+from coadjoint.derive.formulas import Rows, rhs, rows_of
 from coadjoint.derive.mechanics.solver import forward_name, scaled_name
 from coadjoint.exact import Element, Field
 from coadjoint.exact.rationals import Written
@@ -27,6 +27,12 @@ from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slope
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
+from coadjoint.lower.tables import (
+    UNROLLED_PRODUCTS,
+    differentiate_along,
+    find_products,
+    loop_over,
+)
 from coadjoint.lower.vanishing import find_hidden_zeros
 
 
@@ -273,15 +279,34 @@ def lower(equations: Equations) -> dict[str, Program]:
     definitions and are as cheap as these make them.
     """
     programs: dict[str, Program] = {}
-    for name in KERNEL_FUNCTIONS:
+    looped = _loop(equations)
+    for name, function in KERNEL_FUNCTIONS.items():
         rows = rows_of(equations, name)
-        if rows is not None:
-            programs[name] = (
-                _jacobian(name, rows, programs["rhs"])
-                if rows.by
-                else _clear_hidden_zeros(equations, name, rows)
-            )
+        if rows is None or function.looped == ("only" if looped is None else "never"):
+            continue
+        if looped is not None and name == "rhs":
+            programs[name] = looped
+        elif looped is not None and rows.along:
+            programs[name] = differentiate_along(looped, rows)
+        elif rows.by:
+            programs[name] = _jacobian(name, rows, programs["rhs"])
+        else:
+            programs[name] = _clear_hidden_zeros(equations, name, rows)
     return programs
+
+
+def _loop(equations: Equations) -> Program | None:
+    """The rates as loops over a table of coefficients, where they are many products."""
+    products = find_products(equations)
+    if sum(map(len, products)) <= UNROLLED_PRODUCTS:
+        return None
+    rows = rhs(equations)
+    definitions = equations.definitions_of(rows.elements)
+    lowering = Lowering(equations, [element for _, element in definitions])
+    named = [(name, lowering.node(element)) for name, element in definitions]
+    needed = [(name, lowering.graph.symbol(name)) for name, _ in definitions]
+    program = _name(equations, "rhs", lowering, (named, needed), rows.shape, rows.state)
+    return loop_over(program, rows, products)
 
 
 def _clear_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
@@ -322,13 +347,25 @@ def _program(
     state: tuple[str, ...],
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
-    setting = equations.setting
     shorter = [(label, _shorten(equations, element)) for label, element in outputs]
     definitions, outputs = _inline_single_uses(equations, shorter)
     lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
-    naming = Naming(lowering.graph, named, results, setting.parameters)
+    return _name(equations, name, lowering, (named, results), shape, state)
+
+
+def _name(
+    equations: Equations,
+    name: str,
+    lowering: Lowering,
+    nodes: tuple[Sequence[tuple[str, int]], Sequence[tuple[str, int]]],
+    shape: tuple[int, ...],
+    state: tuple[str, ...],
+) -> Program:
+    """One Program from the nodes of definitions and outputs."""
+    setting = equations.setting
+    naming = Naming(lowering.graph, *nodes, setting.parameters)
     driving = {"inputs": setting.inputs, "time": setting.time}
     return naming.program(name, shape, state=state, parameters=setting.parameters, **driving)
 
