@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 from fractions import Fraction
 
-from coadjoint.declared import KernelContext, Quantity
+from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.lower.program import (
     Add,
     Call,
@@ -160,5 +160,29 @@ PENDULUM = KernelContext(
         ),
         program("energy", "q p", "k", "_p1 = sqrt(k)", "p*p/2 - _p1*_p1*cos(q)", (), "energy"),
         program("observables", "q p", "k", "", "sqrt(p*p)", (1,), "speed"),
+    ),
+)
+
+#: An oscillator on a circle of radius r, as long as q < 1/2 + p and p >= -3/4.
+BOUNDED = KernelContext(
+    name="bounded",
+    spec="derivations/bounded.toml",
+    license="",
+    routes=("Route: typed by hand.",),
+    equations=("dq/dt = p", "dp/dt = -q"),
+    state=(Quantity("q", (), "1", ("q",)), Quantity("p", (), "1", ("p",))),
+    parameters=(Quantity("r", (), "1", ("r",), (1.0,), positive=True),),
+    observables=(Quantity("square", (), "1", ("square",)),),
+    programs=(
+        program("rhs", "q p", "r", "", "p; -q", (2,), "dq/dt dp/dt"),
+        program("energy", "q p", "r", "", "(q*q + p*p)/2", (), "energy"),
+        program("observables", "q p", "r", "_p1 = r*r", "(q*q + p*p)/_p1", (1,), "square"),
+        program("domain", "q p", "r", "_p1 = r/2", "_p1 + p - q; 3*_p1/2 + p", (2,), "one two"),
+        program("constraint_residual", "q p", "r", "", "q*q + p*p - r*r", (1,), "circle"),
+        program("projection", "q p", "r", "_t1 = r/sqrt(q*q + p*p)", "_t1*q; _t1*p", (2,), "q p"),
+    ),
+    domain=(
+        Bound("one", "condition", True, ("q", "p", "r")),
+        Bound("two", "condition", False, ("p", "r")),
     ),
 )

@@ -74,7 +74,7 @@ INVARIANT_TERMS = 25_000
 #: Velocities coupled by a kinetic energy that the kernel solves for: unrolled, twelve take 90
 #: intermediates, whose derivatives are most of a Jacobian.
 COUPLED_VELOCITIES = 12
-#: Work of one search whose result nobody claims, in operations of exact arithmetic, of which each
+#: Work of one search whose result is not claimed, in operations of exact arithmetic, of which each
 #: takes 1 to 15 microseconds; the largest one of a shipped system, the Casimirs of so(8), takes
 #: 410 000. See `coadjoint.prove.searches`.
 SEARCH_WORK = 2_000_000

@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from coadjoint.crosscheck import solver_steps
@@ -24,7 +23,7 @@ from coadjoint.crosscheck.solver_steps import (
     check_together,
 )
 from coadjoint.crosscheck.solver_text import FILES, SolverTexts, check_solver_texts
-from coadjoint.crosscheck.solvers import check_solvers
+from coadjoint.crosscheck.solvers import _numpy_function, check_solvers
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import (
@@ -32,19 +31,18 @@ from coadjoint.lower.program import (
     Call,
     Multiply,
     Negate,
-    Number,
     Symbol,
     children,
     with_children,
 )
 from coadjoint.render.kernels import render_system
-from coadjoint.render.solvers import Line, arrange
+from coadjoint.render.solvers import Line, arrange, select_programs
 from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
 from tests.kernels import COMPILER, ProgramReference
-from tests.programs import HEAVY_TOP, PENDULUM
+from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM
 
 needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
-CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM}
+CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM, "bounded": BOUNDED}
 
 
 @cache
@@ -58,16 +56,24 @@ def rates_of(context):
     return next(each for each in context.programs if each.name == "rhs")
 
 
+def recurrences_of(context):
+    """Its recurrences."""
+    return arrange(select_programs(context.programs))
+
+
 def subject(context):
     """A system with its Programs in the place of equations, and its NumPy kernel alone."""
     kernel = {}
     exec(texts_by_name(context.name)["kernel.py"], kernel)
 
-    def rhs(state, parameters, target, out):
-        return kernel["rhs"](state, parameters, out)
+    def function(name):
+        return lambda state, parameters, target, out: kernel[name](state, parameters, out)
 
     system = SimpleNamespace(
-        name=context.name, PARAMETERS={each.name: each for each in context.parameters}, rhs=rhs
+        name=context.name,
+        PARAMETERS={each.name: each for each in context.parameters},
+        DOMAIN=context.domain,
+        **{each.name: function(each.name) for each in context.programs},
     )
     programs = {each.name: each for each in context.programs}
     return Subject(programs, ProgramReference(context.programs), system, ("numpy", "c"))
@@ -75,9 +81,14 @@ def subject(context):
 
 def texts_of(context, spoil=lambda texts: texts):
     """The solvers of a system as texts."""
-    rendered = spoil(dict(texts_by_name(context.name)))
-    files = {file: rendered[file] for file in FILES}
-    return SolverTexts(rates_of(context), arrange(rates_of(context)), files, context.name)
+    rendered, programs = spoil(dict(texts_by_name(context.name))), select_programs(context.programs)
+    return SolverTexts(
+        programs=programs,
+        recurrences=arrange(programs),
+        strict=tuple(bound.strict for bound in context.domain),
+        files={file: rendered[file] for file in FILES},
+        system=context.name,
+    )
 
 
 def replaced(file, good, bad):
@@ -97,7 +108,7 @@ def replaced(file, good, bad):
 def test_recurrences_are_the_power_series(context):
     """Seven coefficients of each component are compared at two points."""
     rates = rates_of(context)
-    assert check_recurrences(arrange(rates), subject(context)) == 2 * 7 * len(rates.state)
+    assert check_recurrences(recurrences_of(context), subject(context)) == 2 * 7 * len(rates.state)
 
 
 def changed(text, change):
@@ -129,47 +140,34 @@ def flip_term(part, line):
     return None
 
 
-def drop_start(part, line):
-    """A sum without its first term."""
-    if part == "starts" and isinstance(line.value, Multiply):
-        return Line(line.name, Number(0))
+def drop_end(part, line):
+    """A sum without its last term."""
+    if part == "lines" and isinstance(line.value, Add):
+        return Line(line.name, line.value.left)
     return None
 
 
 def take_other_order(part, line):
     """A coefficient of the order before."""
-    if part == "starts" and isinstance(line.value, Multiply):
-        name = line.value.right.name.replace("[_k]", "[0]")
-        return Line(line.name, Multiply(line.value.left, Symbol(name)))
+    if part == "lines" and isinstance(line.value, Add):
+        left, right = line.value.right.left, line.value.right.right
+        before = Symbol(left.name.replace("[_k]", "[0]"))
+        return Line(line.name, Add(line.value.left, Multiply(before, right)))
     return None
 
 
-@pytest.mark.parametrize("change", [flip_term, drop_start, take_other_order])
+@pytest.mark.parametrize("change", [flip_term, drop_end, take_other_order])
 def test_a_wrong_recurrence_is_caught(change):
     """By the power series of the equations."""
-    spoiled = changed(arrange(rates_of(HEAVY_TOP)), change)
+    spoiled = changed(recurrences_of(HEAVY_TOP), change)
     with pytest.raises(CrossCheckError, match=r"rung 2.*recurrences") as caught:
         check_recurrences(spoiled, subject(HEAVY_TOP))
     assert caught.value.rung == 2
 
 
-@pytest.mark.parametrize("bound", [("_k", "_k - 1"), ("_k", "_k")])
-def test_a_wrong_bound_of_a_loop_is_caught(bound):
-    """A sum that ends a term too early; the right bound passes."""
-    text = arrange(rates_of(HEAVY_TOP))
-    old, new = bound
-    stages = tuple(replace(s, last=new if s.last == old else s.last) for s in text.stages)
-    spoiled = replace(text, stages=stages)
-    if old == new:
-        assert check_recurrences(spoiled, subject(HEAVY_TOP))
-        return
-    with pytest.raises(CrossCheckError, match="rung 2"):
-        check_recurrences(spoiled, subject(HEAVY_TOP))
-
-
 def test_a_wrong_partner_is_caught():
     """A sine whose slope is a sine."""
-    text = arrange(rates_of(PENDULUM))
+    text = recurrences_of(PENDULUM)
     sines = [line for line in text.first if isinstance(line.value, Call)]
     names = {line.value.function: line.name.removesuffix("[0]") for line in sines}
 
@@ -192,18 +190,18 @@ def test_texts_read_back(context):
 
 
 SPOILED = [
-    ("solver.c", "_m <= _k;", "_m < _k;"),
-    ("solver.c", "_m <= _k;", "_m <= _k - 1;"),
-    ("solver.c", "Pi1[_k] * _q5", "-Pi1[_k] * _q5"),
-    ("solver.c", "Omega3[_m] * Pi2[_k - _m]", "Omega3[_m] * Pi2[_k + _m]"),
-    ("solver.c", "Omega3[_m] * Pi2[_k - _m]", "Pi2[_m] * Pi2[_k - _m]"),
+    ("solver.c", "_m < _k;", "_m <= _k;"),
+    ("solver.c", "_m < _k;", "_m < _k - 1;"),
+    ("solver.c", "_q8 * _j1 +", "-_q8 * _j1 +"),
+    ("solver.c", "Pi2[_m] * Pi3[_k - _m]", "Pi2[_m] * Pi3[_k + _m]"),
+    ("solver.c", "Pi2[_m] * Pi3[_k - _m]", "Pi2[_m] * Pi2[_k - _m]"),
     ("solver.c", "_block->fixed[1] = _p2", "_block->fixed[1] = _p3"),
     ("solver.c", "m = _block->parameters[3]", "m = _block->parameters[4]"),
     ("solver.c", "Pi2 = _path[1]", "Pi2 = _path[2]"),
     ("solver.c", "Pi2[0] = _block->state[1]", "Pi2[0] = _block->state[2]"),
     ("solver.c", "1.0 / 3,", "1.0 / 4,"),
-    ("solver.c", "_rates[0] = ", "_rates[0] = -"),
-    ("solver.c", "_rates[1]", "_rates[2]"),
+    ("solver.c", "_rows[0] = ", "_rows[0] = -"),
+    ("solver.c", "_rows[1]", "_rows[2]"),
     ("solver.c", "0.05260015195876773", "0.05260015195876774"),
     (
         "solver.c",
@@ -217,12 +215,12 @@ SPOILED = [
         "block.time = choose(accepted, block.time,",
     ),
     ("solver.c", "error < 1.0", "error < 2.0"),
-    ("solver.c", "(2.0 + 0.7", "(1.0 + 0.7"),
+    ("solver.c", "two) - 0.7", "two) - 0.9"),
     ("solver.c", "half = h * 0.5", "half = h * 0.25"),
     ("solver.h", "rtol, atol, size", "atol, rtol, size"),
-    ("solver.py", "range(1, _k + 1)", "range(1, _k)"),
+    ("solver.py", "range(1, _k)", "range(1, _k - 1)"),
     ("solver.py", "for _k in range(1, order)", "for _k in range(1, order - 1)"),
-    ("solver.py", "Omega3[_m] * Pi2[_k - _m]", "Omega3[_m] * Pi2[_m]"),
+    ("solver.py", "Pi2[_m] * Pi3[_k - _m]", "Pi2[_m] * Pi3[_m]"),
     ("solver.py", "m = parameters[3]", "m = parameters[4]"),
     ("solver.py", "Pi2 = path[1]", "Pi2 = path[2]"),
     ("solver.py", "1.0 / max(k, 1)", "1.0 / max(k, 2)"),
@@ -238,6 +236,27 @@ def test_a_spoiled_text_is_caught(file, good, bad):
         check_solver_texts(texts_of(HEAVY_TOP, replaced(file, good, bad)))
 
 
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("_p1 + p - q", "_p1 - p + q"),
+        ("_p1 = r / 2.0", "_p1 = r / 4.0"),
+        ("rows[0] > 0.0", "rows[0] >= 0.0"),
+        ("rows[1] < INFINITY", "rows[0] < INFINITY"),
+        ("_t1 * q;", "_t1 * p;"),
+        ("choose(finite, rows[i], state[i])", "choose(finite, state[i], rows[i])"),
+        ("    const V p = _state[1];", "    const V p = _state[0];"),
+        ("find_domain(block, after, state", "find_domain(block, block->time, state"),
+        ("n < 40", "n < 20"),
+        ("(*inside + outside) * 0.5", "(*inside + outside) * 0.25"),
+    ],
+)
+def test_a_spoiled_limit_is_caught(good, bad):
+    """Rows of the domain and of the projection, how they are compared, and where it ends."""
+    with pytest.raises(CrossCheckError, match="rung 3"):
+        check_solver_texts(texts_of(BOUNDED, replaced("solver.c", good, bad)))
+
+
 def test_a_function_without_its_suffix_is_caught():
     """A sine of a vector is no sine of a number."""
     with pytest.raises(CrossCheckError, match="rung 3"):
@@ -250,16 +269,15 @@ def test_a_function_without_its_suffix_is_caught():
 def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exact"):
     """Solvers of some methods, in NumPy and perhaps in C."""
     system, files = subject(context), texts_of(context, spoil).files
-
-    def rates(state, parameters, driving):
-        return system.system.rhs(state, parameters, "numpy", np.empty(state.shape))
-
-    numpy = NumpySolver(load_numpy(files["solver.py"]), rates)
+    programs = select_programs(context.programs)
+    functions = {name: _numpy_function(system, each) for name, each in programs.items()}
+    strict = tuple(bound.strict for bound in context.domain)
+    numpy = NumpySolver(load_numpy(files["solver.py"]), functions, strict)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for method in methods if folder else ():
         path = compile_solver(files, folder, method, build)
         advance[method]["c"] = load_solver(path, context.name)
-    return Solvers(system, arrange(rates_of(context)), advance)
+    return Solvers(system, recurrences_of(context), advance)
 
 
 def points(system):
@@ -324,7 +342,7 @@ def test_a_sample_at_another_place_is_caught(monkeypatch):
 
 
 def test_another_choice_of_the_step_is_caught(monkeypatch):
-    """Steps of half an octave more are not those of Jorba and Zou."""
+    """Steps of half an octave more are not those of the tolerance."""
     right = Taylor._choose
     monkeypatch.setattr(Taylor, "_choose", lambda self, path: right(self, path) * 1.5)
     made = solvers(HEAVY_TOP, ("taylor",))
@@ -333,21 +351,43 @@ def test_another_choice_of_the_step_is_caught(monkeypatch):
 
 
 @needs_compiler
-def test_c_and_numpy_have_the_same_bits(tmp_path):
+@pytest.mark.parametrize(("context", "least"), [(HEAVY_TOP, 500), (BOUNDED, 100)])
+def test_c_and_numpy_have_the_same_bits(tmp_path, context, least):
     """Runs of each method, and the count of numbers."""
-    made = solvers(HEAVY_TOP, ("taylor", "dop853", "rk4"), tmp_path)
+    made = solvers(context, ("taylor", "dop853", "rk4"), tmp_path)
     equal = check_bits(made, points(made), 0.125)
-    assert min(equal.values()) > 500
+    assert min(equal.values()) > least
+
+
+WRONG_LIMITS_IN_C = [
+    ("_p1 + p - q", "_p1 + p + q"),
+    ("_rows[0] = _t1 * q", "_rows[0] = _t1 * q * 1.0000000000000002"),
+    ("left |= accepted & ~are_inside(&block, took, state)", "left |= accepted & block.active & 0"),
+    ("left |= wanted & ~good;", ""),
+    ("n < 40", "n < 20"),
+]
+
+
+@needs_compiler
+@pytest.mark.parametrize(("good", "bad"), WRONG_LIMITS_IN_C)
+def test_wrong_limits_in_c_are_caught_by_bits(good, bad, tmp_path, monkeypatch):
+    """Where members leave the domain, and what keeps them on a circle."""
+    made = solvers(BOUNDED, ("rk4",), tmp_path, replaced("solver.c", good, bad))
+    runs = solver_steps._runs
+    own = lambda batch, size: (each for each in runs(batch, size) if each[0] == "rk4")  # noqa: E731
+    monkeypatch.setattr(solver_steps, "_runs", own)
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        check_bits(made, points(made), 0.125)
 
 
 WRONG_IN_C = [
     ("rk4", "h * 0.16666666666666666", "h * 0.16666666666666669"),
     ("rk4", "block.time = choose(accepted, time, block.time)", "block.time = time + took * 1e-9"),
-    ("rk4", "run->samples[block->next[w]] - block->time[w]", "run->samples[block->next[w]] - 0.5"),
+    ("rk4", "run->samples[s] - block->time[w]", "run->samples[s] - 0.5"),
     ("rk4", "block.steps + choose(accepted", "block.steps + choose(~accepted"),
     ("dop853", "sum = sum + weights[q]", "sum = weights[q] + sum * 1.0000000000000002"),
     ("dop853", "all(10.0), 0.9", "all(10.0), 0.8"),
-    ("taylor", "_m <= _k;", "_m < _k;"),
+    ("taylor", "_m < _k;", "_m <= _k;"),
 ]
 
 

@@ -27,7 +27,7 @@ def expand(rhs, state, **given):
     """Coefficients of a motion, exact; a pair is an input and its rate."""
     first = {name: value if isinstance(value, tuple) else (value,) for name, value in given.items()}
     return run_recurrences(
-        arrange(rhs),
+        arrange({"rates": rhs}),
         {name: Fraction(value) for name, value in state.items()},
         {name: tuple(map(Fraction, values)) for name, values in first.items()},
         ORDER,
@@ -170,5 +170,5 @@ def test_loops_hold_so_many_sums():
     """Many products stand in several loops."""
     names = " ".join(f"x{i}" for i in range(SUMS + 2))
     rows = "; ".join(f"x{i}*x{i}" for i in range(SUMS + 2))
-    stages = [stage for stage in arrange(rates(names, rows)).stages if stage.terms]
+    stages = [stage for stage in arrange({"rates": rates(names, rows)}).stages if stage.terms]
     assert [len(stage.terms) for stage in stages] == [SUMS, 2]

@@ -6,7 +6,7 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError, SpecError
 from coadjoint.prove import Verdict, bound_symmetries, prove
-from coadjoint.prove.bound_symmetries import about_constrained_symmetries
+from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from tests.constrained import BALL, PARTICLE, SLEIGH, motion
 from tests.prove.test_momenta import AXIAL
 from tests.specs import spec
@@ -65,7 +65,7 @@ TURNED = '[symmetries.J]\nalgebra = "so(2)"\nvector = "b"\ngenerators = { phi = 
 
 def examined(text, *changes):
     """Verdict by statement."""
-    claims = list(about_constrained_symmetries(motion(text, *changes)))
+    claims = list(about_motion_symmetries(motion(text, *changes)))
     assert {kind for _, kind, _ in claims} <= {"symmetry", "momentum"}
     return {statement: examine().verdict for statement, _, examine in claims}
 

@@ -25,6 +25,10 @@ def check_same(found, solution):
         if ours is not None:
             assert ours.shape == theirs.shape, name
             assert ours.tobytes() == theirs.tobytes(), name
+    for name in ("steps", "rejected", "time_reached"):
+        assert np.array_equal(getattr(found, name), getattr(solution, name)), name
+    assert repr(found.final) == repr(solution.final)
+    assert repr(found.drift) == repr(solution.drift)
     for name in ("system", "status", "message", "settings"):
         assert np.array_equal(getattr(solution, name), getattr(found, name)), name
 
@@ -74,6 +78,15 @@ def shake_top():
     return kapitza_top.simulate(start, (0, 0.2), samples=5, target="numpy")
 
 
+def drive_members(force=None, **options):
+    """Three pushed points, the last of which leaves the finite numbers between two samples."""
+    times = np.array([0.0, 0.5, 1.0])
+    state = np.array([[0.3, 0.1, 1e308], [0.1, 0.2, 1e308]])
+    inputs = times, {"f": [1, 3, 2], "k": np.ones((2, 3))}, "linear"
+    inputs = inputs if force is None else {"f": force}
+    return built(POINT).simulate(state, (0, 1), None, inputs, target="numpy", **options)
+
+
 #: One solution of each kind.
 RUNS = {
     "one": made,
@@ -84,4 +97,8 @@ RUNS = {
     "one sample": partial(made, time=np.zeros(1), state=np.ones((3, 1))),
     "batch": partial(made, (5,)),
     "batch of two axes": partial(made, (3, 2)),
+    "members on their way": partial(drive_members, samples=4),
+    "the end of members": partial(drive_members, samples=1),
+    "members with constant inputs": partial(drive_members, 1 / 3, samples=3),
+    "members with inputs of each": partial(drive_members, [1, 1 / 3, 2], samples=3),
 }

@@ -119,13 +119,6 @@ class LieAlgebra(Invariants):
             result[k] = result[k] + multiply_constant(xi[i] * eta[j], c)
         return tuple(result)
 
-    def ad(self, xi: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
-        """Matrix of ``eta -> [xi, eta]``: entry ``[k][j] = c_ij^k xi^i``."""
-        matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
-        for i, j, k, c in self.structure():
-            matrix[k][j] = matrix[k][j] + multiply_constant(xi[i], c)
-        return tuple(map(tuple, matrix))
-
     def ad_star(self, xi: Sequence[Any], mu: Sequence[Any]) -> tuple[Any, ...]:
         """``<ad*_xi mu, eta> = <mu, [xi, eta]>``, so ``(ad*_xi mu)_j = c_ij^k xi^i mu_k``.
 

@@ -89,7 +89,7 @@ class _Running:
         for k in range(1, order):
             for stage in self.text.stages:
                 self._run(stage.starts, k)
-                for m in range(1, {"_k": k, "_k - 1": k - 1}[stage.last] + 1):
+                for m in range(1, k):
                     self._run(stage.terms, k, m)
                 self._run(stage.lines, k)
             self._run(self.text.rates, k)
@@ -190,7 +190,12 @@ def draw_points(subject: Subject, count: int, time: float = 0.5) -> Batch:
         batch = subject.points.draw_around(subject.inside, seed=7, count=count).join(batch)
     if "time" in batch.arrays:
         batch.arrays["time"][...] = time
-    batch = batch.take(np.flatnonzero(subject.is_defined("rhs", batch)))
+    defined = subject.is_defined("rhs", batch)
+    if "domain" in subject.programs:
+        outside = ~(subject.evaluate("domain", batch, "numpy") > 0).all(axis=0)
+        order = np.argsort(outside, kind="stable")
+        batch, defined = batch.take(order), defined[order]
+    batch = batch.take(np.flatnonzero(defined))
     if not batch.size:
         raise CrossCheckError(
             f"rung 2: {subject.system.name}: the rates have a value at no point that was drawn, so "

@@ -12,25 +12,35 @@ import ctypes
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import _run, find_compiler
+from coadjoint.build.compiler import MACHINES, _run, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import CompilerError, OutputError
-from coadjoint.solve.ensemble import Ensemble
+from coadjoint.solve.ensemble import Ensemble, Limits, Record
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
 ORDER: Final = 7
 #: Each method with what makes an object of it.
 FLAGS: Final = {"taylor": f"-DORDER={ORDER}", "dop853": "-DDOP853", "rk4": "-DRK4"}
-#: Goes on with all members of an ensemble for so many steps at most; how many still go on.
-Advance = Callable[[Ensemble, int], int]
+#: The degree of the path of each method.
+DEGREES: Final = {"taylor": ORDER, "dop853": 7, "rk4": 3}
+
+
+class Advance(Protocol):
+    """Goes on with all members of an ensemble for so many steps at most; how many still go on."""
+
+    def __call__(self, ensemble: Ensemble, work: int, record: Record | None = None) -> int:
+        """Accepted steps are added to a record; the call ends when it is full."""
+        ...
+
 
 _SIZE, _DOUBLE, _PLACE = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 _PLACES: Final = ("state", "time", "step", "next", "steps", "rejected", "status")
@@ -50,6 +60,8 @@ class Run(ctypes.Structure):
         ("out", _PLACE),
         *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
         *((name, _SIZE) for name in ("max_steps", "work")),
+        ("record", _PLACE),
+        *((name, _SIZE) for name in ("record_room", "recorded")),
     )
 
 
@@ -75,8 +87,8 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
     for file, content in sources.items():
         (work / file).write_bytes(content)
     said, status = "", 1
-    for native in (True, False):  # some compilers do not know -march=native
-        flags = (*compiler.flags(build, native=native), FLAGS[method])
+    for machine in MACHINES:  # some compilers do not know all of these options
+        flags = (*compiler.flags(build, machine=machine), FLAGS[method])
         command = (*compiler.command, *flags, "solver.c", "-o", "solver.so", "-lm")
         status, said = _run(command, work)
         if status == 0:
@@ -96,7 +108,7 @@ def load_solver(path: Path, system: str) -> Advance:
     function = ctypes.CDLL(str(path))[f"{system}_advance"]
     function.restype, function.argtypes = _SIZE, [_PLACE]
 
-    def advance(ensemble: Ensemble, work: int) -> int:
+    def advance(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
         members, given, inputs = ensemble.state.shape[1], ensemble.parameters, ensemble.inputs
         arrays = {name: getattr(ensemble, name) for name in (*_PLACES, "samples", "out")}
         arrays |= {"parameters": given, "knots": inputs.knots}
@@ -115,9 +127,19 @@ def load_solver(path: Path, system: str) -> Advance:
             max_steps=ensemble.max_steps,
             work=work,
         )
-        return int(function(ctypes.byref(run)))
+        if record is not None:
+            run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+            run.recorded = record.count
+        on = int(function(ctypes.byref(run)))
+        if record is not None:
+            record.count = run.recorded
+        return on
 
     return advance
+
+
+#: A function of the NumPy kernel: state, parameters, inputs with the time below them.
+Function = Callable[[Array, Array, Array], Array]
 
 
 @dataclass(frozen=True)
@@ -126,31 +148,44 @@ class NumpySolver:
 
     Attributes:
         expand: The function of ``solver.py``.
-        rates: The rates of the NumPy kernel: state, parameters, driving.
+        functions: Functions of the NumPy kernel, by their names in ``solver.c``.
+        strict: Whether each row of the domain may not be zero.
     """
 
     expand: Callable[..., Array]
-    rates: Callable[[Array, Array, Array], Array]
+    functions: Mapping[str, Function]
+    strict: tuple[bool, ...] = ()
 
     def method(self, name: str, ensemble: Ensemble) -> Method:
         """A method for the tolerances and the step of an ensemble."""
         rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
+        rates = partial(self._evaluate, "rates")
         if name == "taylor":
             return Taylor(self._expand, ORDER, rtol, atol, size)
         if name == "dop853":
-            return DormandPrince8(self._rates, rtol, atol, size)
-        return RungeKutta4(self._rates, size)
+            return DormandPrince8(rates, rtol, atol, size)
+        return RungeKutta4(rates, size)
 
     def advance(self, name: str) -> Advance:
         """What goes on by a method."""
-        return lambda ensemble, work: ensemble.advance(self.method(name, ensemble), work)
+        domain, projection = (
+            partial(self._evaluate, each) if each in self.functions else None
+            for each in ("domain", "projection")
+        )
+        limits = Limits(domain=domain, strict=self.strict, projection=projection)
+
+        def go(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
+            method = self.method(name, ensemble)
+            return ensemble.advance(method, work, limits=limits, record=record)
+
+        return go
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
 
-    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+    def _evaluate(self, function: str, lanes: Lanes, after: Array, state: Array) -> Array:
         driving = lanes.driving + after * lanes.slopes
-        return self.rates(np.ascontiguousarray(state), lanes.parameters, driving)
+        return self.functions[function](np.ascontiguousarray(state), lanes.parameters, driving)
 
 
 def load_numpy(text: str) -> Callable[..., Array]:

@@ -36,14 +36,16 @@ class SolverTexts:
     """The solvers of a system in every form.
 
     Attributes:
-        program: The rates.
+        programs: The rates and what bounds the motion, by their names in the texts.
         recurrences: What was to be printed.
+        strict: Whether each row of the domain has to be more than 0, or may be 0.
         files: The printed files by name.
         system: Name of the system.
     """
 
-    program: Program
+    programs: Mapping[str, Program]
     recurrences: SolverText
+    strict: tuple[bool, ...]
     files: Mapping[str, str]
     system: str
 
@@ -60,7 +62,7 @@ def check_solver_texts(texts: SolverTexts) -> int:
     c, numpy = texts.files["solver.c"], texts.files["solver.py"]
     check_rest(texts)
     compared = _check_tables(c_reader.read_tables(c), dop853())
-    for function in ("find_fixed", "expand", "find_rates"):
+    for function in ("find_fixed", "expand", *(f"find_{name}" for name in texts.programs)):
         body = c_reader.read_function(c, function)
         compared += _check_body(body, _expected(texts, function), "solver.c", function)
     body = numpy_reader.read_expand(numpy)
@@ -72,15 +74,17 @@ def check_solver_texts(texts: SolverTexts) -> int:
 
 def _expected(texts: SolverTexts, function: str) -> SolverBody:
     """What a function is to do."""
-    solver, program = texts.recurrences, texts.program
-    rates = arrange_function(program, "_rates")
+    solver, program = texts.recurrences, texts.programs["rates"]
     driven = (*program.inputs, *program.time)
     rows = {"parameters": program.parameters, "state": program.state, "driving": driven}
     rows["fixed"] = tuple(line.name for line in solver.fixed)
     if function == "find_fixed":
         return _body(rows, ("parameters",), solver.fixed_reads, solver.fixed)
-    if function == "find_rates":
-        return _body(rows, ("state", "parameters", "fixed", "driving"), rates.reads, rates.lines)
+    name = function.removeprefix("find_")
+    if name in texts.programs:
+        found = arrange_function(name, texts.programs[name])
+        arrays = ("state", "parameters", "driving", *(["fixed"] if name == "rates" else []))
+        return _body(rows, arrays, found.reads, found.lines)
     is_c = function == "expand"
     reads = solver.reads.union(program.state, (frozenset() if is_c else solver.fixed_reads))
     arrays = ("state", "parameters", "driving", *(["fixed"] if is_c else []))
@@ -111,7 +115,7 @@ def _orders(solver: SolverText) -> Iterable[Pair | Loop]:
     for stage in solver.stages:
         yield from _pairs(stage.starts)
         if stage.terms:
-            yield Loop(stage.last, tuple(_pairs(stage.terms)))
+            yield Loop(tuple(_pairs(stage.terms)))
         yield from _pairs(stage.lines)
     yield from _pairs(solver.rates)
 
@@ -186,7 +190,8 @@ def check_rest(texts: SolverTexts) -> None:
 
 def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
     """The files of a system of this name and these sizes that has no recurrences."""
-    program, solver, nothing = texts.program, texts.recurrences, FunctionText((), frozenset())
+    program, solver = texts.programs["rates"], texts.recurrences
+    nothing = FunctionText((), frozenset())
     bare = SolverText(
         fixed=solver.fixed,
         kept=(),
@@ -214,7 +219,8 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "parameters": _rows(program.parameters),
             "driving": {name: rows for name, rows in driving.items() if rows},
             "solver": bare,
-            "rates": nothing,
+            "solved": dict.fromkeys(texts.programs, nothing),
+            "strict": texts.strict,
             "dop853": {field.name: [] for field in fields(Tableau)},
         },
     )

@@ -13,7 +13,7 @@ Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +27,7 @@ from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_poin
 from coadjoint.crosscheck.solver_objects import (
     FLAGS,
     Advance,
+    Function,
     NumpySolver,
     compile_solver,
     load_numpy,
@@ -44,7 +45,8 @@ from coadjoint.crosscheck.solver_steps import (
 )
 from coadjoint.crosscheck.solver_text import FILES, SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
-from coadjoint.render.solvers import SolverText, arrange
+from coadjoint.lower.program import Program
+from coadjoint.render.solvers import arrange, select_programs
 
 #: The objects that are compiled, each once: method, target and build. The builds differ in their
 #: flags alone, which one method shows.
@@ -103,20 +105,25 @@ def check_solvers(
         CompilerError: An object cannot be compiled.
         CrossCheckError: A rung failed.
     """
-    program = subject.programs["rhs"]
-    text, name = arrange(program), subject.system.name
-    files = {file: texts[file] for file in FILES}
+    programs = select_programs(subject.programs.values())
+    text = arrange(programs)
+    printed = SolverTexts(
+        programs=programs,
+        recurrences=text,
+        strict=_list_strict(subject),
+        files={file: texts[file] for file in FILES},
+        system=subject.system.name,
+    )
     coefficients = check_recurrences(text, subject)
-    lines = check_solver_texts(SolverTexts(program, text, files, name))
-    solvers = Solvers(subject, text, _load(subject, files["solver.py"], compiling))
+    lines = check_solver_texts(printed)
+    solvers = Solvers(subject, text, _load(subject, texts["solver.py"], compiling))
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
     size = choose_size(solvers, batch)
     steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
     equal, together = dict[str, int](), dict[str, int]()
     if compiling:
-        promised = subject.has_equal_bits("rhs") and _is_plain(text)
-        if promised:
+        if not text.functions:
             equal = check_bits(solvers, batch, size)
         else:
             together = check_together(solvers, batch, size)
@@ -130,30 +137,32 @@ def check_solvers(
     )
 
 
-def _is_plain(text: SolverText) -> bool:
-    """Whether recurrences call nothing beyond sqrt."""
-    return not text.functions
+def _list_strict(subject: Subject) -> tuple[bool, ...]:
+    """Whether each row of the domain may not be zero."""
+    return tuple(bound.strict for bound in getattr(subject.system, "DOMAIN", ()))
 
 
 def _load(subject: Subject, text: str, compiling: Compiling) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    numpy = NumpySolver(load_numpy(text), _numpy_rates(subject))
+    programs = select_programs(subject.programs.values())
+    functions = {name: _numpy_function(subject, each) for name, each in programs.items()}
+    numpy = NumpySolver(load_numpy(text), functions, _list_strict(subject))
     advance = {method: {"numpy": numpy.advance(method)} for method in FLAGS}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), subject.system.name)
     return advance
 
 
-def _numpy_rates(subject: Subject) -> Callable[[Array, Array, Array], Array]:
-    """The rates of the NumPy kernel."""
-    program, inputs = subject.programs["rhs"], len(subject.programs["rhs"].inputs)
+def _numpy_function(subject: Subject, program: Program) -> Function:
+    """A function of the NumPy kernel."""
+    inputs, call = len(program.inputs), getattr(subject.system, program.name)
 
-    def rates(state: Array, parameters: Array, driving: Array) -> Array:
+    def function(state: Array, parameters: Array, driving: Array) -> Array:
         given = [state, np.ascontiguousarray(parameters)]
         given += [np.ascontiguousarray(driving[:inputs])] if inputs else []
         named = {"time": np.ascontiguousarray(driving[inputs])} if program.time else {}
-        out = np.empty(state.shape)
-        subject.system.rhs(*given, **named, target="numpy", out=out)
+        out = np.empty((len(program.outputs), state.shape[1]))
+        call(*given, **named, target="numpy", out=out)
         return out
 
-    return rates
+    return function

@@ -15,23 +15,28 @@ Derivatives, 2008, ch. 13)::
     sin, cos  s, c of a      s[k] = sum_{m=1..k} m a[m] c[k-m] / k,  c[k] = -sum m a[m] s[k-m] / k
 
 The coefficients of the state are the rates, ``x[k+1] = rate[k] / (k + 1)``. What depends on
-parameters alone is its own order 0, and is a factor of sums rather than of each of their terms.
+parameters alone is its own order 0.
 Read next: `coadjoint.render.solvers`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 
+from coadjoint.lower.motion import ONE, Function, Meaning, Plan, Quotient, find_plan
+from coadjoint.lower.polynomials import (
+    Constant,
+    Polynomial,
+    Product,
+    by_product,
+    node_of,
+    sum_of,
+)
 from coadjoint.lower.program import (
-    ZERO,
-    Add,
     Call,
     Divide,
     Multiply,
-    Negate,
     Node,
     Number,
     Program,
@@ -42,7 +47,6 @@ from coadjoint.lower.program import (
 
 #: The function that has to stand with another one, whose recurrence reads its coefficients.
 PARTNERS = {"sin": "cos", "cos": "sin"}
-ONE = Number(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,16 +133,15 @@ def make_jets(rhs: Program) -> Jets:
     Args:
         rhs: The Program of the rates: one output for each component of the state.
     """
-    return _Making(rhs).jets()
+    return _Making(rhs, find_plan(rhs)).jets()
 
 
 class _Making:
     """Jets in the making."""
 
-    def __init__(self, rhs: Program) -> None:
-        self.rhs = rhs
-        self._fixed = list(rhs.statements_at("parameters"))
-        self._constant = {*rhs.parameters, *(statement.name for statement in self._fixed)}
+    def __init__(self, rhs: Program, plan: Plan) -> None:
+        self.rhs, self.plan = rhs, plan
+        self._fixed = list(plan.fixed)
         self._depth = dict.fromkeys((*rhs.state, *rhs.inputs, *rhs.time), 0)
         self._cells: list[Cell] = []
         self._known: dict[Node, str] = {}
@@ -146,9 +149,9 @@ class _Making:
 
     def jets(self) -> Jets:
         """All of them."""
-        for statement in self.rhs.statements_at("member"):
-            self._state(statement.name, statement.value)
-        rates = [self._combine(output.value) for output in self.rhs.outputs]
+        for name, meaning in self.plan.meanings.items():
+            self._make(name, meaning)
+        rates = [self._combine(rate) for rate in self.plan.rates]
         return Jets(
             state=self.rhs.state,
             driving=(*self.rhs.inputs, *self.rhs.time),
@@ -160,133 +163,115 @@ class _Making:
 
     # -- cells ------------------------------------------------------------------------------------
 
-    def _state(self, name: str, value: Node) -> None:
-        """A statement of the Program as a cell of its own name."""
-        whole, tail = self._combine(value)
-        last = self._cells[-1] if self._cells else None
-        fresh = last is not None and last.name.startswith("_j") and not last.partner
-        if last is not None and fresh and whole == Symbol(last.name):
-            self._known[last.value] = name  # the recurrence itself has the name
-            self._cells[-1] = replace(last, name=name)
-            self._depth[name] = last.depth
-        else:
-            self._append(Cell(name=name, value=whole, tail=tail, depth=self._depth_of(whole)))
+    def _make(self, name: str, meaning: Meaning) -> None:
+        """A kept value as a cell of its own name."""
+        match meaning:
+            case Quotient(above=above, below=below):
+                over = ONE if above is None else Symbol(above)
+                self._recurrence(Divide(over, Symbol(below)), name)
+            case Function(name=function, of=argument):
+                self._recurrence(Call(function, Symbol(argument)), name)
+            case _:
+                self._make_sum(name, meaning)
+
+    def _make_sum(self, name: str, meaning: Polynomial) -> None:
+        """A kept polynomial; where it is a product alone, the recurrence has the name."""
+        match list(meaning.items()):
+            case [((product, ()), factor)] if factor == 1 and len(product) > 1:
+                made = self._product(product, name)
+                if made == name:
+                    return
+        whole, tail = self._combine(meaning)
+        self._append(Cell(name=name, value=whole, tail=tail, depth=self._depth_of(whole)))
 
     def _append(self, cell: Cell) -> None:
         self._cells.append(cell)
         self._depth[cell.name] = cell.depth
 
-    def _recurrence(self, value: Node) -> Symbol:
+    def _recurrence(self, value: Node, name: str = "") -> str:
         """The cell of an operation on names that no combination gives."""
-        if isinstance(value, Multiply) and Multiply(value.right, value.left) in self._known:
-            value = Multiply(value.right, value.left)
         if value not in self._known:
-            name, partner, depth = self._name(), "", 1 + self._depth_of(value)
+            name, partner, depth = name or self._name(), "", 1 + self._depth_of(value)
             self._known[value] = name
             if isinstance(value, Call) and value.function in PARTNERS:
-                partner = self._name()
-                other = Call(PARTNERS[value.function], value.argument)
-                self._known[other] = partner
-                self._append(Cell(name=partner, value=other, tail=None, depth=depth, partner=name))
+                partner = self._partner(value, name, depth)
             self._append(Cell(name=name, value=value, tail=None, depth=depth, partner=partner))
-        return Symbol(self._known[value])
+        elif name and self._known[value] != name:  # the partner of another has it
+            same = Symbol(self._known[value])
+            self._append(Cell(name=name, value=same, tail=same, depth=self._depth_of(same)))
+        return self._known[value]
+
+    def _partner(self, value: Call, name: str, depth: int) -> str:
+        """The name of the cosine of a sine, or the sine of a cosine, which is made."""
+        other = Call(PARTNERS[value.function], value.argument)
+        partner = self._known[other] = self._name()
+        self._append(Cell(name=partner, value=other, tail=None, depth=depth, partner=name))
+        return partner
 
     def _name(self) -> str:
         """A name that nothing has yet."""
         self._count += 1
         return f"_j{self._count}"
 
-    def _named(self, node: Node) -> Symbol:
-        """What moves, as the name of a cell."""
-        if isinstance(node, Symbol):
-            return node
-        if node not in self._known:
-            whole, tail = self._combine(node)
-            if isinstance(whole, Symbol):  # a recurrence has made a cell of it
-                return whole
-            self._known[node] = self._name()
-            self._append(
-                Cell(name=self._known[node], value=whole, tail=tail, depth=self._depth_of(whole))
-            )
-        return Symbol(self._known[node])
+    def _product(self, product: Product, name: str = "") -> str:
+        """The cell of a product, by pairs."""
+        if len(product) < 2:
+            return product[0]
+        first, *rest = (self._factor(factor) for factor in self.plan.products[product])
+        for place, factor in enumerate(rest, 1):
+            node = Multiply(Symbol(first), Symbol(factor))
+            known = self._known.get(node) or self._known.get(Multiply(node.right, node.left))
+            first = known or self._recurrence(node, name if place == len(rest) else "")
+        return first
+
+    def _factor(self, name: str) -> str:
+        """The cell of a name, which is kept, or a pair."""
+        if name not in self.plan.pairs:
+            return name
+        left, right = map(self._factor, self.plan.pairs[name])
+        node = Multiply(Symbol(left), Symbol(right))
+        other = Multiply(node.right, node.left)
+        return self._known.get(other) or self._recurrence(node)
 
     def _depth_of(self, node: Node) -> int:
         return max((self._depth.get(name, 0) for name in _names(node)), default=0)
 
-    # -- values -----------------------------------------------------------------------------------
+    # -- sums -------------------------------------------------------------------------------------
 
-    def _moves(self, node: Node) -> bool:
-        """Whether a node depends on more than parameters."""
-        return not self._constant.issuperset(_names(node))
-
-    def _combine(self, node: Node) -> tuple[Node, Node]:
-        """A node as a combination of names: at order 0, and at orders k > 0."""
-        if not self._moves(node):
-            return node, ZERO
-        match node:
-            case Symbol():
-                return node, node
-            case Negate(operand=operand):
-                whole, tail = self._combine(operand)
-                return Negate(whole), Negate(tail)
-            case Add(left=left, right=right):
-                (first, second), (third, fourth) = self._combine(left), self._combine(right)
-                return Add(first, third), _add(second, fourth)
-            case Multiply():
-                return self._multiply(node)
-            case Divide(left=left, right=right) if self._moves(right):
-                above = self._named(left) if self._moves(left) else left
-                quotient = self._recurrence(Divide(above, self._named(right)))
-                return quotient, quotient
-            case Divide(left=left, right=right):
-                whole, tail = self._combine(left)
-                return Divide(whole, right), Multiply(tail, self._reciprocal(right))
-            case Call(function=function, argument=argument):
-                called = self._recurrence(Call(function, self._named(argument)))
-                return called, called
-        raise AssertionError(node)
-
-    def _multiply(self, node: Multiply) -> tuple[Node, Node]:
-        """A product: the constant factors times the product of what moves."""
-        factors = list(_factors(node))
-        constant = [factor for factor in factors if not self._moves(factor)]
-        moving = [factor for factor in factors if self._moves(factor)]
-        if len(moving) == 1:
-            whole, tail = self._combine(moving[0])
+    def _combine(self, polynomial: Polynomial) -> tuple[Node, Node]:
+        """A polynomial as a combination of cells: at order 0, and at orders k > 0."""
+        parts = by_product(polynomial)
+        rest = parts.pop((), None)
+        signed = [(*self._constant(value), self._product(each)) for each, value in parts.items()]
+        factors = list(dict.fromkeys(factor for _, factor, _ in signed))
+        if len(factors) == 1:
+            names: list[tuple[bool, Node]] = [(minus, Symbol(name)) for minus, _, name in signed]
+            tail = _times(factors[0], sum_of(names))
         else:
-            product = self._named(moving[0])
-            for factor in moving[1:]:
-                product = self._recurrence(Multiply(product, self._named(factor)))
-            whole = tail = product
-        for factor in reversed(constant):
-            whole, tail = Multiply(factor, whole), Multiply(factor, tail)
+            tail = sum_of((minus, _times(factor, Symbol(name))) for minus, factor, name in signed)
+        if rest is None:
+            return tail, tail
+        minus, factor = self._constant(rest)
+        whole = sum_of([(False, tail), (minus, factor)]) if parts else sum_of([(minus, factor)])
         return whole, tail
 
-    def _reciprocal(self, node: Node) -> Node:
-        """One over what is constant, computed once."""
-        if isinstance(node, Number):
-            return Number(1 / node.value)
-        value = Divide(ONE, node)
+    def _constant(self, value: Constant) -> tuple[bool, Node]:
+        """Whether a coefficient begins with a minus, and what it is with the other sign then."""
+        minus = next(iter(value.values())) < 0
+        size = {names: -factor if minus else factor for names, factor in value.items()}
+        match list(size.items()):
+            case [((), factor)]:
+                return minus, Number(factor)
+            case [((name,), factor)] if factor == 1:
+                return minus, Symbol(name)
+        node = node_of(size)
         for statement in self._fixed:
-            if statement.value == value:
-                return Symbol(statement.name)
-        name = f"_q{len(self._fixed) + 1}"
-        self._fixed.append(Statement(name, value, "parameters"))
-        self._constant.add(name)
-        return Symbol(name)
+            if statement.value == node:
+                return minus, Symbol(statement.name)
+        self._fixed.append(Statement(f"_q{len(self._fixed) + 1}", node, "parameters"))
+        return minus, Symbol(self._fixed[-1].name)
 
 
-def _factors(node: Node) -> Iterator[Node]:
-    """The factors of a product, from left to right."""
-    if isinstance(node, Multiply):
-        yield from _factors(node.left)
-        yield from _factors(node.right)
-    else:
-        yield node
-
-
-def _add(left: Node, right: Node) -> Node:
-    """A sum without zeros."""
-    if ZERO in (left, right):
-        return right if left == ZERO else left
-    return Add(left, right)
+def _times(factor: Node, node: Node) -> Node:
+    """A product, where the factor is not 1."""
+    return node if factor == ONE else Multiply(factor, node)

@@ -1,6 +1,6 @@
-r"""Symmetries of constrained motions: what they keep, and how their momenta change.
+r"""Symmetries of motions under constraints, or without a bracket, and how their momenta change.
 
-The flow of a field X on the state is a symmetry of a constrained motion :math:`\dot x = \Gamma(x)`
+The flow of a field X on the state is a symmetry of a motion :math:`\dot x = \Gamma(x)`
 if it keeps the constraints and takes motions to motions, that is
 :math:`[\Gamma, X] + \partial_t X = 0` where the constraints hold. Of positions q alone X is the
 lift of a field :math:`\Sigma(q)`: velocities change by :math:`[\xi, \Sigma] + \partial_t \Sigma`.
@@ -12,8 +12,10 @@ Krishnaprasad, Marsden and Murray 1996; Holm 2011, section 12.3.2):
     \dot J = \Sigma\, l + \langle p, [\xi, \Sigma] + \partial_t \Sigma \rangle
         + \langle f, \Sigma \rangle + \langle \lambda, A \Sigma \rangle.
 
-Of a field on the whole state the momentum is a declared function, which is conserved or not.
-Comes in: a constrained motion with declared symmetries. Goes out: claims for the certificate.
+Of a field on the whole state the momentum is a declared function, which is conserved or not. So it
+is on motions that have no bracket: by Newton's law, by a Lax pair alone, or restricted to a
+section. A shift of time tau makes X there :math:`X - \tau \Gamma`.
+Comes in: such a motion with declared symmetries. Goes out: claims for the certificate.
 Read next: `coadjoint.prove.momenta`.
 """
 
@@ -24,7 +26,7 @@ from functools import cached_property, partial
 
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
-from coadjoint.derive.symmetries import Moves, momentum_maps, moves_of
+from coadjoint.derive.symmetries import Moves, momentum_maps, moves_of, shifts_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import action_defects
@@ -32,12 +34,68 @@ from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.findings import SHOWN, finding
 from coadjoint.prove.momenta import law_along
+from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 from coadjoint.spec.model import Symmetry
 
 
-class ConstrainedAction:
-    """An action of a Lie algebra on the state of a constrained motion.
+class Action:
+    """An action of a Lie algebra on the state of a motion.
+
+    Args:
+        motion: The motion.
+        symmetry: What is declared.
+    """
+
+    def __init__(self, motion: Motion, symmetry: Symmetry) -> None:
+        self.motion, self.symmetry, self.field = motion, symmetry, motion.field
+        self.moves = moves_of(motion.setting, symmetry)
+
+    @property
+    def sections(self) -> list[Row]:
+        """Fields of a frame, of which there is none here."""
+        return []
+
+    @cached_property
+    def generators(self) -> list[VectorField]:
+        """The field on the state of each basis vector, written in the state."""
+        shifts = shifts_of(self.motion.setting, self.symmetry)
+        return [self._make_field(*pair) for pair in zip(self.moves, shifts, strict=True)]
+
+    def _make_field(self, moves: Moves, shift: Element) -> VectorField:
+        """One of them; velocities follow where positions alone are moved."""
+        setting, zero = self.motion.setting, self.field.zero
+        whole = {name: self.motion.close(x) for name, x in moves.items()}
+        partners = dict(zip(setting.positions, setting.velocities, strict=False))
+        tau = self.motion.close(shift)
+        if partners and whole.keys() <= partners.keys():
+            whole |= {v: self.motion.rate(whole.get(q, zero)) for q, v in partners.items()}
+        rates = self.motion.written_rates.items()
+        parts = (whole.get(x, zero) - tau * rate for x, rate in rates)
+        return VectorField(self.field, setting.state, tuple(parts))
+
+    def action_defects(self) -> list[Element]:
+        """What must vanish for the generators to be those of an action."""
+        algebra = self.symmetry.algebra.over(self.motion.setting.take_constant)
+        return action_defects(algebra, self.generators, 1 if self.symmetry.side == "left" else -1)
+
+    def constraint_defects(self) -> list[Element]:
+        """How the residuals of the constraints that are kept change: the others give velocities."""
+        return [X.derivative(f) for X in self.generators for _, f in self.motion.kept]
+
+    def motion_defects(self) -> list[Element]:
+        """``[Gamma, X] + dX/dt``."""
+        setting, rates = self.motion.setting, tuple(self.motion.written_rates.values())
+        whole = VectorField(self.field, setting.state, rates)
+        return [
+            part + explicit(setting, own)
+            for X in self.generators
+            for part, own in zip(lie_derivative(whole, X).components, X.components, strict=True)
+        ]
+
+
+class ConstrainedAction(Action):
+    """An action on the state of a motion along a frame.
 
     Args:
         motion: The motion.
@@ -45,9 +103,8 @@ class ConstrainedAction:
     """
 
     def __init__(self, motion: ConstrainedRates, symmetry: Symmetry) -> None:
-        self.motion, self.symmetry = motion, symmetry
-        self.field, self.frame = motion.field, motion.distribution.frame
-        self.moves = moves_of(motion.setting, symmetry)
+        super().__init__(motion, symmetry)
+        self.frame, self.equations = motion.distribution.frame, motion.distribution.equations
 
     @cached_property
     def sections(self) -> list[Row]:
@@ -90,47 +147,32 @@ class ConstrainedAction:
             for each in moves
         ]
 
-    def action_defects(self) -> list[Element]:
-        """What must vanish for the generators to be those of an action."""
-        algebra = self.symmetry.algebra.over(self.motion.setting.take_constant)
-        return action_defects(algebra, self.generators, 1 if self.symmetry.side == "left" else -1)
-
     def constraint_defects(self) -> list[Element]:
-        """How the residuals of the constraints change.
-
-        Of a field on the whole state those that are kept: the others give velocities.
-        """
+        """How the residuals of all constraints change along a lift; else of those kept."""
         if not self.sections:
-            return [X.derivative(f) for X in self.generators for _, f in self.motion.kept]
+            return super().constraint_defects()
         rates = []
         for changes in map(self.lift, self.sections):
-            names = tuple(changes)
-            X = VectorField(self.field, names, tuple(changes.values()))
-            rates += [X.derivative(each.residual) for each in self.motion.distribution.equations]
+            X = VectorField(self.field, tuple(changes), tuple(changes.values()))
+            rates += [X.derivative(each.residual) for each in self.equations]
         return list(map(self.motion.close, rates))
 
-    def motion_defects(self) -> list[Element]:
-        """``[Gamma, X] + dX/dt``."""
-        setting, rates = self.motion.setting, tuple(self.motion.written_rates.values())
-        whole = VectorField(self.field, setting.state, rates)
-        return [
-            part + explicit(setting, own)
-            for X in self.generators
-            for part, own in zip(lie_derivative(whole, X).components, X.components, strict=True)
-        ]
 
-
-def about_constrained_symmetries(motion: ConstrainedRates) -> Iterator[Examined]:
+def about_motion_symmetries(motion: Motion) -> Iterator[Examined]:
     """Claims about the declared symmetries, and the laws of their momenta."""
     energy = motion.equations.exact.energy
     values = momentum_maps(motion.setting, energy)
     for symmetry in motion.spec.symmetries:
-        action = ConstrainedAction(motion, symmetry)
+        action = (
+            ConstrainedAction(motion, symmetry)
+            if isinstance(motion, ConstrainedRates)
+            else Action(motion, symmetry)
+        )
         examined = [*_about_action(motion, action), *_about_momenta(motion, action, values)]
         yield from mark_accepted(motion.spec, ("symmetries", symmetry.name), examined, motion.field)
 
 
-def _about_action(motion: ConstrainedRates, action: ConstrainedAction) -> Iterator[Examined]:
+def _about_action(motion: Motion, action: Action) -> Iterator[Examined]:
     """That it is an action, and what it keeps."""
     symmetry = action.symmetry
     name, side = symmetry.name, symmetry.side
@@ -142,19 +184,19 @@ def _about_action(motion: ConstrainedRates, action: ConstrainedAction) -> Iterat
         f"{moved} keeps the constraints": action.constraint_defects,
         f"{moved} takes motions to motions{motion.at_all_times}": action.motion_defects,
     }
-    if not (action.sections or motion.kept):  # whatever the state is, these hold
+    if not (action.sections or motion.kept):  # these hold for every state
         del claims[f"{moved} keeps the constraints"]
     for statement, defects in claims.items():
         yield statement, "symmetry", partial(_decide, motion, defects)
 
 
-def _decide(motion: ConstrainedRates, defects: Callable[[], Sequence[Element]]) -> Decision:
+def _decide(motion: Motion, defects: Callable[[], Sequence[Element]]) -> Decision:
     """Whether defects vanish where the constraints hold."""
     return decide_zero(defects(), motion.field, motion.where)
 
 
 def _about_momenta(
-    motion: ConstrainedRates, action: ConstrainedAction, values: dict[str, tuple[Element, ...]]
+    motion: Motion, action: Action, values: dict[str, tuple[Element, ...]]
 ) -> Iterator[Examined]:
     """The momentum equation of each component, or whether a declared function is conserved."""
     symmetry = action.symmetry
@@ -174,7 +216,7 @@ def _about_momenta(
         )
 
 
-def _write_law(motion: ConstrainedRates, name: str, law: Element) -> str:
+def _write_law(motion: Motion, name: str, law: Element) -> str:
     """The momentum equation, its right side written out where that is short."""
     if motion.where.contains(motion.in_state(law)):
         return f"{name} is conserved, by its momentum equation"
@@ -185,7 +227,7 @@ def _write_law(motion: ConstrainedRates, name: str, law: Element) -> str:
     return f"d{name}/dt = {text}"
 
 
-def _changes(motion: ConstrainedRates, value: Element, law: Element) -> Decision:
+def _changes(motion: Motion, value: Element, law: Element) -> Decision:
     """The rate of a momentum minus its law."""
     rest = motion.rate(value) - motion.in_state(law)
     return decide_zero([rest], motion.field, motion.where)

@@ -18,7 +18,7 @@ from coadjoint.derive.mechanics.configuration import coupled_blocks
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import minor
 from coadjoint.exact.signs import sign
-from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.points import DIGITS, Points, real
 from coadjoint.prove.zero import ADVICE, Decision, UndecidedError, show_point
 
@@ -64,6 +64,7 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
                     method=method,
                     point=shown,
                     defect=mpmath.nstr(least, 15),
+                    shown=Shown.EIGENVALUE,
                 )
         if seen == POINTS:
             break

@@ -31,7 +31,7 @@ from coadjoint.lower.program import (
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer, number_text
-from coadjoint.render.solvers import arrange, arrange_function
+from coadjoint.render.solvers import arrange, arrange_function, select_programs
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
@@ -183,7 +183,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
     rendered = render_templates(
         tuple(templates.values()),
         {
-            **({} if rhs.table else _solver(rhs)),
+            **({} if rhs.table else _solver(context)),
             "name": context.name,
             "spec": context.spec,
             "licence": _licence(context.license),
@@ -217,14 +217,16 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
     return {file: rendered[template] for file, template in templates.items()}
 
 
-def _solver(rhs: Program) -> dict[str, Any]:
+def _solver(context: KernelContext) -> dict[str, Any]:
     """What the templates of solvers read alone."""
-    table = dop853()
-    tableau = {each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)}
+    solved, table = select_programs(context.programs), dop853()
     return {
-        "solver": arrange(rhs),
-        "rates": arrange_function(rhs, "_rates"),
-        "dop853": tableau,
+        "solver": arrange(solved),
+        "solved": {name: arrange_function(name, each) for name, each in solved.items()},
+        "strict": [bound.strict for bound in context.domain],
+        "dop853": {
+            each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
+        },
     }
 
 

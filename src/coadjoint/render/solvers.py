@@ -7,12 +7,13 @@ Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.taylor`, its twin.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import groupby
 
-from coadjoint.lower.jets import ONE, Cell, Jets, make_jets
+from coadjoint.lower.jets import Cell, Jets, make_jets
+from coadjoint.lower.motion import ONE
+from coadjoint.lower.polynomials import product_of
 from coadjoint.lower.program import (
     ZERO,
     Add,
@@ -28,7 +29,7 @@ from coadjoint.lower.program import (
 )
 
 #: Sums that one loop runs over: as many as vector registers hold with their factors.
-SUMS = 12
+SUMS = 16
 #: The factor m of the sums of logarithms, exponentials, sines and cosines.
 _WEIGHT = Symbol("_orders[_m]")
 
@@ -56,14 +57,12 @@ class Stage:
     """What is computed at an order k > 0 in one loop, and after it.
 
     Attributes:
-        starts: Sums with their terms of m = 0, or zero.
-        last: The last m of the loop, ``"_k"`` or ``"_k - 1"``.
-        terms: Sums with what is added for each m.
+        starts: Sums, which are zero.
+        terms: Sums with what is added for each 0 < m < k.
         lines: What follows from them.
     """
 
     starts: tuple[Line, ...]
-    last: str
     terms: tuple[Line, ...]
     lines: tuple[Line, ...]
 
@@ -95,9 +94,13 @@ class SolverText:
     fixed_reads: frozenset[str]
 
 
-def arrange(rhs: Program) -> SolverText:
-    """The recurrences of the rates of a system as its templates print them."""
-    jets = make_jets(rhs)
+def arrange(programs: Mapping[str, Program]) -> SolverText:
+    """The recurrences of the rates of a system as its templates print them.
+
+    Args:
+        programs: As `select_programs` has them.
+    """
+    jets = make_jets(programs["rates"])
     arrays = jets.kept.union(jets.state, jets.driving)
     first = list(_first(jets, arrays))
     stages = tuple(_stages(jets, arrays))
@@ -108,7 +111,8 @@ def arrange(rhs: Program) -> SolverText:
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
-    calls |= {n.function for v in rhs.values() for n in walk(v) if isinstance(n, Call)}
+    values = (value for program in programs.values() for value in program.values())
+    calls |= {n.function for value in values for n in walk(value) if isinstance(n, Call)}
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
     return SolverText(
         fixed=fixed,
@@ -125,7 +129,7 @@ def arrange(rhs: Program) -> SolverText:
 
 @dataclass(frozen=True)
 class FunctionText:
-    """A Program as lines, what depends on parameters alone left out.
+    """A Program as lines.
 
     Attributes:
         lines: Statements, then rows of the result.
@@ -136,15 +140,23 @@ class FunctionText:
     reads: frozenset[str]
 
 
-def arrange_function(program: Program, out: str) -> FunctionText:
-    """The lines of a Program for each member.
+def select_programs(programs: Iterable[Program]) -> dict[str, Program]:
+    """The rates and what bounds the motion, by their names in the texts of solvers."""
+    known = {program.name: program for program in programs}
+    names = {"rates": "rhs", "domain": "domain", "projection": "projection"}
+    return {name: known[source] for name, source in names.items() if source in known}
+
+
+def arrange_function(name: str, program: Program) -> FunctionText:
+    """The lines of a Program, whose rows go to ``_rows``.
 
     Args:
+        name: Its name in a solver. Of the rates, what depends on parameters alone is left out.
         program: What to arrange.
-        out: Name of the array of the result.
     """
-    lines = [Line(statement.name, statement.value) for statement in program.statements_at("member")]
-    lines += [Line(f"{out}[{row}]", each.value) for row, each in enumerate(program.outputs)]
+    statements = program.statements_at("member") if name == "rates" else program.statements
+    lines = [Line(statement.name, statement.value) for statement in statements]
+    lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
 
 
@@ -206,81 +218,82 @@ def _line(name: str, order: str, value: Node, arrays: frozenset[str]) -> Line:
 
 
 def _stages(jets: Jets, arrays: frozenset[str]) -> Iterator[Stage]:
-    """The loops of an order k > 0, one upon the other."""
-    for _, group in groupby(jets.cells, key=lambda cell: cell.depth):
-        cells = list(group)
-        sums = [cell for cell in cells if cell.tail is None]
-        short = [cell for cell in sums if _is_short(cell)]
-        whole = [cell for cell in sums if not _is_short(cell)]
-        loops = [*_pieces(whole), *_pieces(short)]
-        combined = [
-            _line(cell.name, "_k", _at(cell.tail, "_k", arrays), arrays)
-            for cell in cells
-            if cell.tail is not None
-        ]
-        for place, loop in enumerate(loops):
-            rest = combined if place + 1 == len(loops) else []
-            yield _stage(loop, rest, jets, arrays)
-        if not loops:
-            yield Stage((), "_k", (), tuple(combined))
+    """The loops of an order k > 0, and the coefficients that follow from their sums.
+
+    The terms of a loop are known when the order begins, whatever depends on what.
+    """
+    terms, lines = dict[str, Node](), list[Line]()
+    for cell in jets.cells:
+        if cell.tail is None:
+            total = f"{cell.name}_s"
+            terms[total], value = _recurrence(cell, Symbol(total), jets, arrays)
+        else:
+            value = _at(cell.tail, "_k", arrays)
+        lines.append(_line(cell.name, "_k", value, arrays))
+    for loop in _loops(terms):
+        sums = tuple(Line(name, Add(Symbol(name), term)) for name, term in loop)
+        yield Stage(tuple(Line(name, ZERO) for name, _ in loop), sums, ())
+    yield Stage((), (), tuple(lines))
 
 
-def _is_short(cell: Cell) -> bool:
-    """Whether a sum ends before its own last coefficient."""
-    return isinstance(cell.value, Call) and cell.value.function in ("sqrt", "log")
+def _loops(terms: dict[str, Node]) -> Iterator[list[tuple[str, Node]]]:
+    """Terms by loops, those together that read the same coefficients, which are loaded once."""
+    rest = {name: [term, *_turned(term)] for name, term in terms.items()}
+    while rest:
+        loop, loaded = list[tuple[str, Node]](), set[str]()
+        while rest and len(loop) < SUMS:
+            candidates = ((name, term) for name, forms in rest.items() for term in forms)
+            name, term = min(candidates, key=lambda each: len({*_names(each[1])} - loaded))
+            loop.append((name, term))
+            loaded |= {*_names(term)}
+            del rest[name]
+        yield loop
 
 
-def _pieces(cells: Sequence[Cell]) -> Iterator[Sequence[Cell]]:
-    return (cells[start : start + SUMS] for start in range(0, len(cells), SUMS))
+def _turned(term: Node) -> Iterator[Node]:
+    """The same sum from its other end, where no weight tells the ends apart."""
+    match term:
+        case Multiply(left=Symbol(name=a), right=Symbol(name=b)):
+            first, second = a.removesuffix("[_m]"), b.removesuffix("[_k - _m]")
+            yield Multiply(Symbol(f"{second}[_m]"), Symbol(f"{first}[_k - _m]"))
 
 
-def _stage(
-    cells: Sequence[Cell], rest: Iterable[Line], jets: Jets, arrays: frozenset[str]
-) -> Stage:
-    """One loop over the sums of some cells, and what follows."""
-    starts, terms, lines = [], [], []
-    for cell in cells:
-        total = f"{cell.name}_s"
-        start, term, result = _recurrence(cell, Symbol(total), jets, arrays)
-        starts.append(Line(total, start))
-        terms.append(Line(total, Add(Symbol(total), term)))
-        lines.append(_line(cell.name, "_k", result, arrays))
-    last = "_k - 1" if _is_short(cells[0]) else "_k"
-    return Stage(tuple(starts), last, tuple(terms), (*lines, *rest))
+def _names(node: Node) -> Iterator[str]:
+    return (each.name for each in walk(node) if isinstance(each, Symbol))
 
 
-def _recurrence(
-    cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]
-) -> tuple[Node, Node, Node]:
-    """How the sum of a cell begins, what is added for each m, and the coefficient it gives."""
+def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -> tuple[Node, Node]:
+    """What is added to the sum of a cell for each m < k, and the coefficient that follows.
+
+    What is known last comes last: a processor can add the rest while it waits.
+    """
     name, reciprocal, part = cell.name, Symbol(f"{cell.name}_r"), Symbol("_parts[_k]")
 
-    def sum_over(left: str, right: str, *weight: Symbol) -> tuple[Node, Node]:
-        term: Node = Symbol(f"{right}[_k - _m]")
-        for factor in (Symbol(f"{left}[_m]"), *weight):
-            term = Multiply(factor, term)
-        return ZERO, term
+    def term(left: str, right: str, *weight: Symbol) -> Node:
+        return product_of([*weight, Symbol(f"{left}[_m]"), Symbol(f"{right}[_k - _m]")])
+
+    def ends(left: str, right: str) -> Node:
+        return Multiply(Symbol(f"{left}[_k]"), Symbol(f"{right}[0]"))
 
     match cell.value:
         case Multiply(left=Symbol(name=a), right=Symbol(name=b)):
-            _, term = sum_over(a, b)
-            return Multiply(Symbol(f"{a}[0]"), Symbol(f"{b}[_k]")), term, total
+            return term(a, b), Add(Add(total, ends(b, a)), ends(a, b))
         case Divide(left=above, right=Symbol(name=b)):
             moves = isinstance(above, Symbol) and above.name in jets.moving
-            rest = Add(_at(above, "_k", arrays), Negate(total)) if moves else Negate(total)
-            return *sum_over(b, name), Multiply(rest, reciprocal)
+            known = Add(_at(above, "_k", arrays), Negate(total)) if moves else Negate(total)
+            return term(b, name), Multiply(Add(known, Negate(ends(b, name))), reciprocal)
         case Call(function="sqrt", argument=argument):
             rest = Add(_at(argument, "_k", arrays), Negate(total))
-            return *sum_over(name, name), Multiply(rest, reciprocal)
+            return term(name, name), Multiply(rest, reciprocal)
         case Call(function="exp", argument=Symbol(name=a)):
-            return *sum_over(a, name, _WEIGHT), Multiply(part, total)
+            return term(a, name, _WEIGHT), Add(Multiply(part, total), ends(a, name))
         case Call(function="log", argument=Symbol(name=a)):
             rest = Add(Symbol(f"{a}[_k]"), Negate(Multiply(part, total)))
-            return *sum_over(name, a, _WEIGHT), Multiply(rest, reciprocal)
+            return term(name, a, _WEIGHT), Multiply(rest, reciprocal)
         case Call(function=function, argument=Symbol(name=a)):
-            result = Multiply(part, total)
+            result = Add(Multiply(part, total), ends(a, cell.partner))
             return (
-                *sum_over(a, cell.partner, _WEIGHT),
+                term(a, cell.partner, _WEIGHT),
                 Negate(result) if function == "cos" else result,
             )
     raise AssertionError(cell)

@@ -8,14 +8,14 @@ Read next: `coadjoint.render.targets.protocol`, which has the `Call`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
-from coadjoint.render.targets.protocol import FEW, Call, Evaluate
+from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
@@ -154,38 +154,6 @@ def find_slopes(system: System, state: Array, *given: Any, **named: Any) -> Arra
     return system.evaluate("jacobian_vector", stacked, *given, **named)
 
 
-def evaluate_ready(
-    shape: tuple[int, ...], rows: int, evaluate: Evaluate
-) -> Callable[[Any], Array | None]:
-    """A function of one or a few states for arrays that are ready, and None for all else.
-
-    It looks at what `check_call` looks at, and at nothing twice: what is not a writable,
-    C-contiguous array ``(n,)`` or ``(n, N)`` of float64 goes through the checks that explain.
-
-    Args:
-        shape: Of the result for one member.
-        rows: Of the state.
-        evaluate: The function with its defaults, by the kernel.
-    """
-    float64, single = np.dtype(np.float64), (rows,)
-
-    def call(state: Any) -> Array | None:
-        if type(state) is not np.ndarray or state.dtype is not float64 or not state.flags.carray:
-            return None
-        given = state.shape
-        if given == single:
-            members, out = 1, np.empty(shape)
-        elif len(given) == 2 and given[0] == rows and 0 < given[1] <= FEW:
-            members = given[1]
-            out = np.empty((*shape, members))
-        else:
-            return None
-        evaluate(members, state, out)
-        return out
-
-    return call
-
-
 def as_float64(value: Any, name: str) -> Array:
     """A value as a C-contiguous float64 array; the same object if it is one already.
 
@@ -216,7 +184,7 @@ def as_float64(value: Any, name: str) -> Array:
             expected="float64",
         )
     converted = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
-    if array.dtype.kind in "iu" and not _same_integers(array, converted):
+    if array.dtype.kind in "iu" and not _are_doubles(array):
         raise KernelTypeError(
             f"{name} ({array.dtype}) contains integers beyond 2^53, which float64 would round. "
             "Convert it yourself if a loss is meant.",
@@ -237,9 +205,13 @@ def _is_ready(value: Any) -> bool:
     )
 
 
-def _same_integers(array: NDArray[Any], converted: Array) -> bool:
-    """Whether integers kept their value."""
-    return array.dtype.itemsize < 8 or bool((np.abs(converted) <= 2.0**53).all())
+def _are_doubles(array: NDArray[Any]) -> bool:
+    """Whether integers keep their value."""
+    if array.dtype.itemsize < 8:
+        return True
+    most = 2**53
+    inside = array <= most if array.dtype.kind == "u" else (-most <= array) & (array <= most)
+    return bool(inside.all())
 
 
 def pack(values: Any, quantities: Quantities, name: str) -> Array:
@@ -274,11 +246,22 @@ def pack_parameters(system: System, parameters: Any) -> Array:
         component = quantities.components[quantities.positive[place[0]]]
         value = float(signed[tuple(place)])
         raise KernelArgumentError(
-            f"parameter {component} of {system.name} is {value:g}; expected a positive value.",
+            f"parameter {component}{tell_member(place)} of {system.name} is {value:g}; expected a "
+            "positive value.",
             found=value,
             component=component,
         )
     return packed if parameters is not None else _keep(packed, quantities)
+
+
+def tell_member(place: NDArray[np.intp]) -> str:
+    """Where in a batch something is, given its row and member; "" without a batch.
+
+    >>> tell_member(np.array([0, 4])), tell_member(np.array([0, 4, 1])), tell_member(np.array([0]))
+    (' of member 4', ' of member (4, 1)', '')
+    """
+    member = tuple(place[1:].tolist())
+    return f" of member {member[0] if len(member) == 1 else member}" if member else ""
 
 
 def pack_inputs(system: System, inputs: Any) -> Array:

@@ -33,6 +33,33 @@ TYPED = 1e-9
 ONE_STEP = tuple(getattr(scipy.integrate, name) for name in ("DOP853", "RK45", "RK23", "Radau"))
 
 
+def find_excess(
+    system: System, state: Array, residuals: Callable[[Array], Array], atol: float
+) -> Array:
+    """How much farther off the constraints states are than by roundings; not positive on them.
+
+    Roundings of a residual are what it comes to where each component is off by `TYPED` of those of
+    its unit. A velocity that is 0 has no roundings of its own size; it has those of its fellows.
+
+    Args:
+        system: Whose constraints they are.
+        state: ``(n, ...)``.
+        residuals: Of the constraints at states of this shape.
+        atol: What the run takes for nothing.
+    """
+    units = np.array([q.unit_of(name) for q in system.STATE.values() for name in q.components])
+    sizes = np.array([np.abs(state[units == unit]).max(axis=0) for unit in units])
+    steps = 2.0**-20 * np.where(sizes > 0, sizes, 1.0)
+    here = residuals(state)
+    with np.errstate(invalid="ignore"):
+        off = np.abs(here)
+        for row, step in enumerate(steps):
+            moved = state.copy()
+            moved[row] += step
+            off -= np.abs(residuals(moved) - here) / step * (TYPED * sizes[row] + atol)
+    return off
+
+
 class Constraints:
     """What a System with one set of parameters keeps; nothing for most systems.
 
@@ -98,30 +125,15 @@ class Constraints:
         """
         if not self.any:
             return state
-        residuals = self._residuals(state)
-        with np.errstate(invalid="ignore"):
-            off = np.abs(residuals) - self._estimate_roundings(state, residuals, atol)
+        off = find_excess(self.system, state, self._residuals, atol)
         row = int(np.argmax(off))
         if off[row] > 0:
-            raise self._refusal(time, state, row, float(residuals[row]))
+            raise self._refusal(time, state, row, float(self._residuals(state)[row]))
         return self.project(time, state)
 
     def _residuals(self, states: Array) -> Array:
         now = self.driving.now
         return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
-
-    def _estimate_roundings(self, state: Array, residuals: Array, atol: float) -> Array:
-        """What residuals come to where each component is off by `TYPED` of those of its unit.
-
-        A velocity that is 0 has no roundings of its own size; it has those of its fellows.
-        """
-        quantities = self.system.STATE.values()
-        units = np.array([q.unit_of(name) for q in quantities for name in q.components])
-        sizes = np.array([np.abs(state[units == unit]).max() for unit in units])
-        steps = 2.0**-20 * np.where(sizes > 0, sizes, 1.0)
-        columns = self._residuals(state[:, None] + np.diag(steps))
-        slopes = np.abs(columns - residuals[:, None]) / steps
-        return np.asarray(slopes @ (TYPED * sizes + atol))
 
     def _refusal(self, time: float, state: Array, row: int, residual: float) -> KernelArgumentError:
         """What is wrong with a start, and where it would be right."""

@@ -141,6 +141,15 @@ class Domain:
                 outside, row = middle, beyond
         return Exit(time, state, row)
 
+    def find_leaving(self, time: float, state: Array, rates: Array) -> int:
+        """The row that comes to its end first, from a state close to it on."""
+        here, largest = self._evaluate(time, state).copy(), np.abs(rates).max()
+        step = 2.0**-20 * max(np.abs(state).max(), 1e-9) / (largest or 1.0)
+        loss = here - self._evaluate(time + step, state + step * rates)
+        with np.errstate(all="ignore"):
+            left = np.where(loss > 0, here / loss, np.where(loss <= 0, np.inf, 0.0))
+        return int(np.argmin(left))
+
     # -- messages -----------------------------------------------------------------------
 
     def explain_exit(self, exit_: Exit) -> str:

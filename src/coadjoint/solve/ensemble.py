@@ -3,6 +3,10 @@
 Comes in: initial states, parameters, inputs and sample times. Goes out: the same arrays further on.
 All that is known of a member stands in them, so that a run can stop after any call and go on later
 with the same bits, whatever the number of members in a call.
+
+A call of a solver can also record each step that it accepts, as polynomials in time: see `Record`.
+Events and dense output are found from these records, in the same way for all solvers, and a member
+can be stopped at a time within a recorded step, `Ensemble.stop`.
 Read next: `coadjoint.solve.steps`, the methods in NumPy, and ``templates/c/solver.c.j2``, in C.
 """
 
@@ -17,6 +21,8 @@ import numpy as np
 from coadjoint.solve.steps import Lanes
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from coadjoint.solve.steps import Attempt, Method
@@ -24,6 +30,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Counts = NDArray[np.uint64]
     Mask = NDArray[np.bool_]
+    #: Rows of a function at states, some time after lanes.
+    Function = Callable[[Lanes, Array, Array], Array]
 
 
 class Status(IntEnum):
@@ -34,6 +42,129 @@ class Status(IntEnum):
     STEP_UNDERFLOW = 2
     NONFINITE = 3
     MAX_STEPS = 4
+    DOMAIN = 5
+    EVENT = 6
+
+
+#: Halvings of a step that leaves the domain: its last state inside is known to 1e-12 of it.
+HALVINGS = 40
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What bounds a motion.
+
+    Attributes:
+        domain: Rows that are positive in the domain; None where there is none.
+        strict: For each row, whether it may not be zero.
+        projection: The nearest states on the constraints; None where none are kept.
+    """
+
+    domain: Function | None = None
+    strict: tuple[bool, ...] = ()
+    projection: Function | None = None
+
+    def are_inside(self, lanes: Lanes, after: Array, state: Array) -> Mask:
+        """Where states are in the domain, some time after that of the lanes."""
+        if self.domain is None:
+            return np.ones(after.shape, bool)
+        rows = self.domain(lanes, after, state)
+        least = np.where(self.strict, np.nextafter(0.0, 1.0), 0.0)[:, np.newaxis]
+        return np.asarray(((rows >= least) & (rows < np.inf)).all(axis=0))
+
+    def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The nearest states on the constraints; where there is none, the state itself."""
+        if self.projection is None:
+            return state
+        nearest = self.projection(lanes, after, state)
+        return np.where(np.isfinite(nearest).all(axis=0), nearest, state)
+
+
+#: Nothing.
+NONE = Limits()
+#: Numbers of a recorded step before its polynomials.
+HEAD = 5
+#: The fewest steps that a record has room for: one of each lane of a vector.
+ROOM = 8
+
+
+@dataclass
+class Record:
+    """Steps as they are accepted. Those of one member follow one another, others lie between.
+
+    The state at the time t is the sum of ``path[:, k] * (t - begun)**k``, for begun <= t <= begun +
+    length. Where constraints are kept, their projection has still to follow. A step that leaves the
+    domain is as long as it is inside.
+
+    Attributes:
+        rows: ``(room, HEAD + n * (degree + 1))``, one row for each step: its member; how many steps
+            that made with it; how many of its steps were rejected until then; when it began; how
+            long it is; and, component by component, ``degree + 1`` coefficients.
+        degree: Of the polynomials: the order of the Taylor method; 7 for dop853, 3 for rk4.
+        count: How many rows hold a step.
+    """
+
+    rows: Array
+    degree: int
+    count: int = 0
+
+    @classmethod
+    def make(cls, n: int, degree: int, room: int) -> Record:
+        """An empty record.
+
+        Args:
+            n: Components of the state.
+            degree: Of the polynomials.
+            room: For how many steps; `ROOM` at the least. A call of a solver ends when it is full.
+        """
+        return cls(np.empty((max(room, ROOM), HEAD + n * (degree + 1))), degree)
+
+    def clear(self) -> None:
+        """Forget all steps, so that there is room for others."""
+        self.count = 0
+
+    @property
+    def member(self) -> NDArray[np.intp]:
+        """Whose steps they are, ``(count,)``."""
+        return self.rows[: self.count, 0].astype(np.intp)
+
+    @property
+    def begun(self) -> Array:
+        """When they begin, ``(count,)``."""
+        return self.rows[: self.count, 3]
+
+    @property
+    def length(self) -> Array:
+        """How long they are, ``(count,)``."""
+        return self.rows[: self.count, 4]
+
+    @property
+    def path(self) -> Array:
+        """Their polynomials, ``(count, n, degree + 1)``."""
+        return self.rows[: self.count, HEAD:].reshape(self.count, -1, self.degree + 1)
+
+    def evaluate(self, steps: NDArray[np.intp], after: Array) -> Array:
+        """States within some steps.
+
+        Args:
+            steps: Which, ``(M,)``.
+            after: Times since these began, ``(M,)``.
+
+        Returns:
+            ``(n, M)``, by Horner, as samples of the Taylor method are.
+        """
+        path = self.path[steps]
+        total = path[:, :, self.degree].T
+        for k in range(self.degree - 1, -1, -1):
+            total = total * after + path[:, :, k].T
+        return np.ascontiguousarray(total)
+
+    def append(self, head: Array, path: Array) -> None:
+        """Add steps: the numbers of each before its polynomials, ``(HEAD, M)``, and these."""
+        rows = self.rows[self.count : self.count + head.shape[1]]
+        rows[:, :HEAD] = head.T
+        rows[:, HEAD:] = path.transpose(2, 0, 1).reshape(len(rows), -1)
+        self.count += len(rows)
 
 
 @dataclass
@@ -114,13 +245,22 @@ class Ensemble:
         """When they end."""
         return float(self.samples[-1])
 
-    def advance(self, method: Method, work: int, members: slice = slice(None)) -> int:
+    def advance(
+        self,
+        method: Method,
+        work: int,
+        members: slice = slice(None),
+        limits: Limits = NONE,
+        record: Record | None = None,
+    ) -> int:
         """Go on with some members in NumPy, as ``NAME_advance`` of a solver does in C.
 
         Args:
             method: The method.
             work: So many steps are tried of each member, at most.
             members: Which ones.
+            limits: What bounds their motion.
+            record: Where accepted steps are recorded; the call ends when it is full.
 
         Returns:
             How many of them go on.
@@ -129,24 +269,36 @@ class Ensemble:
         with np.errstate(all="ignore"):
             going = chosen[self.status[chosen] == Status.GOES_ON]
             for _ in range(work):
-                if not going.size:
+                room = going.size if record is None else len(record.rows) - record.count
+                if not (going.size and room):
                     break
-                self._step(method, going)
+                self._step(method, going[:room], limits, record)
                 going = going[self.status[going] == Status.GOES_ON]
         return int(going.size)
 
-    def _step(self, method: Method, going: NDArray[np.intp]) -> None:
+    def _step(
+        self, method: Method, going: NDArray[np.intp], limits: Limits, record: Record | None
+    ) -> None:
         """Try one step of some members."""
         lanes = self._lanes(going)
         attempt = method.try_step(lanes)
-        time = lanes.time + attempt.took
-        time = np.where(attempt.took == lanes.end - lanes.time, lanes.end, time)
-        finite = np.isfinite(attempt.state).all(axis=0)
-        stuck = (time == lanes.time) | (attempt.took < 1e-300)
+        took, state = attempt.took, limits.project(lanes, attempt.took, attempt.state)
+        time = lanes.time + took
+        time = np.where(took == lanes.end - lanes.time, lanes.end, time)
+        finite = np.isfinite(state).all(axis=0)
+        stuck = (time == lanes.time) | (took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
-        if self.out is not None:
-            self._store_samples(going, lanes, attempt, time, accepted)
-        self.state[:, going] = np.where(accepted, attempt.state, lanes.state)
+        step = _Step(lanes=lanes, attempt=attempt, limits=limits, time=time, accepted=accepted)
+        inside, outside = self._store_samples(going, step)
+        left = outside < took
+        left |= accepted & ~limits.are_inside(lanes, took, state)
+        if left.any():
+            inside, last = step.find_exit(inside, outside)
+            state = np.where(left, last, state)
+            time = np.where(left, lanes.time + inside, time)
+        if record is not None and accepted.any():
+            self._record(record, going, attempt, time - lanes.time, accepted)
+        self.state[:, going] = np.where(accepted, state, lanes.state)
         self.time[going] = np.where(accepted, time, lanes.time)
         self.step[going] = lanes.step
         self.steps[going] += accepted
@@ -155,10 +307,44 @@ class Ensemble:
         over = self.steps[going] >= self.max_steps
         status[accepted & over] = Status.MAX_STEPS
         status[accepted & (self.time[going] >= self.end)] = Status.OK
+        status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
         self.status[going] = status
+
+    def _record(
+        self,
+        record: Record,
+        going: NDArray[np.intp],
+        attempt: Attempt,
+        length: Array,
+        accepted: Mask,
+    ) -> None:
+        """Record the steps that were accepted."""
+        whose = going[accepted]
+        head = [whose, self.steps[whose] + 1.0, self.rejected[whose], self.time[whose]]
+        path = attempt.coefficients()[:, :, accepted]
+        record.append(np.array([*head, length[accepted]], np.float64), path)
+
+    def stop(self, record: Record, step: int, after: float, state: Array) -> None:
+        """End a member within a recorded step, as if it had made no step after it.
+
+        Args:
+            record: Where the step is.
+            step: Its row.
+            after: How long after it began the member ends.
+            state: Where it ends, ``(n,)``.
+        """
+        member, steps, rejected, begun, _ = record.rows[step, :HEAD].tolist()
+        whose, time = int(member), begun + after
+        first = int(np.searchsorted(self.samples, time, side="right"))
+        if self.out is not None:
+            self.out[:, whose, first : int(self.next[whose])] = np.nan
+        self.next[whose] = min(first, int(self.next[whose]))
+        self.state[:, whose], self.time[whose] = state, time
+        self.steps[whose], self.rejected[whose] = int(steps), int(rejected)
+        self.status[whose] = Status.EVENT
 
     def _lanes(self, going: NDArray[np.intp]) -> Lanes:
         """Some members, as methods take them."""
@@ -182,25 +368,62 @@ class Ensemble:
             slopes=slopes,
         )
 
-    def _store_samples(
-        self,
-        going: NDArray[np.intp],
-        lanes: Lanes,
-        attempt: Attempt,
-        time: Array,
-        accepted: Mask,
-    ) -> None:
-        """States at the samples that a step passes."""
-        assert self.out is not None
-        while True:
+    def _store_samples(self, going: NDArray[np.intp], step: _Step) -> tuple[Array, Array]:
+        """Store states at the samples that a step passes.
+
+        Returns:
+            A time after its start at which a member is in the domain, and a later one: at which it
+            is outside, or the end of the step.
+        """
+        took, out = step.attempt.took, self.out
+        inside, outside, open_ = np.zeros(took.shape), took.copy(), step.accepted.copy()
+        while out is not None:
             place = self.next[going].astype(np.intp)
-            inside = place < len(self.samples)
-            at = self.samples[np.where(inside, place, 0)]
-            wanted = accepted & inside & (at <= time)
+            known = place < len(self.samples)
+            at = self.samples[np.where(known, place, 0)]
+            wanted = open_ & known & (at <= step.time)
             if not wanted.any():
-                return
-            after = np.where(wanted, at - lanes.time, attempt.took)
-            state = attempt.path(after)
+                break
+            after = np.where(wanted, at - step.lanes.time, took)
+            state = step.find_state(after)
+            good = step.limits.are_inside(step.lanes, after, state)
+            outside = np.where(wanted & ~good, after, outside)
+            open_ &= ~wanted | good
+            wanted &= good
+            inside = np.where(wanted, after, inside)
             members = going[wanted]
-            self.out[:, members, place[wanted]] = state[:, wanted]
+            out[:, members, place[wanted]] = state[:, wanted]
             self.next[members] += np.uint64(1)
+        return inside, outside
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step of some members.
+
+    Attributes:
+        lanes: Where it begins.
+        attempt: Where it leads.
+        limits: What bounds the motion.
+        time: When it ends.
+        accepted: Whether its end is taken.
+    """
+
+    lanes: Lanes
+    attempt: Attempt
+    limits: Limits
+    time: Array
+    accepted: Mask
+
+    def find_state(self, after: Array) -> Array:
+        """The state after a part of the step, on the constraints."""
+        return self.limits.project(self.lanes, after, self.attempt.path(after))
+
+    def find_exit(self, inside: Array, outside: Array) -> tuple[Array, Array]:
+        """How far the step is in the domain, and the last state there."""
+        for _ in range(HALVINGS):
+            middle = (inside + outside) * 0.5
+            good = self.limits.are_inside(self.lanes, middle, self.find_state(middle))
+            inside = np.where(good, middle, inside)
+            outside = np.where(good, outside, middle)
+        return inside, self.find_state(inside)

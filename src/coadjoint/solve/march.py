@@ -8,25 +8,30 @@ of a solver is short, so that Ctrl-C is heard and progress is told. Read next:
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from dataclasses import dataclass
 from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.ensemble import Status
+from coadjoint.solve.ensemble import Record, Status
 
 if TYPE_CHECKING:
+    from coadjoint.solve.checkpoints import Checkpoint
     from coadjoint.solve.ensemble import Ensemble
     from coadjoint.solve.solvers import Stepper
 
 #: Told now and then: the part of the way that is done, from 0 to 1.
 Progress = Callable[[float], object]
+#: Shown the steps of each call by the thread that made them; it may stop members of these.
+Watch = Callable[["Record"], object]
 #: Seconds that one call of a solver is to take, and those between two reports.
 CALL_SECONDS, REPORT_SECONDS = 0.05, 0.1
 #: Seconds after which a bar appears.
@@ -34,8 +39,11 @@ BAR_SECONDS = 1.0
 #: Members of a slice, at the least, where threads share a batch: the last ones of a slice leave
 #: lanes idle.
 SLICE = 256
-#: Steps of a block in the first call, and how much more a later call may try than the one before.
-FIRST_WORK, GROWTH = 16, 4.0
+#: Steps of a block in the first call, how much more a later call may try than the one before, and
+#: the most of a call.
+FIRST_WORK, GROWTH, MOST_WORK = 16, 4.0, 2**40
+#: Numbers that a record of steps holds, about: 8 MB.
+RECORDED = 2**20
 
 
 def count_threads() -> int:
@@ -45,48 +53,94 @@ def count_threads() -> int:
     return os.cpu_count() or 1
 
 
-def march(stepper: Stepper, run: Ensemble, threads: int, progress: Progress | None = None) -> None:
+@dataclass(frozen=True)
+class _Going:
+    """Who advances what.
+
+    Attributes:
+        stepper: Who advances it.
+        run: Its members.
+        watch: Shown all steps; None for nobody.
+        stop: Set where all have to end.
+    """
+
+    stepper: Stepper
+    run: Ensemble
+    watch: Watch | None
+    stop: Event
+
+
+def march(
+    stepper: Stepper,
+    run: Ensemble,
+    start: float,
+    threads: int,
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+    watch: Watch | None = None,
+) -> None:
     """Advance an ensemble to its end.
 
     Args:
         stepper: Who advances it.
         run: Its members, begun.
+        start: When they began.
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
+        checkpoint: Written now and then, and at the end; None for none.
+        watch: Shown all steps that are made; None for nobody. It is called by several threads.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; members stand where they came.
+        OutputError: The checkpoint cannot be written.
     """
     slices = _cut(run.state.shape[1], threads)
-    begun, stop = run.time.copy() if progress else run.time, Event()
 
     def report() -> None:
         if progress is not None:
-            progress(_find_part(run, begun))
+            progress(_find_part(run, start))
 
-    if len(slices) == 1:
-        reported = time.monotonic()
-        for _ in _advance(stepper, run, *slices[0], stop):
-            if time.monotonic() - reported > REPORT_SECONDS:
-                report()
-                reported = time.monotonic()
-    else:
-        _share(stepper, run, slices, threads, stop, report)
+    while (run.status == Status.GOES_ON).any():
+        seconds = math.inf if checkpoint is None else checkpoint.seconds
+        going = _Going(stepper, run, watch, Event())
+        _go_on(going, slices, threads, report, time.monotonic() + seconds)
+        if checkpoint is not None:
+            checkpoint.write(run)
     report()
 
 
-def _share(
-    stepper: Stepper,
-    run: Ensemble,
+def _go_on(
+    going: _Going,
     slices: list[tuple[int, int]],
     threads: int,
-    stop: Event,
     report: Callable[[], None],
+    until: float,
+) -> None:
+    """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
+    if len(slices) > 1:
+        _share(going, slices, threads, report, until)
+        return
+    reported = time.monotonic()
+    for _ in _advance(going, *slices[0]):
+        now = time.monotonic()
+        if now > until:
+            return
+        if now - reported > REPORT_SECONDS:
+            report()
+            reported = now
+
+
+def _share(
+    going: _Going,
+    slices: list[tuple[int, int]],
+    threads: int,
+    report: Callable[[], None],
+    until: float,
 ) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
 
     def work(first: int, last: int) -> None:
-        for _ in _advance(stepper, run, first, last, stop):
+        for _ in _advance(going, first, last):
             pass
 
     with ThreadPoolExecutor(min(threads, len(slices))) as pool:
@@ -97,21 +151,31 @@ def _share(
                 for each in done:
                     each.result()
                 report()
+                if time.monotonic() > until:
+                    going.stop.set()
         except BaseException:  # Ctrl-C among them
-            stop.set()
+            going.stop.set()
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _advance(stepper: Stepper, run: Ensemble, first: int, last: int, stop: Event) -> Iterator[None]:
+def _advance(going: _Going, first: int, last: int) -> Iterator[None]:
     """Advance a slice, one short call after the other."""
-    work = FIRST_WORK
-    while not stop.is_set():
+    work, run, record = FIRST_WORK, going.run, None
+    if going.watch is not None:
+        n, degree = len(run.state), going.stepper.degree
+        record = Record.make(n, degree, RECORDED // (n * (degree + 1)))
+    while not going.stop.is_set():
         begun = time.perf_counter()
-        if not stepper.advance(run, first, last, work):
-            return
+        on = going.stepper.advance(run, first, last, work, record)
         took = max(time.perf_counter() - begun, 1e-9)
-        work = max(1, int(work * min(GROWTH, CALL_SECONDS / took)))
+        if going.watch is not None and record is not None:
+            going.watch(record)
+            record.clear()
+            on = int((run.status[first:last] == Status.GOES_ON).sum())
+        if not on:
+            return
+        work = min(max(1, int(work * min(GROWTH, CALL_SECONDS / took))), MOST_WORK)
         yield
 
 
@@ -126,11 +190,10 @@ def _cut(members: int, threads: int) -> list[tuple[int, int]]:
     return [(first, min(first + size, members)) for first in range(0, members, size)]
 
 
-def _find_part(run: Ensemble, begun: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+def _find_part(run: Ensemble, start: float) -> float:
     """The part of the way that is done, from 0 to 1."""
-    span = np.maximum(run.end - begun, np.finfo(float).tiny)
-    part = np.where(run.status == Status.GOES_ON, (run.time - begun) / span, 1.0)
-    return float(part.mean())
+    gone = (run.time - start) / (run.end - start)
+    return float(np.where(run.status == Status.GOES_ON, gone, 1.0).mean())
 
 
 @contextmanager

@@ -7,20 +7,23 @@ next: `coadjoint.solve.generated`, and `coadjoint.solve.simulate` for the method
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Integral, Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.arrays import as_float64, pack
+from coadjoint.solve.arrays import as_float64, pack, tell_member
 from coadjoint.solve.solvers import GENERATED, Choice, choose_order
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.events import Sought
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -54,6 +57,9 @@ class Request:
         reconstruct: As given.
         threads: How many threads, at the most; None for all processors.
         progress: Whether to show a bar, or whom to tell.
+        checkpoint: Where a run on its way is kept; None for nowhere.
+        events: What to look for.
+        dense: Whether the steps are kept.
     """
 
     state: Array
@@ -71,6 +77,9 @@ class Request:
     reconstruct: Any
     threads: int | None
     progress: bool | Callable[[float], object]
+    checkpoint: Path | None
+    events: tuple[Sought, ...]
+    dense: bool
 
     @property
     def choice(self) -> Choice:
@@ -101,12 +110,12 @@ def check_state(system: System, state: Any) -> Array:
         )
     finite = np.isfinite(packed)
     if not finite.all():
-        row, *member = (int(each) for each in np.argwhere(~finite)[0])
-        where = f" of member {member[0] if len(member) == 1 else tuple(member)}" if member else ""
+        place = np.argwhere(~finite)[0]
+        component = system.STATE.components[place[0]]
         raise KernelArgumentError(
-            f"the initial {system.STATE.components[row]}{where} is {packed[(row, *member)]}; "
-            "expected a finite number.",
-            found=system.STATE.components[row],
+            f"the initial {component}{tell_member(place)} is {packed[tuple(place)]}; expected a "
+            "finite number.",
+            found=component,
         )
     return packed
 
@@ -160,6 +169,23 @@ def check_count(**numbers: Any) -> None:
                 found=str(value),
                 name=name,
             )
+
+
+def check_memory(shape: tuple[int, ...]) -> None:
+    """The states at all samples have room in this machine.
+
+    Raises:
+        KernelArgumentError: They have not.
+    """
+    needed, memory = 8 * math.prod(shape), os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > memory:
+        raise KernelArgumentError(
+            f"{shape[1]} trajectories at {shape[2]} samples take {needed / 1e9:.3g} GB, and this "
+            f"machine has {memory / 1e9:.3g} GB; expected fewer of them. samples=1 keeps the end "
+            "alone.",
+            found=needed,
+            expected=memory,
+        )
 
 
 def choose_method(

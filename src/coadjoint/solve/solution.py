@@ -17,10 +17,12 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.course import UNTOLD, Course, relative, relative_of_each
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.dense import Dense
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -39,12 +41,15 @@ class Solution:
         parameters: Packed parameters, ``(k,)`` or ``(k, *batch)``.
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
-            the last point inside), ``NONFINITE`` (the rates stopped being finite),
-            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
+            the last point inside), ``NONFINITE`` (rates or steps are not finite),
+            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances), ``MAX_STEPS`` or
+            ``EVENT`` (a terminal event; the last sample is where it occurred).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
             each trajectory has constants of its own; None if there are none.
+        events: The events that were looked for, by name: times, states and members of each.
+        dense: The steps, from which `at` has the state at any time; None without ``dense=True``.
     """
 
     def __init__(
@@ -59,6 +64,8 @@ class Solution:
         inputs: Array | None = None,
         *,
         course: Course | None = None,
+        events: Events | None = None,
+        dense: Dense | None = None,
     ) -> None:
         self.system = system
         self.time = time
@@ -69,6 +76,8 @@ class Solution:
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
         self.inputs = inputs
+        self.events = events or Events()
+        self.dense = dense
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: all but what is computed from the rest on demand."""
@@ -126,41 +135,25 @@ class Solution:
         Raises:
             KernelArgumentError: There is no such member.
         """
-        batch = self.batch
-        good = len(place) == len(batch) > 0
-        if not good or not all(-n <= p < n for p, n in zip(place, batch, strict=True)):
-            raise KernelArgumentError(
-                f"member {place} is not in a batch of the shape {batch}; expected "
-                f"{len(batch)} numbers within it."
-                if batch
-                else "this solution is one trajectory.",
-                found=list(place),
-                expected=list(batch),
-            )
-        come = self.course.take(place)
-        at: Any = (slice(None), *place)
-        end = float(self.time[-1] if come.reached is None else come.reached)
-        reached = ~np.isnan(self.state[at][0]) & (self.time <= end)
-        times, states = self.time[reached], self.state[at][:, reached]
-        if come.last is not None and (not times.size or times[-1] < end):
-            times, states = np.append(times, end), np.column_stack([states, come.last])
-        shared, inputs = self.parameters.ndim == 1, self.inputs
-        if inputs is not None and inputs.ndim > 2:
-            inputs = inputs[at][:, 0]
-        elif inputs is not None and inputs.ndim == 2 and times.size != self.time.size:
-            inputs = np.column_stack([inputs[:, : reached.sum()], inputs[:, reached.sum()]])
-            inputs = inputs[:, : times.size]
-        return Solution(
-            self.system,
-            times,
-            states,
-            self.parameters if shared else self.parameters[at],
-            come.status,
-            "" if come.status == "OK" else f"it stopped at t = {end:.6g}",
-            None,
-            inputs,
-            course=come,
-        )
+        from coadjoint.solve.members import take_member
+
+        return take_member(self, place)
+
+    def at(self, t: ArrayLike) -> Solution:
+        """The same motion at other times, by the polynomials of its steps.
+
+        The states are those that samples at these times have, to the last bit; observables and the
+        drift since the start follow from them. What a trajectory of a batch did not reach is NaN.
+
+        Args:
+            t: A time, or several in any order, within the span of the solution.
+
+        Raises:
+            KernelArgumentError: It was simulated without ``dense=True``, or a time is outside.
+        """
+        from coadjoint.solve.dense import evaluate_at
+
+        return evaluate_at(self, t)
 
     def _check_alone(self, what: str) -> None:
         """Refuse what is of one trajectory.
@@ -308,12 +301,14 @@ class Solution:
         quantities = self.system.OBSERVABLES.values()
         return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
 
+    def first(self, name: str) -> Array:
+        """The value at the start, ``(..., 1)``, also where no sample has it."""
+        return self[name][..., :1] if self._at_start is None else self._at_start[name]
+
     def change(self, name: str) -> Array:
         """``q(t) - q(0)`` of an observable or state component, ``(T,)`` or ``(*batch, T)``."""
-        values = self[name]
-        first = values[..., :1] if self._at_start is None else self._at_start[name]
         with np.errstate(invalid="ignore"):  # infinite values give NaN, as they should
-            return values - first
+            return self[name] - self.first(name)
 
     @property
     def time_reached(self) -> Any:
@@ -325,8 +320,8 @@ class Solution:
         """The last state by component; of a batch arrays, of what could be followed to there."""
         names = self.system.STATE.components
         if self.batch:
-            assert self.course.last is not None
-            return dict(zip(names, self.course.last, strict=True))
+            last = self.state[..., -1] if self.course.last is None else self.course.last
+            return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
     @property

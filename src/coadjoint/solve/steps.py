@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -58,12 +59,15 @@ class Attempt:
         state: Where it leads, ``(n, N)``.
         accepted: Whether its error is small enough, ``(N,)``.
         path: The state after a part of it.
+        coefficients: Those of the path as polynomials in the time since the step began, that of
+            order 0 first, ``(n, degree + 1, N)``.
     """
 
     took: Array
     state: Array
     accepted: Mask
     path: Callable[[Array], Array]
+    coefficients: Callable[[], Array]
 
 
 class Method(Protocol):
@@ -82,20 +86,6 @@ class Method(Protocol):
 
 # -- Taylor -------------------------------------------------------------------------------------
 
-#: The mantissa of 2^(i/8), i = 0..7.
-_PARTS: Final = np.array(
-    [
-        1.0,
-        1.0905077326652577,
-        1.189207115002721,
-        1.2968395546510096,
-        1.4142135623730951,
-        1.5422108254079407,
-        1.681792830507429,
-        1.8340080864093424,
-    ]
-)
-
 
 def rough_log2(a: Array) -> Array:
     """The logarithm to base 2 within 0.01, by operations that round alike everywhere.
@@ -109,15 +99,17 @@ def rough_log2(a: Array) -> Array:
     return np.asarray(exponent + ((2.0 - m * 0.3333333333333333) * m - 1.6666666666666667))
 
 
-def power_of_eighths(eighths: Array) -> Array:
-    """Two to the power of a number of eighths, which is rounded to an integer.
+def rough_power(octaves: Array) -> Array:
+    """Two to a power between -1000 and 1000, within one part in 5000, alike everywhere.
 
-    >>> power_of_eighths(np.array([8.2, -4.0])).tolist()
-    [2.0, 0.7071067811865476]
+    >>> bool(abs(rough_power(np.array([0.5])) - np.sqrt(2))[0] < 3e-4)
+    True
     """
-    whole = (eighths + 6755399441055744.0).view(np.int64) - 0x4338000000000000
-    scale = (((whole >> 3) + 1023) << 52).view(np.float64)
-    return np.asarray(_PARTS[whole & 7] * scale)
+    shifted = octaves + 6755399441055744.0
+    rest = octaves - (shifted - 6755399441055744.0)
+    part = ((rest * 0.055008 + 0.242209) * rest + 0.693283) * rest + 1.0
+    scale = ((shifted.view(np.int64) - 0x4338000000000000 + 1023) << 52).view(np.float64)
+    return np.asarray(part * scale)
 
 
 class Taylor:
@@ -156,19 +148,24 @@ class Taylor:
                 total = total * after + path[:, k]
             return total
 
-        return Attempt(took, at(took), np.ones(took.shape, bool), at)
+        return Attempt(
+            took=took,
+            state=at(took),
+            accepted=np.ones(took.shape, bool),
+            path=at,
+            coefficients=lambda: path,
+        )
 
     def _choose(self, path: Array) -> Array:
-        """The step of Jorba and Zou, rounded to eighths of an octave."""
+        """The step in which the last two orders are as small as the tolerances ask."""
         order = self.order
-        floor = np.full(path.shape[2], self.atol / self.rtol)
-        size = rough_log2(_larger(_norm(path[:, 0]), floor))
+        least = np.full(path.shape[2], self.atol)
+        size = rough_log2(_larger(self.rtol * _norm(path[:, 0]), least))
         one = (size - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
         two = (size - rough_log2(_norm(path[:, order]))) * (1.0 / order)
-        octaves = _smaller(one, two) - (2.0 + 0.7 / (order - 1)) * 1.4426950408889634
+        octaves = _smaller(one, two) - 0.7 / (order - 1) * 1.4426950408889634
         limit = np.full(octaves.shape, 1000.0)
-        bounded = _smaller(_larger(octaves, -limit), limit)
-        return power_of_eighths(bounded * 8.0 - 0.5)
+        return rough_power(_smaller(_larger(octaves, -limit), limit))
 
 
 def _norm(rows: Array) -> Array:
@@ -226,14 +223,26 @@ class RungeKutta4:
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
 
-        def path(after: Array) -> Array:
-            part, last = after / h, self.rates(lanes, h, end)
+        def parts() -> tuple[Array, Array, Array]:
             chord = end - x
             start = h * first - chord
-            both = h * (last - first) + 2.0 * start
+            return chord, start, h * (self.rates(lanes, h, end) - first) + 2.0 * start
+
+        def path(after: Array) -> Array:
+            part, (chord, start, both) = after / h, parts()
             return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
 
-        return Attempt(h, end, np.ones(h.shape, bool), path)
+        def coefficients() -> Array:
+            _, start, both = parts()
+            return np.stack([x, first, -(both + start) / h / h, both / h / h / h], axis=1)
+
+        return Attempt(
+            took=h,
+            state=end,
+            accepted=np.ones(h.shape, bool),
+            path=path,
+            coefficients=coefficients,
+        )
 
 
 class DormandPrince8:
@@ -271,13 +280,15 @@ class DormandPrince8:
             x = lanes.state + h * self._add(k, stage + 1)
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
-            accepted = self._control(lanes, h, k, x)
-        start = lanes.state
-
-        def path(after: Array) -> Array:
-            return self._path(lanes, start, x, h, list(k), after)
-
-        return Attempt(h, x, accepted, path)
+            accepted = self._control(lanes, h, most, k, x)
+        start, parts = lanes.state, partial(self._parts, lanes, h, k, x)
+        return Attempt(
+            took=h,
+            state=x,
+            accepted=accepted,
+            path=lambda after: _evaluate(start, parts(), after / h),
+            coefficients=lambda: _multiply_out(start, parts(), h),
+        )
 
     def _add(self, k: list[Array], row: int) -> Array:
         """The sum of a row of the table over rates."""
@@ -308,7 +319,7 @@ class DormandPrince8:
         h1 = np.where(d <= 1e-15, _larger(np.full(d.shape, 1e-6), h0 * 1e-3), _root(0.01 / d))
         return _smaller(_smaller(100.0 * h0, h1), most)
 
-    def _control(self, lanes: Lanes, h: Array, k: list[Array], end: Array) -> Mask:
+    def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
         scale = self.atol + self.rtol * _larger(np.abs(lanes.state), np.abs(end))
         e5 = self._square_norm(self._add(k, FIFTH), scale)
@@ -320,27 +331,45 @@ class DormandPrince8:
         cut = _larger(np.full(h.shape, 0.2), _smaller(np.full(h.shape, 1.0), factor))
         wanted = h * np.where(accepted, factor, cut)
         wanted = np.where(np.isnan(error), h * 0.1, wanted)
+        # one that is rejected and rounds to the same would be tried for ever
+        wanted = np.where(~accepted & (_free(lanes, wanted, most) >= h), h * 0.25, wanted)
         short = accepted & (h < lanes.step)
         lanes.step = np.where(short, _larger(lanes.step, wanted), wanted)
         return accepted
 
-    def _path(
-        self, lanes: Lanes, start: Array, end: Array, h: Array, k: list[Array], after: Array
-    ) -> Array:
-        """The state after a part of a step."""
+    def _parts(self, lanes: Lanes, h: Array, k: list[Array], end: Array) -> list[Array]:
+        """The coefficients of the path of a step, as the method has them."""
+        k, start = list(k), lanes.state
         k.append(self.rates(lanes, h, end))
         for extra in range(3):
             x = start + h * self._add(k, EXTRA + extra)
             k.append(self.rates(lanes, self.table.nodes[END + 1 + extra] * h, x))
         chord = end - start
-        coefficients = [chord, h * k[0] - chord, 2.0 * chord - h * (k[END] + k[0])]
-        coefficients += [h * self._add(k, PATH + row) for row in range(4)]
-        part = after / h
-        rest = 1.0 - part
-        total = np.zeros(start.shape)
-        for row in range(6, -1, -1):
-            total = (total + coefficients[row]) * (rest if row % 2 else part)
-        return start + total
+        parts = [chord, h * k[0] - chord, 2.0 * chord - h * (k[END] + k[0])]
+        return parts + [h * self._add(k, PATH + row) for row in range(4)]
+
+
+def _evaluate(start: Array, parts: list[Array], part: Array) -> Array:
+    """The state after a part of a step."""
+    total, rest = np.zeros(start.shape), 1.0 - part
+    for row in range(6, -1, -1):
+        total = (total + parts[row]) * (rest if row % 2 else part)
+    return start + total
+
+
+def _multiply_out(start: Array, parts: list[Array], h: Array) -> Array:
+    """The same as polynomials in the time since the step began."""
+    path = [np.zeros(start.shape) for _ in range(8)]
+    for row in range(6, -1, -1):
+        path[0] = path[0] + parts[row]
+        for order in range(7 - row, 0, -1):
+            path[order] = path[order] - path[order - 1] if row % 2 else path[order - 1]
+        path[0] = path[0] if row % 2 else np.zeros(start.shape)
+    path[0] = start
+    for order in range(1, 8):
+        for _ in range(order):
+            path[order] = path[order] / h
+    return np.stack(path, axis=1)
 
 
 def _root(a: Array) -> Array:

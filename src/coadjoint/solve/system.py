@@ -16,6 +16,7 @@ from dataclasses import replace
 from functools import cached_property
 from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
+from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -30,6 +31,7 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.events import Event
     from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
     from coadjoint.solve.ode import Ode
@@ -127,9 +129,9 @@ class System(Functions):
     ) -> Array:
         """A function of a state that is ready, at once; or after all checks of the arguments."""
         time, out = rest
-        by_default = parameters is None and inputs is None and time is None and out is None
+        by_default = inputs is None and time is None
         if by_default and (ready := self._kernels.ready.get((function, target))):
-            values: Array | None = ready(state)
+            values: Array | None = ready(state, parameters, out)
             if values is not None:
                 return values
         from coadjoint.solve.arrays import check_call
@@ -197,6 +199,9 @@ class System(Functions):
         threads: int | None = None,
         progress: bool | Callable[[float], object] = True,
         reconstruct: bool | Mapping[str, ArrayLike] = False,
+        checkpoint: str | PathLike[str] | None = None,
+        events: str | Event | Sequence[str | Event] | None = None,
+        dense: bool = False,
     ) -> Solution:
         """Integrate one trajectory, or many at a time.
 
@@ -233,6 +238,14 @@ class System(Functions):
                 of it begins, as ``{"x": 1.0}``. Otherwise the rest begins at its default, else at
                 zero; an attitude at the identity, that of a rolling body turned upright the
                 shortest way. Methods with a Jacobian find it by differences then.
+            checkpoint: A file that a generated solver replaces as a whole every ten seconds, less
+                often where writing it takes longer than half a second, and at the end. Called again
+                with the same arguments, it goes on from there, with the bits of a run that was not
+                broken off. A finished run stands there, too: remove the file to begin anew.
+            events: What to look for: names of components or scalar quantities, where these are 0;
+                formulas such as ``"Gamma3 == 0.5"``; or `Event` records, which have a direction or
+                end the trajectory. `Solution.events` has them by name.
+            dense: Whether to keep the steps, from which `Solution.at` has the state at any time.
 
         Returns:
             The labelled trajectory or trajectories, with observables and the drift of what is
@@ -266,6 +279,9 @@ class System(Functions):
             threads=threads,
             progress=progress,
             reconstruct=reconstruct,
+            checkpoint=checkpoint,
+            events=events,
+            dense=dense,
         )
 
     def ode(

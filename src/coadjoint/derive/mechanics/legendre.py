@@ -21,7 +21,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
 )
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel, solver_names
-from coadjoint.derive.setting import Setting, once, sampled_setting
+from coadjoint.derive.setting import Setting, fault, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
@@ -153,14 +153,13 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
     if len(block) > COUPLED_VELOCITIES:
-        raise _refusal(
+        refused = _refusal(
             setting,
             f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
             f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
             f"that decouple them, or give {_way_out(setting)}.",
-            names[0],
-            LimitError,
         )
+        raise LimitError(str(refused), **refused.parts)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -171,7 +170,6 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
         f"the kinetic energy of {', '.join(names[: minors + 1])} alone is degenerate, and the "
         "kernel solves for velocities in the order of the algebra; expected a kinetic energy that "
         f"is positive for each. Give {_way_out(setting)} instead.",
-        names[minors],
     )
 
 
@@ -181,7 +179,7 @@ def _way_out(setting: Setting) -> str:
     return f"a [hamiltonian] and the route {route}"
 
 
-def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError | LimitError:
+def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError:
     """What is wrong with a block whose determinant no point shows to be other than 0."""
     what = f"det d2l/d({', '.join(names)})2"
     if len(matrix) > LARGEST_BLOCK or setting.field.is_zero(determinant(matrix)):
@@ -192,23 +190,11 @@ def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationE
         problem = "the Legendre transform may be invertible nowhere: no point was found at which "
         problem += f"{what} is certainly not 0"
         remedy = "expected a kinetic energy that is positive. Write it in simpler functions."
-    return _refusal(setting, f"{problem}; {remedy}", names[0])
+    return _refusal(setting, f"{problem}; {remedy}")
 
 
-def _refusal(
-    setting: Setting,
-    message: str,
-    velocity: str,
-    kind: type[DerivationError | LimitError] = DerivationError,
-) -> DerivationError | LimitError:
+def _refusal(setting: Setting, message: str) -> DerivationError:
     """An error that points at the Lagrangian."""
     formula = setting.spec.lagrangian
     assert formula is not None
-    return kind(
-        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
-        path=str(setting.spec.path),
-        line=formula.line,
-        key=formula.key,
-        found=formula.text,
-        velocity=velocity,
-    )
+    return fault(setting, formula, message, formula.text)

@@ -30,14 +30,12 @@ class Body:
 
 @dataclass(frozen=True)
 class Loop:
-    """A loop over the terms of sums, in the loop over orders.
+    """A loop over the terms 0 < m < k of sums, in the loop over orders.
 
     Attributes:
-        last: Its last term, ``"_k"`` or ``"_k - 1"``; the first is 1.
         lines: Name and value, in order.
     """
 
-    last: str
     lines: tuple[tuple[str, Node], ...]
 
 

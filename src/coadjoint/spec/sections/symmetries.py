@@ -143,7 +143,10 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     Raises:
         SpecError: There is none of that name.
     """
-    state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+    reduction = reading.file.reduction
+    given = () if reduction is None else reduction.section  # these follow from the others
+    variables = (v for v in state_of(VARIABLES.of(reading)) if v.name not in given)
+    state = {variable.name: variable for variable in variables}
     if name not in state:
         problem = f"{name!a} is not a variable of the state"
         raise reading.unknown(key, problem, name, state)

@@ -15,7 +15,7 @@ from coadjoint.render.targets.c.reader import read_expression
 from coadjoint.render.targets.loops import TABLES, Loops, unroll
 
 _HELPERS = (
-    "static void fill_vector( double vector[restrict VALUES][MEMBERS], "
+    "static inline void fill_vector( double vector[restrict VALUES][MEMBERS], "
     "double scales[restrict VALUES - ROWS][MEMBERS], "
     "const double *restrict rows, size_t stride, size_t count) { "
     "for (size_t row = 0; row < ROWS; ++row) for (size_t n = 0; n < count; ++n) "
@@ -23,7 +23,7 @@ _HELPERS = (
     "for (size_t place = 0; place < VALUES - ROWS; ++place) "
     "for (size_t n = 0; n < MEMBERS; ++n) "
     "vector[ROWS + place][n] = scales[place][n] * vector[table_scaled[place]][n]; }",
-    "static void add_products( size_t passes, double (*const vectors[][2])[MEMBERS], "
+    "static inline void add_products( size_t passes, double (*const vectors[][2])[MEMBERS], "
     "double *restrict out, size_t stride, size_t count) { "
     "for (size_t row = 0; row < sizeof table_starts / sizeof *table_starts - 1; ++row) { "
     "double sum[MEMBERS]; for (size_t n = 0; n < MEMBERS; ++n) sum[n] = -0.0; "

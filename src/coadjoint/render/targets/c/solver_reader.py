@@ -20,8 +20,11 @@ _FUNCTIONS = {
     "find_fixed": "INLINE void find_fixed(Block *restrict _block)",
     "expand": "static void expand(const Block *restrict _block, "
     "V _path[restrict STATE][ORDER + 1])",
-    "find_rates": "static void find_rates(const Block *restrict _block, V _after, "
-    "const V *restrict _state, V *restrict _rates)",
+    **{
+        f"find_{name}": f"static void find_{name}(\n    const Block *restrict _block, V _after, "
+        "const V *restrict _state, V *restrict _rows)"
+        for name in ("rates", "domain", "projection")
+    },
 }
 _TABLE = re.compile(
     r"^static const (?:double|unsigned char) (nodes|starts|columns|weights)\[\] = \{\n(.*?)^\};$",
@@ -37,11 +40,11 @@ _UNROLLED = re.compile(
     r"#pragma GCC unroll 32\n#endif\n",
     re.MULTILINE,
 )
-_TERMS = re.compile(r"for \(int _m = 1; _m <= (_k|_k - 1); \+\+_m\)")
+_TERMS = "for (int _m = 1; _m < _k; ++_m)"
 _ASSIGNED = re.compile(r"((?:const )?V )?(\w+(?:\[(?:\d+|_k|_k \+ 1)\])?) = (.*)", re.DOTALL)
 _DRIVING = (
     "V _driving[DRIVING + 1]; for (int _i = 0; _i < DRIVING; ++_i) "
-    "_driving[_i] = _block->inputs[_i] + _after * _block->slopes[_i]; (void)_driving;"
+    "_driving[_i] = _block->inputs[_i] + _after * _block->slopes[_i]; (void)_driving; (void)_state;"
 )
 #: Lines that name what a function reads: the array, by the form of the line.
 _READ = {
@@ -121,7 +124,7 @@ class _Reading:
 
     def read(self, text: str) -> SolverBody:
         """All lines of a body."""
-        if self.function == "find_rates":
+        if self.function not in ("find_fixed", "expand"):
             text = self._without_driving(text)
         statements, ended = self._statements(text), False
         for kind, statement in statements:
@@ -139,7 +142,7 @@ class _Reading:
         return self.body
 
     def _without_driving(self, text: str) -> str:
-        """The body of the rates after the lines that find inputs."""
+        """The body of a function of the state after the lines that find inputs."""
         joined = " ".join(text.split())
         if not joined.startswith(_DRIVING):
             raise self._refusal(joined[: len(_DRIVING)])
@@ -198,9 +201,8 @@ class _Reading:
     def _read_orders(self, statements: Iterator[tuple[str, str]]) -> None:
         """The loop over orders, to its end."""
         for kind, statement in statements:
-            terms = _TERMS.fullmatch(statement) if kind == "loop" else None
-            if terms:
-                self.body.orders.append(Loop(terms[1], tuple(self._read_terms(statements))))
+            if kind == "loop" and statement == _TERMS:
+                self.body.orders.append(Loop(tuple(self._read_terms(statements))))
             elif kind == "plain":
                 declared, name, value = self._assignment(statement)
                 if declared == "V ":

@@ -29,7 +29,7 @@ def _add_products(out, passes):
         for place in range(np.diff(starts).max()):
             rows = np.flatnonzero(starts[:-1] + place < starts[1:])
             entries = starts[rows] + place
-            products = coefficients[entries, None] * left[lefts[entries]]
+            products = (coefficients[entries] * left[lefts[entries]].T).T
             products *= right[rights[entries]]
             out[rows] += products
 """

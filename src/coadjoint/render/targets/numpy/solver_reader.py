@@ -33,7 +33,7 @@ _READ = {
 }
 _KEPT = re.compile(r"(\w+) = np\.empty\(path\.shape\[1:\]\)")
 _ZEROS = re.compile(r"(\w+) = np\.zeros\(\(order \+ 1, state\.shape\[1\]\)\)")
-_LOOPS = {"range(1, _k + 1)": "_k", "range(1, _k)": "_k - 1"}
+_TERMS = "range(1, _k)"
 
 
 def read_expand(text: str) -> SolverBody:
@@ -146,7 +146,7 @@ class _Reading(Reader):
         """The loop over orders."""
         for line in lines:
             match line:
-                case ast.For(ast.Name("_m"), over, body, []) if ast.unparse(over) in _LOOPS:
-                    yield Loop(_LOOPS[ast.unparse(over)], tuple(map(self._assignment, body)))
+                case ast.For(ast.Name("_m"), over, body, []) if ast.unparse(over) == _TERMS:
+                    yield Loop(tuple(map(self._assignment, body)))
                 case _:
                     yield self._assignment(line)

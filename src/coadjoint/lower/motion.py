@@ -1,0 +1,328 @@
+"""Motion: how few products of what moves give the rates of a system.
+
+Comes in: the Program of the rates. Goes out: a `Plan`: what is kept as a value of its own, and what
+each of these is: a polynomial in others, a quotient or a function of them.
+
+At each order of a Taylor series a linear combination costs a few operations, a product of things
+that move a sum over all orders below. So the Program's own intermediate values are not the best
+ones: ``P x (A Pi - D P)`` has 6 products as it stands, and when it is multiplied out as many as
+there are pairs of components that other rates need as well. Each sum is kept, or multiplied out
+where it is a factor, whichever leaves fewer products in all. A difference of like things is kept.
+Read next: `coadjoint.lower.jets`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from coadjoint.lower.polynomials import (
+    Polynomial,
+    Product,
+    TooLongError,
+    add,
+    is_difference,
+    moving,
+    multiply,
+    node_of,
+    scaled,
+)
+from coadjoint.lower.products import Pair, share_pairs
+from coadjoint.lower.program import (
+    Add,
+    Call,
+    Divide,
+    Multiply,
+    Negate,
+    Node,
+    Number,
+    Program,
+    Statement,
+    Symbol,
+    children,
+    walk,
+    with_children,
+)
+
+ONE = Number(Fraction(1))
+#: What a term of a linear combination costs, where a product costs 1.
+TERM = 0.02
+#: Plans are tried while their number times the size of the Program is below.
+EFFORT = 20000
+
+
+@dataclass(frozen=True)
+class Quotient:
+    """What moves, or one, over what moves.
+
+    Attributes:
+        above: The name of the numerator; None for one.
+        below: The name of the denominator.
+    """
+
+    above: str | None
+    below: str
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of what moves.
+
+    Attributes:
+        name: The function.
+        of: The name of its argument.
+    """
+
+    name: str
+    of: str
+
+
+Meaning = Polynomial | Quotient | Function
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The rates as polynomials in what is kept.
+
+    Attributes:
+        fixed: What depends on parameters alone.
+        meanings: What each kept name is; the state and what drives it are left out.
+        rates: One for each component of the state.
+        pairs: Products of two that others are made of, by name.
+        products: Each product that moves, of two or more, in names and pairs.
+        cost: Sums over orders, and a little for linear terms.
+    """
+
+    fixed: tuple[Statement, ...]
+    meanings: dict[str, Meaning]
+    rates: tuple[Polynomial, ...]
+    pairs: dict[str, Pair]
+    products: dict[Product, Product]
+    cost: float
+
+
+def find_plan(rhs: Program) -> Plan:
+    """The plan that costs least of those that were tried.
+
+    First all statements from one on are kept, each in turn; then each is changed alone.
+    """
+    rhs = _with_names(rhs)
+    names = [statement.name for statement in rhs.statements_at("member")]
+    tries = EFFORT // sum(1 for value in rhs.values() for _ in walk(value))
+    starts = [frozenset(names[place:]) for place in range(min(len(names), tries) + 1)]
+    plans = [(_try(rhs, kept), kept) for kept in (*starts, frozenset[str]())]
+    best, kept = min(plans, key=lambda each: each[0].cost)
+    for name in names[:tries]:
+        other = _try(rhs, kept ^ {name})
+        if other.cost < best.cost:
+            best, kept = other, kept ^ {name}
+    return best
+
+
+def _with_names(rhs: Program) -> Program:
+    """The Program with a name for each sum that is a factor."""
+    statements, known = list[Statement](), dict[Node, str]()
+    constants = {*rhs.parameters, *(each.name for each in rhs.statements_at("parameters"))}
+
+    def named(node: Node) -> Node:
+        found = with_children(node, map(named, children(node)))
+        if isinstance(found, Multiply):
+            return with_children(found, map(name_sum, children(found)))
+        return found
+
+    def name_sum(node: Node) -> Node:
+        read = {each.name for each in walk(node) if isinstance(each, Symbol)}
+        if not isinstance(node, Add) or read <= constants:
+            return node
+        if node not in known:
+            known[node] = f"_s{len(known) + 1}"
+            statements.append(Statement(known[node], node, "member"))
+        return Symbol(known[node])
+
+    for statement in rhs.statements:
+        value = statement.value if statement.level == "parameters" else named(statement.value)
+        statements.append(replace(statement, value=value))
+    outputs = tuple(replace(output, value=named(output.value)) for output in rhs.outputs)
+    return replace(rhs, statements=tuple(statements), outputs=outputs)
+
+
+def _try(rhs: Program, kept: frozenset[str]) -> Plan:
+    """The plan in which some statements are kept; it costs too much where products are too long."""
+    try:
+        return _Planning(rhs, kept).plan()
+    except TooLongError:
+        return Plan(fixed=(), meanings={}, rates=(), pairs={}, products={}, cost=float("inf"))
+
+
+class _Planning:
+    """A plan in the making."""
+
+    def __init__(self, rhs: Program, kept: frozenset[str]) -> None:
+        self.rhs, self.kept = rhs, kept
+        self.fixed = list(rhs.statements_at("parameters"))
+        self._reciprocals = {each.value: each.name for each in self.fixed}
+        constants = (*rhs.parameters, *(statement.name for statement in self.fixed))
+        self._values: dict[str, Polynomial] = {
+            name: scaled(Fraction(1), (name,)) for name in constants
+        }
+        driven = (*rhs.state, *rhs.inputs, *rhs.time)
+        self._values |= {name: moving(name) for name in driven}
+        self._meanings: dict[str, Meaning] = {}
+        self._names: dict[object, str] = {}
+
+    def plan(self) -> Plan:
+        """All of it."""
+        for statement in self.rhs.statements_at("member"):
+            self._values[statement.name] = self._keep(statement)
+        rates = tuple(self._polynomial(output.value) for output in self.rhs.outputs)
+        meanings = {name: self._meanings[name] for name in self._read(rates)}
+        polynomials = [*(m for m in meanings.values() if isinstance(m, dict)), *rates]
+        terms = [product for each in polynomials for product, _ in each]
+        products = [product for product in terms if len(product) > 1]
+        made, pairs = share_pairs(products, lambda n: f"_m{n}")
+        distinct = dict(zip(products, made, strict=True))
+        cost = len(pairs) + sum(len(product) - 1 for product in distinct.values())
+        cost += sum(1 + isinstance(m, Function) for m in meanings.values() if not _is_sum(m))
+        return Plan(
+            fixed=tuple(self.fixed),
+            meanings=meanings,
+            rates=rates,
+            pairs=pairs,
+            products=distinct,
+            cost=cost + TERM * (len(terms) + len(meanings)),
+        )
+
+    def _read(self, rates: Sequence[Polynomial]) -> Iterator[str]:
+        """Names that the rates need, each after those it needs itself."""
+        done = set[str]()
+
+        def visit(names: Iterator[str]) -> Iterator[str]:
+            for name in names:
+                if name in self._meanings and name not in done:
+                    done.add(name)
+                    yield from visit(_names_in(self._meanings[name]))
+                    yield name
+
+        for rate in rates:
+            yield from visit(_names_in(rate))
+
+    def _keep(self, statement: Statement) -> Polynomial:
+        """A statement as a value of its own, or as what it is."""
+        whole = self._polynomial(statement.value)
+        moves = sum(1 for product, _ in whole if product)
+        if moves == 0 or (moves == 1 and _is_linear(whole) and not is_difference(whole)):
+            return whole
+        if statement.name not in self.kept and not is_difference(whole):
+            return whole
+        return self._name(whole, statement.name)
+
+    def _name(self, whole: Polynomial, name: str) -> Polynomial:
+        """A polynomial under a name, or under the one that it has."""
+        key = frozenset(whole.items())
+        if key not in self._names:
+            self._names[key], self._meanings[name] = name, whole
+        return moving(self._names[key])
+
+    def _as_name(self, whole: Polynomial) -> str:
+        """The name of a polynomial that moves."""
+        match list(whole.items()):
+            case [(((name,), ()), factor)] if factor == 1:
+                return name
+        named = self._name(whole, f"_u{len(self._names) + 1}")
+        return next(iter(named))[0][0]
+
+    def _polynomial(self, node: Node) -> Polynomial:
+        """A node as a polynomial in what is kept."""
+        match node:
+            case Number(value=value):
+                return scaled(value)
+            case Symbol(name=name):
+                return self._values[name]
+            case Negate(operand=operand):
+                return multiply(scaled(Fraction(-1)), self._polynomial(operand))
+            case Add(left=left, right=right):
+                return add(self._polynomial(left), self._polynomial(right))
+            case Multiply(left=left, right=right):
+                return self._multiply(self._polynomial(left), self._polynomial(right))
+            case Divide(left=left, right=right):
+                return self._divide(self._polynomial(left), right)
+            case Call(function=function, argument=argument):
+                whole = self._polynomial(argument)
+                if not _moves(whole):
+                    return self._fixed(Call(function, _constant_node(whole)))
+                return self._meant(Function(function, self._as_name(whole)))
+        raise AssertionError(node)
+
+    def _meant(self, meaning: Quotient | Function) -> Polynomial:
+        """A quotient or a function under its name."""
+        if meaning not in self._names:
+            self._names[meaning] = f"_u{len(self._names) + 1}"
+            self._meanings[self._names[meaning]] = meaning
+        return moving(self._names[meaning])
+
+    def _multiply(self, left: Polynomial, right: Polynomial) -> Polynomial:
+        """A product; one over what moves, times something, is a quotient."""
+        for whole, other in ((left, right), (right, left)):
+            match list(whole.items()):
+                case [(((name,), rest), factor)] if _moves(other):
+                    meaning = self._meanings.get(name)
+                    if isinstance(meaning, Quotient) and meaning.above is None:
+                        over = self._over(other, meaning.below)
+                        return multiply(scaled(factor, rest), over)
+        return multiply(left, right)
+
+    def _divide(self, above: Polynomial, node: Node) -> Polynomial:
+        """A quotient."""
+        below = self._polynomial(node)
+        if _moves(below):
+            return self._over(above, self._as_name(below))
+        match list(below.items()):
+            case [(((), ()), factor)]:
+                return multiply(above, scaled(1 / factor))
+        return multiply(above, self._fixed(Divide(ONE, _constant_node(below))))
+
+    def _over(self, above: Polynomial, below: str) -> Polynomial:
+        """A polynomial over a name; factors that are constant stand before the quotient."""
+        if not _moves(above):
+            return multiply(above, self._meant(Quotient(None, below)))
+        scale: Polynomial = scaled(Fraction(1))
+        match list(above.items()):
+            case [((product, rest), factor)]:
+                scale, above = scaled(factor, rest), {(product, ()): Fraction(1)}
+        return multiply(scale, self._meant(Quotient(self._as_name(above), below)))
+
+    def _fixed(self, node: Node) -> Polynomial:
+        """What depends on parameters alone, computed once."""
+        if node not in self._reciprocals:
+            self._reciprocals[node] = f"_q{len(self.fixed) + 1}"
+            self.fixed.append(Statement(self._reciprocals[node], node, "parameters"))
+        return scaled(Fraction(1), (self._reciprocals[node],))
+
+
+def _constant_node(whole: Polynomial) -> Node:
+    return node_of({rest: factor for (_, rest), factor in whole.items()})
+
+
+def _is_sum(meaning: Meaning) -> bool:
+    return isinstance(meaning, dict)
+
+
+def _moves(whole: Polynomial) -> bool:
+    return any(product for product, _ in whole)
+
+
+def _is_linear(whole: Polynomial) -> bool:
+    return all(len(product) < 2 for product, _ in whole)
+
+
+def _names_in(meaning: Meaning) -> Iterator[str]:
+    """The names that a meaning reads."""
+    match meaning:
+        case Quotient(above=above, below=below):
+            yield from filter(None, [above, below])
+        case Function(of=name):
+            yield name
+        case _:
+            for product, _ in meaning:
+                yield from product
