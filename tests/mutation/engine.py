@@ -27,7 +27,7 @@ SIGNS = (
         "galilei: rewrite unit(3, 4) -> unit(3, 4, -1)",
     ),
     *of("algebra/matrices", "commutator: turn a b"),
-    *of("lie_algebra", "from_brackets: flip 1", "ad_star: flip multiply_constant"),
+    *of("lie_algebra", "from_brackets: flip 1", "ad_star: rewrite xi[i] * mu[k] -> -xi[i] * mu[k]"),
     *of("algebra/invariants", "structure: flip c"),
     *of(
         "poisson/brackets",

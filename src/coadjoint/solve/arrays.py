@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.quantities import Quantities
 
@@ -53,12 +54,7 @@ def check_call(
         KernelArgumentError: Something has a wrong shape, name, sign, or overlaps.
         KernelTypeError: Something is not numeric in a way that float64 can hold.
     """
-    if function not in system.functions:
-        raise KernelArgumentError(
-            f"{system.name} has no function {function!r}; expected one of "
-            f"{', '.join(system.functions)}.",
-            found=function,
-        )
+    check_function(system, function)
     rows = system.rows(function)
     packed = as_float64(state, "state") if bound else pack(state, rows, "state")
     if bound and packed is not state:
@@ -103,6 +99,59 @@ def check_call(
                 found=name,
             )
     return call, result
+
+
+def check_function(system: System, function: str) -> None:
+    """A function that a system has.
+
+    Raises:
+        KernelArgumentError: It has not; the message names those that it has.
+    """
+    if function in system.functions:
+        return
+    known = KERNEL_FUNCTIONS.get(function)
+    large = known is not None and known.looped == "never" and "jacobian_vector" in system.functions
+    advice = (
+        " Its rates are loops over a table, and matrices of its size are not written out: take "
+        "jacobian_vector(state, vector), the Jacobian times a vector."
+    )
+    raise KernelArgumentError(
+        f"{system.name} has no function {function!r}; expected one of "
+        f"{', '.join(system.functions)}.{advice if large else ''}",
+        found=function,
+    )
+
+
+def stack_vector(system: Any, function: str, state: Values, vector: Values) -> Array:
+    """A state with a vector below it, ``(2*n, *batch)``.
+
+    Raises:
+        KernelArgumentError: The system has no such function, or the shapes differ.
+    """
+    check_function(system, function)
+    packed = [
+        pack(each, system.STATE, name) for each, name in ((state, "state"), (vector, "vector"))
+    ]
+    for each, name in zip(packed, ("state", "vector"), strict=True):
+        _check_rows(each, system.STATE, name, system.name)
+    if packed[0].shape != packed[1].shape:
+        raise KernelArgumentError(
+            f"the state has the shape {packed[0].shape}, the vector {packed[1].shape}; expected "
+            "the same.",
+            found=list(packed[1].shape),
+            expected=list(packed[0].shape),
+        )
+    return np.concatenate(packed)
+
+
+def find_slopes(system: System, state: Array, *given: Any, **named: Any) -> Array:
+    """The Jacobian ``(n, n)`` of a system at one state, column by column where it has no matrix."""
+    if "jacobian" in system.functions:
+        return system.evaluate("jacobian", state, *given, **named)
+    columns = np.identity(len(state))
+    states = np.repeat(state[:, None], len(state), axis=1)
+    stacked = np.concatenate([states, columns])
+    return system.evaluate("jacobian_vector", stacked, *given, **named)
 
 
 def as_float64(value: Any, name: str) -> Array:
