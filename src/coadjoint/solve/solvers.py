@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 import numpy as np
 
 from coadjoint.build.compiler import HOW_TO_GET_ONE, Source
-from coadjoint.build.library import Library, load_library
+from coadjoint.build.library import Library, load_library, tell_processor
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
@@ -92,6 +92,11 @@ class Stepper(Protocol):
     """
 
     degree: int
+
+    @property
+    def key(self) -> str:
+        """What its bits depend on beyond the files of the system."""
+        ...
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
@@ -204,7 +209,7 @@ class CStepper:
     """
 
     def __init__(self, library: Library, choice: Choice) -> None:
-        self.source, self.degree = library.source, choice.degree
+        self.source, self.key, self.degree = library.source, library.key, choice.degree
         self._advance = library.take("advance")
 
     def advance(
@@ -276,6 +281,11 @@ class NumpyStepper:
             if "projection" in system.functions
             else None,
         )
+
+    @property
+    def key(self) -> str:
+        """NumPy's own functions differ from one processor to another."""
+        return f"numpy {np.__version__} {tell_processor()}"
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
