@@ -157,7 +157,7 @@ def test_the_sanitizers_find_nothing(name, sanitizers, tmp_path):
 @pytest.mark.parametrize(
     ("sanitizers", "good", "bad"),
     [
-        ("address,undefined", "calloc(WIDTH * ROOM, 8)", "calloc(WIDTH * ROOM - 1, 8)"),
+        ("address,undefined", "calloc(WIDTH * ROOM, 8)", "calloc(WIDTH * 2, 8)"),
         ("thread", "rest.first = run.last", "rest.last = run.last"),
     ],
 )
