@@ -22,6 +22,7 @@ BENCHMARKS = (
     "numpy_kernels",
     "call_overhead",
     "ensembles",
+    "trajectories",
     "memory",
 )
 

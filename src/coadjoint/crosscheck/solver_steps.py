@@ -7,7 +7,7 @@ a `CrossCheckError` that shows a member and the two values.
              the equations: no error is above depth * 2^-53 * envelope, where the envelope is that
              of the recurrences, or of the method run on the Program, and the depth is the number of
              operations that follow one another in it; and the step that the Taylor method chooses
-             is that of Jorba and Zou, rounded down to eighths of an octave
+             is the one in which its last two orders are as small as the tolerances ask
     rung 5   some steps of a dozen members with samples between them: NumPy has the same bits as
              exact C; where functions beyond sqrt are called, single steps are within the same bound
 
