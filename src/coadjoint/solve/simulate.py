@@ -206,7 +206,8 @@ def _make_solution(
     if request.samples == 1:
         steady = driving.is_constant
         given = driving.over(times[:1]).get("inputs")
-        start = Start(request.start, states[:n, 0].copy(), given, not steady)
+        below = states[n:, 0].copy() if len(states) > n else None
+        start = Start(request.start, states[:n, 0].copy(), given, not steady, below)
         times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")

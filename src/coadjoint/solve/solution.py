@@ -263,7 +263,8 @@ class Solution:
         if start is None:
             return None
         state, time = start.state[..., np.newaxis], np.array([start.time])
-        return Solution(self.system, time, state, self.parameters, "", "", None, start.inputs)
+        below = None if start.reconstructed is None else start.reconstructed[..., np.newaxis]
+        return Solution(self.system, time, state, self.parameters, "", "", below, start.inputs)
 
     @cached_property
     def drift(self) -> dict[str, Any]:
