@@ -14,19 +14,16 @@ import platform
 import shutil
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
+from coadjoint.build.calling import CALL, CALL_AT, LABEL, SUPPORT
 from coadjoint.build.compiler import (
     ANOTHER,
-    CALL,
-    CALL_AT,
     KERNEL,
-    LABEL,
-    SUPPORT,
     Compiler,
     Source,
     compile_kernel,
@@ -86,7 +83,7 @@ class Library:
                     expected=expected,
                 )
         self._call.restype = self._call_at.restype = None
-        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS]
+        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS, _ADDRESS]
 
     def _text(self, symbol: str, expected: str) -> str:
         """A string of the object, no further than one character beyond what is expected."""
@@ -103,10 +100,11 @@ class Library:
         """
         return partial(self._call, self._pack(function, arguments))
 
-    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any], None]:
-        """The same for other members: their number, state and result are given at each call.
+    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any, Any], None]:
+        """The same for other members: number, state, parameters and result are given at each call.
 
-        State and result are passed as `ctypes.byref` makes them, without gaps between the rows.
+        They are passed as `ctypes.byref` makes them, without gaps between the rows; parameters
+        that are None are those of the arguments, others are shared in the same way.
         """
         return partial(self._call_at, self._pack(function, arguments))
 
@@ -168,13 +166,11 @@ def load_library(
             where it could work.
         OutputError: The folder has no such source.
     """
-    compiler = find_compiler()
-    sources = _sources(folder, kind)
+    kept = find_library(folder, name, identity, build, kind)
+    if kept is not None:
+        return kept
+    compiler, sources = find_compiler(), _sources(folder, kind)
     key, source = _key(compiler, sources, build, kind), _hash(sources[kind.files[0]])
-    cached = fetch(key)
-    if cached is not None:
-        with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
-            return Library(cached, name, identity, build, source, kind, key)
     with ExitStack() as stack:
         try:
             work = stack.enter_context(working_folder())
@@ -191,6 +187,25 @@ def load_library(
         with suppress(OSError, OutputError):  # it is good; the next process compiles again
             store(key, fresh.read_bytes())
         return library
+
+
+def find_library(
+    folder: Path, name: str, identity: str, build: str, kind: Source = KERNEL
+) -> Library | None:
+    """Load C of a generated folder if the cache has it compiled; arguments as in `load_library`.
+
+    Raises:
+        CompilerError: There is no compiler.
+        OutputError: The folder has no such source.
+    """
+    sources = _sources(folder, kind)
+    key = _key(find_compiler(), sources, build, kind)
+    cached = fetch(key)
+    if cached is not None:
+        with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
+            source = _hash(sources[kind.files[0]])
+            return Library(cached, name, identity, build, source, kind, key)
+    return None
 
 
 def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
@@ -227,6 +242,7 @@ def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
+@cache
 def tell_processor() -> str:
     """What tells processors apart that share a home folder."""
     try:

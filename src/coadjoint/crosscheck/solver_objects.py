@@ -19,7 +19,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import _run, find_compiler
+from coadjoint.build.compiler import MACHINES, _run, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import CompilerError, OutputError
@@ -65,8 +65,8 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
     for file, content in sources.items():
         (work / file).write_bytes(content)
     said, status = "", 1
-    for native in (True, False):  # some compilers do not know -march=native
-        flags = (*compiler.flags(build, native=native), FLAGS[method])
+    for machine in MACHINES:  # some compilers do not know all of these options
+        flags = (*compiler.flags(build, machine=machine), FLAGS[method])
         command = (*compiler.command, *flags, "solver.c", "-o", "solver.so", "-lm")
         status, said = _run(command, work)
         if status == 0:

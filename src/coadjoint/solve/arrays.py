@@ -8,13 +8,14 @@ Read next: `coadjoint.render.targets.protocol`, which has the `Call`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
-from coadjoint.render.targets.protocol import FEW, Call, Evaluate
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
@@ -53,12 +54,7 @@ def check_call(
         KernelArgumentError: Something has a wrong shape, name, sign, or overlaps.
         KernelTypeError: Something is not numeric in a way that float64 can hold.
     """
-    if function not in system.functions:
-        raise KernelArgumentError(
-            f"{system.name} has no function {function!r}; expected one of "
-            f"{', '.join(system.functions)}.",
-            found=function,
-        )
+    check_function(system, function)
     rows = system.rows(function)
     packed = as_float64(state, "state") if bound else pack(state, rows, "state")
     if bound and packed is not state:
@@ -105,36 +101,57 @@ def check_call(
     return call, result
 
 
-def evaluate_ready(
-    shape: tuple[int, ...], rows: int, evaluate: Evaluate
-) -> Callable[[Any], Array | None]:
-    """A function of one or a few states for arrays that are ready, and None for all else.
+def check_function(system: System, function: str) -> None:
+    """A function that a system has.
 
-    It looks at what `check_call` looks at, and at nothing twice: what is not a writable,
-    C-contiguous array ``(n,)`` or ``(n, N)`` of float64 goes through the checks that explain.
-
-    Args:
-        shape: Of the result for one member.
-        rows: Of the state.
-        evaluate: The function with its defaults, by the kernel.
+    Raises:
+        KernelArgumentError: It has not; the message names those that it has.
     """
-    float64, single = np.dtype(np.float64), (rows,)
+    if function in system.functions:
+        return
+    known = KERNEL_FUNCTIONS.get(function)
+    large = known is not None and known.looped == "never" and "jacobian_vector" in system.functions
+    advice = (
+        " Its rates are loops over a table, and matrices of its size are not written out: take "
+        "jacobian_vector(state, vector), the Jacobian times a vector."
+    )
+    raise KernelArgumentError(
+        f"{system.name} has no function {function!r}; expected one of "
+        f"{', '.join(system.functions)}.{advice if large else ''}",
+        found=function,
+    )
 
-    def call(state: Any) -> Array | None:
-        if type(state) is not np.ndarray or state.dtype is not float64 or not state.flags.carray:
-            return None
-        given = state.shape
-        if given == single:
-            members, out = 1, np.empty(shape)
-        elif len(given) == 2 and given[0] == rows and 0 < given[1] <= FEW:
-            members = given[1]
-            out = np.empty((*shape, members))
-        else:
-            return None
-        evaluate(members, state, out)
-        return out
 
-    return call
+def stack_vector(system: Any, function: str, state: Values, vector: Values) -> Array:
+    """A state with a vector below it, ``(2*n, *batch)``.
+
+    Raises:
+        KernelArgumentError: The system has no such function, or the shapes differ.
+    """
+    check_function(system, function)
+    packed = [
+        pack(each, system.STATE, name) for each, name in ((state, "state"), (vector, "vector"))
+    ]
+    for each, name in zip(packed, ("state", "vector"), strict=True):
+        check_rows(each, system.STATE, name, system.name)
+    if packed[0].shape != packed[1].shape:
+        raise KernelArgumentError(
+            f"the state has the shape {packed[0].shape}, the vector {packed[1].shape}; expected "
+            "the same.",
+            found=list(packed[1].shape),
+            expected=list(packed[0].shape),
+        )
+    return np.concatenate(packed)
+
+
+def find_slopes(system: System, state: Array, *given: Any, **named: Any) -> Array:
+    """The Jacobian ``(n, n)`` of a system at one state, column by column where it has no matrix."""
+    if "jacobian" in system.functions:
+        return system.evaluate("jacobian", state, *given, **named)
+    columns = np.identity(len(state))
+    states = np.repeat(state[:, None], len(state), axis=1)
+    stacked = np.concatenate([states, columns])
+    return system.evaluate("jacobian_vector", stacked, *given, **named)
 
 
 def as_float64(value: Any, name: str) -> Array:
@@ -170,7 +187,7 @@ def as_float64(value: Any, name: str) -> Array:
             expected="float64",
         )
     converted = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
-    if array.dtype.kind in "iu" and not _same_integers(array, converted):
+    if array.dtype.kind in "iu" and not _are_doubles(array):
         raise KernelTypeError(
             f"{name} ({array.dtype}) contains integers beyond 2^53, which float64 would round. "
             "Convert it yourself if a loss is meant.",
@@ -191,9 +208,13 @@ def _is_ready(value: Any) -> bool:
     )
 
 
-def _same_integers(array: NDArray[Any], converted: Array) -> bool:
-    """Whether integers kept their value."""
-    return array.dtype.itemsize < 8 or bool((np.abs(converted) <= 2.0**53).all())
+def _are_doubles(array: NDArray[Any]) -> bool:
+    """Whether integers keep their value."""
+    if array.dtype.itemsize < 8:
+        return True
+    most = 2**53
+    inside = array <= most if array.dtype.kind == "u" else (-most <= array) & (array <= most)
+    return bool(inside.all())
 
 
 def pack(values: Any, quantities: Quantities, name: str) -> Array:

@@ -14,7 +14,7 @@ import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import generated
-from coadjoint.solve.arrays import pack_parameters
+from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
@@ -356,7 +356,13 @@ def _make_rates(
 
 def _make_slopes(system: System, parameters: Array, target: Any, driving: Driving) -> Rates:
     """The Jacobian for SciPy."""
-    evaluate = Following(system, "jacobian", parameters, target, driving)
+    if "jacobian" in system.functions:
+        evaluate: Rates = Following(system, "jacobian", parameters, target, driving)
+    else:
+
+        def evaluate(t: float, y: Array) -> Array:
+            driving.at(t)
+            return find_slopes(system, y, parameters, target=target, **driving.now)
 
     def jacobian(t: float, y: Array) -> Array:
         slopes = evaluate(t, y)

@@ -154,12 +154,17 @@ def _check_turned(reading: Reading, key: KeyPath, name: str) -> None:
     spanned = {place for v in variables if v.role == "velocity" for place in v.block}
     places = None if algebra is None else turning_places(algebra)
     if places is None or not set(places) <= spanned:
+        hint = 'Without one, declare an angle: theta = "omega".'
+        if algebra is not None and places is not None and not spanned & set(places):
+            block = ", ".join(f'"{algebra.basis[place]}"' for place in places)
+            free = reading.free_name("Omega")
+            hint = f'Write {free} = {{ role = "velocity", block = [{block}] }} in [variables].'
         raise reading.fault(
             key,
             f"nothing turns the attitude {name!r}",
             "no algebra" if algebra is None else algebra.name,
             'a velocity over the rotations of "so(3)" or "se(3)"',
-            'Without one, declare an angle: theta = "omega".',
+            hint,
         )
 
 

@@ -143,7 +143,10 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     Raises:
         SpecError: There is none of that name.
     """
-    state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+    reduction = reading.file.reduction
+    given = () if reduction is None else reduction.section  # these follow from the others
+    variables = (v for v in state_of(VARIABLES.of(reading)) if v.name not in given)
+    state = {variable.name: variable for variable in variables}
     if name not in state:
         problem = f"{name!a} is not a variable of the state"
         raise reading.unknown(key, problem, name, state)
@@ -184,14 +187,6 @@ class _Actions:
             variable: self._read_generator(key, variable, text, shapes)
             for variable, text in (part.generators or {}).items()
         }
-        if part.time is not None and self.reading.file.constraints:
-            raise self.source.fault(
-                (*key, "time"),
-                "time moves under [constraints]",
-                found="time",
-                expected="generators of the state, since the momentum of time is minus the energy",
-                hint="Remove time: the balance of the energy is proved of every motion.",
-            )
         scalar = {
             table: self._read_scalar((*key, table), getattr(part, table), shapes)
             for table in ("time", "map")
