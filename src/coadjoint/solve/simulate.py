@@ -18,7 +18,7 @@ from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense import Trail, make_driving
+from coadjoint.solve.dense_output import Trail, make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import Surroundings, read_events

@@ -22,7 +22,7 @@ from coadjoint.solve.occurrences import Events
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from coadjoint.solve.dense import Dense
+    from coadjoint.solve.dense_output import Dense
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -147,7 +147,7 @@ class Solution:
         Raises:
             KernelArgumentError: It was simulated without ``dense=True``, or a time is outside.
         """
-        from coadjoint.solve.dense import evaluate_at
+        from coadjoint.solve.dense_output import evaluate_at
 
         return evaluate_at(self, t)
 
