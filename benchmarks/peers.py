@@ -78,7 +78,19 @@ def chaplygin_ball(x: Sequence[Any], p: Sequence[float]) -> list[Any]:
     return [reciprocals[i] * b[i] + factor * scaled[i] for i in range(3)] + dgamma
 
 
-def so8_body(x: Sequence[Any], p: Sequence[float]) -> list[Any]:
+def so4_body(x: Sequence[Any], p: Sequence[float]) -> list[Any]:
+    """Parameters I1..I3 L1..L3: dM = M x Omega + N x Lambda, dN = N x Omega + M x Lambda."""
+    inertia, other, m, n = p[:3], p[3:], x[:3], x[3:]
+    free, push = rigid_body(m, inertia), rigid_body(n, other)
+    turned = []
+    for i in range(3):
+        a, b = i - 2, i - 1
+        one = (1 / inertia[b] - 1 / other[a]) * (n[a] * m[b])
+        turned.append(one + (1 / other[b] - 1 / inertia[a]) * (m[a] * n[b]))
+    return [free[i] + push[i] for i in range(3)] + turned
+
+
+def manakov_body(x: Sequence[Any], p: Sequence[float]) -> list[Any]:
     """Manakov's body: dM_ij = sum_k (1/(a_k + a_j) - 1/(a_i + a_k)) M_ik M_kj."""
     n = len(p)
     pairs = [(i, j) for i in range(n) for j in range(i + 1, n)]
@@ -102,13 +114,13 @@ def so8_body(x: Sequence[Any], p: Sequence[float]) -> list[Any]:
 
 
 EQUATIONS: dict[str, Equations] = {
-    each.__name__: each for each in (rigid_body, heavy_top, kirchhoff, chaplygin_ball, so8_body)
-}
+    each.__name__: each for each in (rigid_body, heavy_top, kirchhoff, chaplygin_ball, so4_body)
+} | dict.fromkeys(("so6_body", "so8_body"), manakov_body)
 
 
-def has_heyoka() -> bool:
-    """Whether heyoka is installed."""
-    return find_spec("heyoka") is not None
+def has(package: str) -> bool:
+    """Whether a peer is installed."""
+    return find_spec(package) is not None
 
 
 class Heyoka:
@@ -138,6 +150,7 @@ class Heyoka:
             force_avx512=True,
             **options,
         )
+        self.single: Any = None
         count = len(self.integrator.pars)
         self.integrator.pars[:] = np.array(values[:count])[:, None]
 
@@ -168,27 +181,53 @@ class Heyoka:
         )
         return np.concatenate([answer[0].state for answer in answers], axis=1)
 
+    def propagate_grid(self, state: Array, grid: Array) -> Array:
+        """States of one trajectory at times, by the integrator of one."""
+        import heyoka
 
-def propagate_exactly(name: str, parameters: Sequence[float], states: Array, end: float) -> Array:
-    """Final states by heyoka in numbers of 64 bits after the point, to 1e-18."""
+        if self.single is None:
+            equations = self.integrator.sys
+            self.single = heyoka.taylor_adaptive(
+                equations, state, tol=self.integrator.tol, pars=self.integrator.pars[:, 0]
+            )
+        self.single.state[:] = state
+        self.single.time = grid[0]
+        return self.single.propagate_grid(grid)[-1].T
+
+
+def exact_integrator(name: str, parameters: Sequence[float], state: Array) -> Any:
+    """The integrator of one in numbers of 64 bits after the point, to 1e-18."""
     import heyoka
 
-    variables = heyoka.make_vars(*(f"x{i}" for i in range(len(states))))
+    variables = heyoka.make_vars(*(f"x{i}" for i in range(len(state))))
     real = np.longdouble
     exact = [real(value) for value in parameters]
-    integrator = heyoka.taylor_adaptive(
+    return heyoka.taylor_adaptive(
         list(zip(variables, EQUATIONS[name](variables, exact), strict=True)),
-        states[:, 0].astype(real),
+        state.astype(real),
         tol=real(1e-18),
         fp_type=real,
     )
-    found = np.empty(states.shape, real)
+
+
+def propagate_exactly(name: str, parameters: Sequence[float], states: Array, end: float) -> Array:
+    """Final states in extended precision."""
+    integrator = exact_integrator(name, parameters, states[:, 0])
+    found = np.empty(states.shape, np.longdouble)
     for n in range(states.shape[1]):
         integrator.state[:] = states[:, n]
-        integrator.time = real(0)
-        integrator.propagate_until(real(end))
+        integrator.time = np.longdouble(0)
+        integrator.propagate_until(np.longdouble(end))
         found[:, n] = integrator.state
     return found
+
+
+def propagate_exactly_on(
+    name: str, parameters: Sequence[float], state: Array, grid: Array
+) -> Array:
+    """States of one trajectory at times, in extended precision."""
+    integrator = exact_integrator(name, parameters, state)
+    return integrator.propagate_grid(grid.astype(np.longdouble))[-1].T
 
 
 def propagate_stacked(
@@ -221,7 +260,7 @@ def propagate_each(
 
 def initial_states(name: str, members: int) -> Array:
     """States to begin with, the same at every run; advected directions are unit vectors."""
-    rows = {"rigid_body": 3, "so8_body": 28}.get(name, 6)
+    rows = {"rigid_body": 3, "so6_body": 15, "so8_body": 28}.get(name, 6)
     states = np.random.default_rng(0).uniform(-1.0, 1.0, (rows, members))
     if name in ("heavy_top", "chaplygin_ball"):
         states[3:] /= np.sqrt((states[3:] ** 2).sum(axis=0))

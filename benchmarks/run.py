@@ -22,6 +22,8 @@ BENCHMARKS = (
     "numpy_kernels",
     "call_overhead",
     "ensembles",
+    "trajectories",
+    "memory",
 )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -92,3 +93,45 @@ def test_equal_error_is_read_between_points_in_logarithms(monkeypatch):
     assert time_at(points, 1e-6) == pytest.approx(10.0)
     assert time_at(points, 1e-3) == 1.0
     assert time_at(points, 1e-9) is None
+
+
+@pytest.fixture
+def ensembles(monkeypatch):
+    """The benchmark of ensembles."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    return import_module("ensembles")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "rigid_body",
+        "heavy_top",
+        "kirchhoff",
+        "chaplygin_ball",
+        "so4_body",
+        "so6_body",
+        "so8_body",
+    ],
+)
+def test_peers_have_the_equations_of_the_systems(name, ensembles, monkeypatch):
+    """Rates typed from books are those of the systems; a sign that is turned is noticed."""
+    peers = import_module("peers")
+    states = peers.initial_states(name, 3)
+    ensembles.check_equations(name, states)
+    right = peers.EQUATIONS[name]
+    monkeypatch.setitem(peers.EQUATIONS, name, lambda x, p: [-right(x, p)[0], *right(x, p)[1:]])
+    with pytest.raises(AssertionError, match=name):
+        ensembles.check_equations(name, states)
+
+
+def test_times_are_read_between_points_of_the_curve(ensembles):
+    """At equal error in logarithms; none where no point is so accurate."""
+    point = import_module("results").Point
+    points = [
+        point(who="x", tolerance=None, order=0, microseconds=(t, t, t), error=e, worst=e)
+        for t, e in ((1.0, 1e-4), (4.0, 1e-8))
+    ]
+    assert ensembles.time_at(points, 1e-6) == pytest.approx(2.0)
+    assert ensembles.time_at(points, 1e-2) == 1.0
+    assert ensembles.time_at(points, 1e-9) is None

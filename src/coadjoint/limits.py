@@ -80,6 +80,9 @@ COUPLED_VELOCITIES = 12
 SEARCH_WORK = 2_000_000
 #: Operations of one function after lowering.
 OPERATIONS = 20_000
+#: Entries of a table of coefficients, which loops run over; so(20) has 6840, and with as many
+#: components as a state may have, so(23) would have 10 626.
+TABLE_ENTRIES = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
 C_STATEMENTS = 1000
 

@@ -27,7 +27,7 @@ SIGNS = (
         "galilei: rewrite unit(3, 4) -> unit(3, 4, -1)",
     ),
     *of("algebra/matrices", "commutator: turn a b"),
-    *of("lie_algebra", "from_brackets: flip 1", "ad_star: flip multiply_constant"),
+    *of("lie_algebra", "from_brackets: flip 1", "ad_star: rewrite xi[i] * mu[k] -> -xi[i] * mu[k]"),
     *of("algebra/invariants", "structure: flip c"),
     *of(
         "poisson/brackets",
@@ -98,8 +98,13 @@ MUTANTS = (
         "solve/steps",
         "RungeKutta4.try_step: rewrite h * 0.5 -> h",
         "Taylor._choose: rewrite 0.7 / _1 -> 0.9 / _1",
-        "Taylor.try_step.at: rewrite total * after + _1 -> total + _1",
+        "_evaluate_path: rewrite total * after + _1 -> total + _1",
         tests=("tests/crosscheck/test_solvers.py -k steps_of_numpy",),
+    ),
+    *of(
+        "solve/steps",
+        "_multiply_out: rewrite path[order] / h -> path[order] * h",
+        tests=("tests/solve/test_ensemble.py -k the_path",),
     ),
     *(replace(mutant, always=True) for mutant in (*CHECKS, *SIGNS)),
     *of("identities", "drift: flip equations", tests=("tests/prove/test_driven.py",)),

@@ -52,6 +52,7 @@ def main(name, path, place, count, threads):
         count: So many checkpoints are written before.
         threads: How many share the run.
     """
+    go(name)  # compiled and loaded, which writes files of its own
     march.FIRST_WORK, march.GROWTH = 5, 1.0  # short calls,
     checkpoints.SECONDS, checkpoints.SHARE = 0.0, np.inf  # and a checkpoint after each
     march.REPORT_SECONDS = 0.0

@@ -27,6 +27,10 @@ class ExactSteps:
         part.member, part.start, part.size = self.member[which], self.start[which], self.size[which]
         return part
 
+    def narrow(self, only):
+        """Some components alone."""
+        return lambda rows, after: self.evaluate(rows, after)[only]
+
     def evaluate(self, rows, after):
         """States at times after the starts of rows."""
         time = self.start[rows][:, np.newaxis] + after

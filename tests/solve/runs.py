@@ -9,6 +9,7 @@ import numpy as np
 
 from coadjoint.solve.course import Course
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.events import Event
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import kapitza_top, rigid_body
 from tests.driven_specs import POINT
@@ -29,8 +30,30 @@ def check_same(found, solution):
         assert np.array_equal(getattr(found, name), getattr(solution, name)), name
     assert repr(found.final) == repr(solution.final)
     assert repr(found.drift) == repr(solution.drift)
+    check_same_events(found.events, solution.events)
     for name in ("system", "status", "message", "settings"):
         assert np.array_equal(getattr(solution, name), getattr(found, name)), name
+
+
+def check_same_events(found, events):
+    """The events of two solutions are equal to the last bit."""
+    assert list(found) == list(events)
+    for name, each in events.items():
+        assert (found[name].event, found[name].batch) == (each.event, each.batch)
+        for part in ("member", "time", "direction", "state", "parameters", "inputs", "undefined"):
+            ours, theirs = getattr(each, part), getattr(found[name], part)
+            assert (ours is None) == (theirs is None), part
+            if ours is not None:
+                assert ours.shape == theirs.shape, part
+                assert ours.tobytes() == theirs.tobytes(), part
+
+
+@cache
+def turn_bodies(batch=()):
+    """A body, or some, with events: some that occur, one that never does, one undefined later."""
+    state = np.random.default_rng(6).normal(size=(3, *batch))
+    asked = ["Pi2", Event("sqrt(Pi1 + 1) == 1", terminal=3, name="third"), "Pi1 == 99"]
+    return rigid_body.simulate(state, (0, 30), samples=4, target="numpy", events=asked)
 
 
 def made(batch=(), **changes):
@@ -95,6 +118,8 @@ RUNS = {
     "constant inputs": partial(drive_point, {"f": 1 / 3}),
     "sampled inputs": sample_point,
     "one sample": partial(made, time=np.zeros(1), state=np.ones((3, 1))),
+    "events": turn_bodies,
+    "events of members": partial(turn_bodies, (2, 3)),
     "batch": partial(made, (5,)),
     "batch of two axes": partial(made, (3, 2)),
     "members on their way": partial(drive_members, samples=4),

@@ -148,11 +148,13 @@ class NumpySolver:
 
     Attributes:
         expand: The function of ``solver.py``.
+        branches: Its constant: whether the rates have branch points.
         functions: Functions of the NumPy kernel, by their names in ``solver.c``.
         strict: Whether each row of the domain may not be zero.
     """
 
     expand: Callable[..., Array]
+    branches: bool
     functions: Mapping[str, Function]
     strict: tuple[bool, ...] = ()
 
@@ -161,7 +163,15 @@ class NumpySolver:
         rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
         rates = partial(self._evaluate, "rates")
         if name == "taylor":
-            return Taylor(self._expand, ORDER, rtol, atol, size)
+            return Taylor(
+                expand=self._expand,
+                rates=rates,
+                order=ORDER,
+                rtol=rtol,
+                atol=atol,
+                size=size,
+                branches=self.branches,
+            )
         if name == "dop853":
             return DormandPrince8(rates, rtol, atol, size)
         return RungeKutta4(rates, size)
@@ -188,9 +198,9 @@ class NumpySolver:
         return self.functions[function](np.ascontiguousarray(state), lanes.parameters, driving)
 
 
-def load_numpy(text: str) -> Callable[..., Array]:
-    """The function ``expand`` of the text of ``solver.py``."""
+def load_numpy(text: str) -> tuple[Callable[..., Array], bool]:
+    """The function ``expand`` of the text of ``solver.py``, and its constant ``BRANCHES``."""
     module: dict[str, Any] = {}
     exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
     expand: Callable[..., Array] = module["expand"]
-    return expand
+    return expand, bool(module["BRANCHES"])

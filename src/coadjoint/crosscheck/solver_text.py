@@ -202,6 +202,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         products=0,
         reads=frozenset(),
         fixed_reads=frozenset(),
+        branches=solver.branches,
     )
     driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
     templates = {

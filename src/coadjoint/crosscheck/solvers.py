@@ -24,6 +24,7 @@ import numpy as np
 from coadjoint.crosscheck.compare import Figures
 from coadjoint.crosscheck.points import Array
 from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_points
+from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     FLAGS,
     Advance,
@@ -35,8 +36,6 @@ from coadjoint.crosscheck.solver_objects import (
 )
 from coadjoint.crosscheck.solver_steps import (
     MEMBERS,
-    START,
-    Solvers,
     check_bits,
     check_choice,
     check_steps,
@@ -74,6 +73,10 @@ class SolverFigures:
     choices: int
     equal: Mapping[str, int]
     together: Mapping[str, int]
+
+
+#: Of a system without solvers.
+NONE: Final = SolverFigures(coefficients=0, lines=0, steps={}, choices=0, equal={}, together={})
 
 
 def start_compiling(
@@ -142,7 +145,7 @@ def _load(subject: Subject, text: str, compiling: Compiling) -> dict[str, dict[s
     """What advances members, by method and target."""
     programs = select_programs(subject.programs.values())
     functions = {name: _numpy_function(subject, each) for name, each in programs.items()}
-    numpy = NumpySolver(load_numpy(text), functions, _list_strict(subject))
+    numpy = NumpySolver(*load_numpy(text), functions, _list_strict(subject))
     advance = {method: {"numpy": numpy.advance(method)} for method in FLAGS}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), subject.system.name)

@@ -29,6 +29,12 @@ from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
 from coadjoint.lower.scales import Scales, cost, find_scales
+from coadjoint.lower.tables import (
+    UNROLLED_PRODUCTS,
+    differentiate_along,
+    find_products,
+    loop_over,
+)
 from coadjoint.lower.vanishing import find_hidden_zeros
 
 #: Rates that cost more are left with the definitions that they have: each try takes as long as
@@ -294,16 +300,36 @@ def lower(equations: Equations) -> dict[str, Program]:
     definitions and are as cheap as these make them.
     """
     programs: dict[str, Program] = {}
-    for name in KERNEL_FUNCTIONS:
+    looped = _loop(equations)
+    for name, function in KERNEL_FUNCTIONS.items():
         rows = rows_of(equations, name)
-        if rows is not None:
-            programs[name] = (
-                _jacobian(name, rows, programs["rhs"])
-                if rows.by
-                else _clear_hidden_zeros(equations, name, rows)
-            )
-    programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
+        if rows is None or function.looped == ("only" if looped is None else "never"):
+            continue
+        if looped is not None and name == "rhs":
+            programs[name] = looped
+        elif looped is not None and rows.along:
+            programs[name] = differentiate_along(looped, rows)
+        elif rows.by:
+            programs[name] = _jacobian(name, rows, programs["rhs"])
+        else:
+            programs[name] = _clear_hidden_zeros(equations, name, rows)
+    if looped is None:
+        programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
     return programs
+
+
+def _loop(equations: Equations) -> Program | None:
+    """The rates as loops over a table of coefficients, where they are many products."""
+    products = find_products(equations)
+    if sum(map(len, products)) <= UNROLLED_PRODUCTS:
+        return None
+    rows = rhs(equations)
+    definitions = equations.definitions_of(rows.elements)
+    lowering = Lowering(equations, [element for _, element in definitions])
+    named = [(name, lowering.node(element)) for name, element in definitions]
+    needed = [(name, lowering.graph.symbol(name)) for name, _ in definitions]
+    program = _name(equations, "rhs", lowering, (named, needed), rows.shape, rows.state)
+    return loop_over(program, rows, products)
 
 
 def _choose(equations: Equations, plain: Program) -> Program:
@@ -381,13 +407,25 @@ def _program(
     closed: frozenset[str] = frozenset(),
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
-    setting = equations.setting
     shorter = [(label, shorten(equations, element)) for label, element in outputs]
     definitions, outputs = inline_single_uses(equations, shorter, closed)
     elements = [element for _, element in (*definitions, *outputs)]
     lowering = Lowering(equations, elements, scales)
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
-    naming = Naming(lowering.graph, named, results, setting.parameters)
+    return _name(equations, name, lowering, (named, results), shape, state)
+
+
+def _name(
+    equations: Equations,
+    name: str,
+    lowering: Lowering,
+    nodes: tuple[Sequence[tuple[str, int]], Sequence[tuple[str, int]]],
+    shape: tuple[int, ...],
+    state: tuple[str, ...],
+) -> Program:
+    """One Program from the nodes of definitions and outputs."""
+    setting = equations.setting
+    naming = Naming(lowering.graph, *nodes, setting.parameters)
     driving = {"inputs": setting.inputs, "time": setting.time}
     return naming.program(name, shape, state=state, parameters=setting.parameters, **driving)

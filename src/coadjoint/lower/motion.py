@@ -136,7 +136,7 @@ def _with_names(rhs: Program) -> Program:
         if not isinstance(node, Add) or read <= constants:
             return node
         if node not in known:
-            known[node] = f"_s{len(known) + 1}"
+            known[node] = f"_js{len(known) + 1}"
             statements.append(Statement(known[node], node, "member"))
         return Symbol(known[node])
 
@@ -229,7 +229,7 @@ class _Planning:
         match list(whole.items()):
             case [(((name,), ()), factor)] if factor == 1:
                 return name
-        named = self._name(whole, f"_u{len(self._names) + 1}")
+        named = self._name(whole, f"_jv{len(self._names) + 1}")
         return next(iter(named))[0][0]
 
     def _polynomial(self, node: Node) -> Polynomial:
@@ -257,7 +257,7 @@ class _Planning:
     def _meant(self, meaning: Quotient | Function) -> Polynomial:
         """A quotient or a function under its name."""
         if meaning not in self._names:
-            self._names[meaning] = f"_u{len(self._names) + 1}"
+            self._names[meaning] = f"_jv{len(self._names) + 1}"
             self._meanings[self._names[meaning]] = meaning
         return moving(self._names[meaning])
 

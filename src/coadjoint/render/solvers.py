@@ -81,6 +81,8 @@ class SolverText:
         products: How many sums there are.
         reads: Names that the recurrences read.
         fixed_reads: Names that ``fixed`` reads.
+        branches: Whether the rates call sqrt or log of what moves. A motion may be analytic where
+            these have branch points.
     """
 
     fixed: tuple[Line, ...]
@@ -92,6 +94,7 @@ class SolverText:
     products: int
     reads: frozenset[str]
     fixed_reads: frozenset[str]
+    branches: bool
 
 
 def arrange(programs: Mapping[str, Program]) -> SolverText:
@@ -111,6 +114,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
+    branches = bool(calls & {"sqrt", "log"})
     values = (value for program in programs.values() for value in program.values())
     calls |= {n.function for value in values for n in walk(value) if isinstance(n, Call)}
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
@@ -124,6 +128,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
         products=jets.products,
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
+        branches=branches,
     )
 
 

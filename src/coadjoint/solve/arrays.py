@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.quantities import Quantities
 
@@ -53,12 +54,7 @@ def check_call(
         KernelArgumentError: Something has a wrong shape, name, sign, or overlaps.
         KernelTypeError: Something is not numeric in a way that float64 can hold.
     """
-    if function not in system.functions:
-        raise KernelArgumentError(
-            f"{system.name} has no function {function!r}; expected one of "
-            f"{', '.join(system.functions)}.",
-            found=function,
-        )
+    check_function(system, function)
     rows = system.rows(function)
     packed = as_float64(state, "state") if bound else pack(state, rows, "state")
     if bound and packed is not state:
@@ -66,7 +62,7 @@ def check_call(
             "bind reads the state in place; expected a C-contiguous float64 array.",
             found=str(type(state).__name__),
         )
-    _check_rows(packed, rows, "state", system.name)
+    check_rows(packed, rows, "state", system.name)
     batch = packed.shape[1:]
     given = {
         "parameters": pack_parameters(system, parameters),
@@ -105,6 +101,59 @@ def check_call(
     return call, result
 
 
+def check_function(system: System, function: str) -> None:
+    """A function that a system has.
+
+    Raises:
+        KernelArgumentError: It has not; the message names those that it has.
+    """
+    if function in system.functions:
+        return
+    known = KERNEL_FUNCTIONS.get(function)
+    large = known is not None and known.looped == "never" and "jacobian_vector" in system.functions
+    advice = (
+        " Its rates are loops over a table, and matrices of its size are not written out: take "
+        "jacobian_vector(state, vector), the Jacobian times a vector."
+    )
+    raise KernelArgumentError(
+        f"{system.name} has no function {function!r}; expected one of "
+        f"{', '.join(system.functions)}.{advice if large else ''}",
+        found=function,
+    )
+
+
+def stack_vector(system: Any, function: str, state: Values, vector: Values) -> Array:
+    """A state with a vector below it, ``(2*n, *batch)``.
+
+    Raises:
+        KernelArgumentError: The system has no such function, or the shapes differ.
+    """
+    check_function(system, function)
+    packed = [
+        pack(each, system.STATE, name) for each, name in ((state, "state"), (vector, "vector"))
+    ]
+    for each, name in zip(packed, ("state", "vector"), strict=True):
+        check_rows(each, system.STATE, name, system.name)
+    if packed[0].shape != packed[1].shape:
+        raise KernelArgumentError(
+            f"the state has the shape {packed[0].shape}, the vector {packed[1].shape}; expected "
+            "the same.",
+            found=list(packed[1].shape),
+            expected=list(packed[0].shape),
+        )
+    return np.concatenate(packed)
+
+
+def find_slopes(system: System, state: Array, *given: Any, **named: Any) -> Array:
+    """The Jacobian ``(n, n)`` of a system at one state, column by column where it has no matrix."""
+    if "jacobian" in system.functions:
+        return system.evaluate("jacobian", state, *given, **named)
+    columns = np.identity(len(state))
+    states = np.repeat(state[:, None], len(state), axis=1)
+    stacked = np.concatenate([states, columns])
+    return system.evaluate("jacobian_vector", stacked, *given, **named)
+
+
 def as_float64(value: Any, name: str) -> Array:
     """A value as a C-contiguous float64 array; the same object if it is one already.
 
@@ -128,9 +177,12 @@ def as_float64(value: Any, name: str) -> Array:
             f"{name} is ragged: {error}. Expected rows of one length.", found=name
         ) from error
     if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        is_number = array.dtype.kind in "biufc"
+        shows_type = is_number or isinstance(value, np.ndarray)
+        found = f"has the type {array.dtype}" if shows_type else f"is {_short(value)}"
         raise KernelTypeError(
-            f"{name} has the type {array.dtype}; expected real numbers that float64 holds. "
-            "Convert it yourself if a loss is meant.",
+            f"{name} {found}; expected real numbers that float64 holds."
+            + " Convert it yourself if a loss is meant." * is_number,
             found=str(array.dtype),
             expected="float64",
         )
@@ -190,7 +242,7 @@ def pack_parameters(system: System, parameters: Any) -> Array:
         packed = _assemble(quantities.defaults, parameters or {}, quantities, "parameters")
     else:
         packed = as_float64(parameters, "parameters")
-        _check_rows(packed, quantities, "parameters", system.name)
+        check_rows(packed, quantities, "parameters", system.name)
     signed = packed[list(quantities.positive)]
     if not (signed > 0).all():  # a NaN is not positive either
         place = np.argwhere(~(signed > 0))[0]
@@ -238,7 +290,7 @@ def pack_inputs(system: System, inputs: Any) -> Array:
     if isinstance(inputs, Mapping):
         return _assemble(quantities.defaults, inputs, quantities, "inputs")
     packed = as_float64(inputs, "inputs")
-    _check_rows(packed, quantities, "inputs", system.name)
+    check_rows(packed, quantities, "inputs", system.name)
     return packed
 
 
@@ -311,7 +363,7 @@ def _assemble(
         batch = np.broadcast_shapes(*(np.shape(part) for part in ordered))
     except ValueError as error:
         raise KernelArgumentError(
-            f"{name} have batch shapes that do not fit together: "
+            f"the batch shapes of {name} do not fit together: "
             f"{', '.join(str(np.shape(part)) for part in ordered)}.",
             found=name,
         ) from error
@@ -339,15 +391,32 @@ def _components(key: str, value: Any, quantities: Quantities, name: str) -> dict
     return dict(zip(quantity.components, flat, strict=True))
 
 
-def _check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
+def check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
     """The first axis must have one row per component."""
     if array.ndim == 0 or array.shape[0] != quantities.size:
         raise KernelArgumentError(
-            f"{name} of {system} has the shape {array.shape}; expected ({quantities.size},) or "
-            f"({quantities.size}, ...), the rows being {', '.join(quantities.components)}.",
+            f"the shape of {name} of {system} is {array.shape}; expected ({quantities.size},) or "
+            f"({quantities.size}, *batch), the rows being {', '.join(quantities.components)}."
+            f"{suggest_axes(array.shape, quantities.size, name)}",
             found=list(array.shape),
             expected=quantities.size,
         )
+
+
+def suggest_axes(shape: tuple[int, ...], rows: int, name: str) -> str:
+    """What to do with an array whose components are not on the first axis; "" for other faults.
+
+    >>> suggest_axes((9, 6), 6, "state")
+    ' It looks transposed: pass state.T.'
+    >>> suggest_axes((2, 6, 9), 6, "state")
+    ' Components come first: pass np.moveaxis(state, 1, 0).'
+    """
+    if rows not in shape[1:]:
+        return ""
+    if len(shape) == 2:
+        return f" It looks transposed: pass {name}.T."
+    axis = len(shape) - 1 - shape[::-1].index(rows)
+    return f" Components come first: pass np.moveaxis({name}, {axis}, 0)."
 
 
 def _check_out(out: Any, shape: tuple[int, ...]) -> Array:

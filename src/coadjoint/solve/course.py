@@ -1,7 +1,7 @@
 """The course of a simulation: the method, its tolerances, and how each trajectory ended.
 
-Comes in: what a solver knows at its end. Goes out: a record that a `Solution` holds, and the drift
-of what is conserved. Read next: `coadjoint.solve.solution`.
+Comes in: what a solver knows at its end. Goes out: a record that a `Solution` holds.
+Read next: `coadjoint.solve.solution`.
 """
 
 from __future__ import annotations
@@ -135,21 +135,3 @@ def read_record(record: dict[str, Any]) -> dict[str, Any]:
 
 #: Of a Solution that was put together by hand.
 UNTOLD = Course(method="", order=None, rtol=None, atol=None, step=None)
-
-
-def relative(change: Array, values: Array) -> float:
-    """Largest change over largest size."""
-    size = float(np.abs(values).max())
-    with np.errstate(invalid="ignore"):
-        return float(np.abs(change).max() / size) if size else 0.0
-
-
-def relative_of_each(change: Array, values: Array, axes: int) -> Array:
-    """Largest change over largest size, of each trajectory of a batch of so many axes.
-
-    NaN, where a trajectory did not come, is left out; the first sample of each is a number.
-    """
-    lead = tuple(range(values.ndim - axes - 1))
-    most = np.fmax.reduce(np.abs(change), axis=-1, initial=0.0).max(axis=lead)
-    size = np.fmax.reduce(np.abs(values), axis=-1, initial=0.0).max(axis=lead)
-    return np.asarray(np.divide(most, size, out=np.zeros(np.shape(most)), where=size > 0))

@@ -16,16 +16,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from coadjoint.solve.roots import find_knots, find_roots
+from coadjoint.solve.roots import Knots, find_knots, find_roots
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.roots import Function, Knots
+    from coadjoint.solve.roots import Function
+    from coadjoint.solve.taken import Bounds, Steps
 
     Array = NDArray[np.float64]
     Mask = NDArray[np.bool_]
@@ -34,41 +35,6 @@ if TYPE_CHECKING:
 EPS: Final = float(np.finfo(float).eps)
 #: The part of a step over which the slope at its end is taken.
 _BACK: Final = 2.0**-10
-
-
-class Steps(Protocol):
-    """Steps that were taken, those of each member in the order of time.
-
-    Attributes:
-        member: Whose each is, ``(S,)``; those of one member stand together.
-        start: When it begins.
-        size: How long it is.
-        degree: Of the polynomials of the state.
-    """
-
-    @property
-    def member(self) -> Places:
-        """As above."""
-        ...
-
-    @property
-    def start(self) -> Array:
-        """As above."""
-        ...
-
-    @property
-    def size(self) -> Array:
-        """As above."""
-        ...
-
-    @property
-    def degree(self) -> int:
-        """As above."""
-        ...
-
-    def evaluate(self, rows: Places, after: Array) -> Array:
-        """States ``(n, R, K)`` of the steps ``rows``, some time ``(R, K)`` after their starts."""
-        ...
 
 
 @dataclass
@@ -185,17 +151,39 @@ class Watch:
         self._held: dict[int, _Held] = {}
         self.undefined = np.full(members, np.inf)
 
-    def scan(self, function: Function, steps: Steps) -> Crossings:
+    def scan(self, function: Function, steps: Steps, bounds: Bounds | None = None) -> Crossings:
         """The crossings that the next steps decide.
 
         Args:
             function: The function, of the rows of the steps and parts of them.
             steps: The steps that follow those of the call before.
+            bounds: Its bounds on each step, if they are known: most steps then cost no more.
         """
         with np.errstate(all="ignore"):
-            count = len(steps.member)
-            knots, band = find_knots(function, count, steps.degree, self._band_of)
+            knots, band = self._find_knots(function, steps, bounds)
             return _Scan(self, function, steps, knots, band).find()
+
+    def _find_knots(
+        self, function: Function, steps: Steps, bounds: Bounds | None
+    ) -> tuple[Knots, Array]:
+        """The knots of steps; of one that keeps away from zero by its bounds, its start alone."""
+        count = len(steps.member)
+        if bounds is None:
+            return find_knots(function, count, steps.degree, self._band_of)
+        band = self._band_of(bounds.size)
+        clear = np.abs(bounds.middle) > bounds.reach + band + 64 * EPS * bounds.size
+        left, away = np.flatnonzero(~clear), np.flatnonzero(clear)
+        knots, band[left] = find_knots(
+            lambda rows, part: function(left[rows], part), len(left), steps.degree, self._band_of
+        )
+        row = np.concatenate([left[knots.row], away])
+        order = np.argsort(row, kind="stable")
+        parts = (
+            np.concatenate([knots.part, np.zeros(len(away))]),
+            np.concatenate([knots.value, bounds.middle[away]]),
+            np.concatenate([knots.piece, -2 - away]),
+        )
+        return Knots(row[order], *(each[order] for each in parts)), band
 
     def finish(self, member: int) -> Crossings | None:
         """The crossing that the end of a trajectory decides, if there is one."""
@@ -218,7 +206,7 @@ class _Scan:
     ) -> None:
         self.watch, self.function, self.steps = watch, function, steps
         self.row, self.part, self.value = knots.row, knots.part, knots.value
-        self.piece = knots.piece
+        self.piece, self.band = knots.piece, band
         member = steps.member[knots.row]
         sign = np.where(np.abs(self.value) <= band[knots.row], 0, np.sign(self.value))
         gap = np.isnan(self.value)
@@ -262,8 +250,7 @@ class _Scan:
 
     def _has_held(self, places: Places) -> Mask:
         """Whether something is held of the members of knots."""
-        held = self.watch._held
-        return np.fromiter((m in held for m in self.member[places].tolist()), bool, len(places))
+        return np.isin(self.member[places], list(self.watch._held))
 
     def _find_changes(self) -> Places:
         """The knot after which the sign changes first, by the first knot of the run; -1 for none.
@@ -292,9 +279,9 @@ class _Scan:
 
     def _take_crossings(self, begun: Places, ended: Places, changes: Places) -> Crossings:
         """Crossings of runs between two knots, in the direction of the sign after them."""
-        held, sign = self.watch._held, self.sign[ended]
-        rooted = [m in held and held[m].root is not None for m in self.member[begun].tolist()]
-        known = self.is_known[begun] & np.array(rooted, bool)
+        sign = self.sign[ended]
+        rooted = [m for m, held in list(self.watch._held.items()) if held.root is not None]
+        known = self.is_known[begun] & np.isin(self.member[begun], rooted)
         lots = [self._recall(begun[known], ended[known], sign[known])]
         here = ~known & (changes[begun] >= 0)
         row, part, real = self._polish(changes[begun[here]])
@@ -347,7 +334,7 @@ class _Scan:
 
             part[place] = find_roots(value, left[place], right[place], *ends, close)
             there = np.abs(self.function(rows, part[place][:, np.newaxis])[0][:, 0])
-            real[place] = there <= np.maximum(*np.abs(ends))
+            real[place] = (there < np.minimum(*np.abs(ends))) | (there <= self.band[rows])
         return row, part, real
 
     def _locate(self, row: Places, part: Array, ended: Places, sign: NDArray[np.int8]) -> Crossings:

@@ -17,11 +17,11 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64
 from coadjoint.solve.course import Start
-from coadjoint.solve.crossings import Steps
 from coadjoint.solve.driving import Previous, Signal
 from coadjoint.solve.events import Surroundings
 from coadjoint.solve.lookout import Ending, Lookout, list_occurrences
 from coadjoint.solve.occurrences import Events
+from coadjoint.solve.taken import Steps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,6 +79,13 @@ class Interpolants:
         paths = [self.paths[place] for place in which.tolist()]
         return Interpolants(paths, self.start[which], self.size[which])
 
+    def narrow(self, only: Places) -> Callable[[Places, Array], Array]:
+        """As `Steps.narrow`."""
+        return lambda rows, after: self.evaluate(rows, after)[only]
+
+    def bound(self, row: int) -> None:
+        """As `Steps.bound`: nothing is known."""
+
     def evaluate(self, rows: Places, after: Array) -> Array:
         """As `Steps.evaluate`."""
         states = np.empty((len(self.paths[0](self.start[0])), *after.shape))
@@ -101,6 +108,13 @@ class Projected:
         self._steps, self._around = steps, surroundings
         self.member, self.start, self.size = steps.member, steps.start, steps.size
         self.degree = steps.degree
+
+    def narrow(self, only: Places) -> Callable[[Places, Array], Array]:
+        """As `Steps.narrow`."""
+        return lambda rows, after: self.evaluate(rows, after)[only]
+
+    def bound(self, row: int) -> None:
+        """As `Steps.bound`: nothing is known."""
 
     def evaluate(self, rows: Places, after: Array) -> Array:
         """As `Steps.evaluate`; where there is no nearest state, it is left as it is."""
@@ -180,7 +194,8 @@ class Dense:
         """The steps of one member of a batch."""
         inside = tuple(p % n for p, n in zip(place, batch, strict=True))
         member = int(np.ravel_multi_index(inside, batch))
-        steps = self.steps.take(np.flatnonzero(self.steps.member == member))
+        steps: Any = self.steps.take(np.flatnonzero(self.steps.member == member))
+        steps = replace(steps, member=np.zeros(len(steps.member), np.intp))
         signal = self.signal
         if isinstance(signal, np.ndarray):
             at: Any = (slice(None), *place)

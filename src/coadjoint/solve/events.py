@@ -18,13 +18,14 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.formulas import Formula, list_scope
+from coadjoint.solve.taken import Bounds
 from coadjoint.spec.core.faults import list_names
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.crossings import Steps
     from coadjoint.solve.system import System
+    from coadjoint.solve.taken import Steps
 
     Array = NDArray[np.float64]
     Places = NDArray[np.intp]
@@ -249,6 +250,19 @@ class Surroundings:
     driving: Callable[[Places, Array, Array], Array] | None
     followed: int = 0
 
+    def list_rows(self, names: Iterable[str]) -> Places:
+        """The rows of the state that names of a formula depend on."""
+        system, n = self.system, self.system.STATE.size
+        chosen = np.zeros(n + self.followed, bool)
+        for name in names:
+            if name in system.STATE or name in system.STATE.components:
+                chosen[:n][system.STATE.rows(name)] = True
+            elif name in system.OBSERVABLES or name in system.OBSERVABLES.components:
+                chosen[:n] = True
+            elif name in system.RECONSTRUCTED or name in system.RECONSTRUCTED.components:
+                chosen[n:] = True
+        return np.flatnonzero(chosen)
+
     def find_values(
         self, names: Iterable[str], states: Array, member: Places, start: Array, time: Array
     ) -> dict[str, Array]:
@@ -306,15 +320,43 @@ def _shape(rows: Array, quantities: Any, name: str) -> Array:
     return rows
 
 
+def find_bounds(sought: Sought, surroundings: Surroundings, steps: Steps) -> Bounds | None:
+    """Bounds of the left side minus the right side on steps; None where none are known.
+
+    They are known of linear combinations of components of the state along polynomials.
+    """
+    linear, state = sought.formula.linear, surroundings.system.STATE
+    if linear is None or not linear.keys() <= {"", *state.components}:
+        return None
+    alone = linear.get("", 0.0) - float(sought.event.value)
+    middle = np.full(len(steps.member), alone)
+    reach = np.zeros(len(steps.member))
+    size = np.full(len(steps.member), abs(linear.get("", 0.0)) + abs(float(sought.event.value)))
+    for name, factor in linear.items():
+        row = state.rows(name) if name else None
+        if isinstance(row, int):
+            bounds = steps.bound(row)
+            if bounds is None:
+                return None
+            middle += factor * bounds[0]
+            reach += abs(factor) * bounds[1]
+            size += abs(factor) * (np.abs(bounds[0]) + bounds[1])
+    return Bounds(middle, reach, size)
+
+
 def make_function(
     sought: Sought, surroundings: Surroundings, steps: Steps
 ) -> Callable[[Places, Array], tuple[Array, Array]]:
     """The left side minus the right side along steps, with the size of both."""
     level = float(sought.event.value)
+    rows_read = surroundings.list_rows(sought.formula.names)
+    total = surroundings.system.STATE.size + surroundings.followed
+    evaluate = steps.evaluate if len(rows_read) == total else steps.narrow(rows_read)
 
     def function(rows: Places, part: Array) -> tuple[Array, Array]:
         after = part * steps.size[rows][:, np.newaxis]
-        states = steps.evaluate(rows, after)
+        states = np.empty((total, *after.shape))
+        states[rows_read] = evaluate(rows, after)
         shape, many = part.shape, part.shape[1]
         start = np.repeat(steps.start[rows], many)
         values = surroundings.find_values(

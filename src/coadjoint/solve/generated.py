@@ -23,7 +23,6 @@ from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.recording import Recording
-from coadjoint.solve.request import check_memory
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
@@ -48,6 +47,8 @@ def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) ->
         target: Likewise.
         reconstruct: Likewise.
     """
+    if "jacobian_vector" in system.functions:
+        return "its rates are loops over a table, for which no solvers are generated"
     if not all((system.folder / file).is_file() for file in FILES):
         return "its folder was generated without them: run `coadjoint regenerate`"
     if reconstruct is not False and reconstruct is not None:
@@ -135,8 +136,6 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         parameters = parameters.reshape(-1, members)
     signal = _find_signal(system, request, batch)
     times = request.times
-    if request.samples > 1:
-        check_memory((n, members, times.size))
     run = Ensemble(
         state=request.state.reshape(n, members).copy(),
         parameters=parameters,
@@ -325,7 +324,9 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
-        Status.STEP_UNDERFLOW: f"no step was small enough {place}",
+        Status.STEP_UNDERFLOW: f"no step was small enough {place}"
+        if request.step is None
+        else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
 

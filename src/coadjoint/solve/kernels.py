@@ -154,11 +154,11 @@ def check_target(target: str) -> None:
     Raises:
         KernelArgumentError: No such target.
     """
-    if target not in BUILDS:
+    if not isinstance(target, str) or target not in BUILDS:
         *others, last = map(repr, BUILDS)
         raise KernelArgumentError(
             f"target is {target!r}; expected {', '.join(others)} or {last}.",
-            found=target,
+            found=str(target),
             expected=list(BUILDS),
         )
 

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from coadjoint.solve.crossings import Crossings, Watch, join
-from coadjoint.solve.events import Sought, Surroundings, make_function
+from coadjoint.solve.events import Sought, Surroundings, find_bounds, make_function
 from coadjoint.solve.occurrences import Events, Occurrences
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.crossings import Steps
+    from coadjoint.solve.taken import Steps
 
     Array = NDArray[np.float64]
 
@@ -84,7 +84,8 @@ class Lookout:
         endings: list[Ending] = []
         for place, (sought, watch) in enumerate(zip(self.sought, self._watches, strict=True)):
             function = make_function(sought, self.surroundings, steps)
-            endings += self._add(place, watch.scan(function, steps))
+            bounds = find_bounds(sought, self.surroundings, steps)
+            endings += self._add(place, watch.scan(function, steps, bounds))
         return self._end(endings)
 
     def finish(self, members: Iterable[int]) -> list[Ending]:

@@ -9,7 +9,7 @@ Read next: `coadjoint.solve.lookout`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,12 +39,14 @@ class Polynomials:
         start: When it begins.
         size: How long it is.
         path: Coefficients, ``(S, n, degree + 1)``, that of order 0 first.
+        place: Where in path each step stands, ``(S,)``.
     """
 
     member: Places
     start: Array
     size: Array
     path: Array
+    place: Places
 
     @property
     def degree(self) -> int:
@@ -54,21 +56,65 @@ class Polynomials:
     @property
     def nbytes(self) -> int:
         """The memory that they take."""
-        return self.member.nbytes + self.start.nbytes + self.size.nbytes + self.path.nbytes
+        arrays = (self.member, self.start, self.size, self.path, self.place)
+        return sum(each.nbytes for each in arrays)
 
     def take(self, which: Places) -> Polynomials:
         """Some of them, in a given order."""
         return Polynomials(
-            self.member[which], self.start[which], self.size[which], self.path[which]
+            member=self.member[which],
+            start=self.start[which],
+            size=self.size[which],
+            path=self.path[self.place[which]],
+            place=np.arange(len(which)),
         )
 
     def evaluate(self, rows: Places, after: Array) -> Array:
         """As `Steps.evaluate`, by Horner."""
-        path = self.path[rows].transpose(1, 2, 0)[..., np.newaxis]
-        total = np.broadcast_to(path[:, self.degree], (len(path), *after.shape))
-        for k in range(self.degree - 1, -1, -1):
-            total = total * after + path[:, k]
-        return np.ascontiguousarray(total)
+        path = self.path[self.place[rows]].transpose(2, 1, 0)
+        return _evaluate(np.ascontiguousarray(path), after)
+
+    def bound(self, row: int) -> tuple[Array, Array]:
+        """As `Steps.bound`: the value at the start, and the sum of all later terms."""
+        path = self.path[self.place, row]
+        reach, power = np.zeros(len(self.size)), np.ones(len(self.size))
+        for k in range(1, self.degree + 1):
+            power = power * np.abs(self.size)
+            reach += np.abs(path[:, k]) * power
+        return path[:, 0], reach
+
+    def narrow(self, only: Places) -> Narrow:
+        """As `Steps.narrow`."""
+        return Narrow(self.path, self.place, only)
+
+
+@dataclass
+class Narrow:
+    """Some components of steps.
+
+    Attributes:
+        path: As `Polynomials` has it.
+        place: Likewise.
+        only: The components.
+    """
+
+    path: Array
+    place: Places
+    only: Places
+
+    def __call__(self, rows: Places, after: Array) -> Array:
+        """As `Polynomials.evaluate`."""
+        path = self.path[self.place[rows][:, np.newaxis], self.only]
+        return _evaluate(np.ascontiguousarray(path.transpose(2, 1, 0)), after)
+
+
+def _evaluate(table: Array, after: Array) -> Array:
+    """Polynomials ``(degree + 1, m, R)`` at ``(R, K)``, by Horner; ``(m, R, K)``."""
+    total = np.broadcast_to(table[-1][..., np.newaxis], (table.shape[1], *after.shape))
+    for coefficient in table[-2::-1]:
+        total = total * after
+        total += coefficient[..., np.newaxis]
+    return np.ascontiguousarray(total)
 
 
 class Recording:
@@ -101,7 +147,11 @@ class Recording:
         """Look at the steps of a call, and stop members at terminal events."""
         order = np.argsort(record.member, kind="stable")
         steps = Polynomials(
-            record.member[order], record.begun[order], record.length[order], record.path[order]
+            member=record.member[order],
+            start=record.begun[order],
+            size=record.length[order],
+            path=record.path,
+            place=order,
         )
         around = self._lookout.surroundings
         for ending in self._lookout.look(move_onto_constraints(steps, around)):
@@ -110,7 +160,7 @@ class Recording:
             self._run.stop(record, row, after, ending.state)
             self._stop(ending)
         if self._keeps:
-            self._kept.append(steps)
+            self._kept.append(replace(steps, path=record.path.copy()))
 
     def finish(self) -> None:
         """Look at where members ended."""
@@ -142,15 +192,33 @@ class Recording:
         """The steps up to where each member came; None if they were not to be kept."""
         if not self._keeps:
             return None
-        none, n = np.empty(0), len(self._run.state)
-        lots = self._kept or [Polynomials(none.astype(np.intp), none, none, np.empty((0, n, 1)))]
+        lots, self._kept = self._kept, []
+        none = np.empty(0)
+        member = np.concatenate([none.astype(np.intp), *(lot.member for lot in lots)])
+        begun = np.concatenate([none, *(lot.start for lot in lots)])
+        size = np.concatenate([none, *(lot.size for lot in lots)])
+        order = np.lexsort((begun, member))
+        order = order[begun[order] < self._run.time[member[order]]]
         whole = Polynomials(
-            np.concatenate([lot.member for lot in lots]),
-            np.concatenate([lot.start for lot in lots]),
-            np.concatenate([lot.size for lot in lots]),
-            np.concatenate([lot.path for lot in lots]),
+            member=member[order],
+            start=begun[order],
+            size=size[order],
+            path=_gather(lots, order, len(self._run.state)),
+            place=np.arange(len(order)),
         )
-        self._kept = []
-        order = np.lexsort((whole.start, whole.member))
-        inside = whole.start[order] < self._run.time[whole.member[order]]
-        return Dense(whole.take(order[inside]), signal, start)
+        return Dense(whole, signal, start)
+
+
+def _gather(lots: list[Polynomials], order: Places, n: int) -> Array:
+    """The coefficients of the steps of lots, in an order; each lot is let go of once it is read."""
+    total = sum(len(lot.member) for lot in lots)
+    to = np.full(total, -1)
+    to[order] = np.arange(len(order))
+    path = np.empty((len(order), n, lots[0].degree + 1 if lots else 1))
+    first = 0
+    while lots:
+        lot = lots.pop(0)
+        places = to[first : first + len(lot.member)]
+        path[places[places >= 0]] = lot.path[lot.place[places >= 0]]
+        first += len(lot.member)
+    return path

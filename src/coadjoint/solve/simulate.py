@@ -14,7 +14,7 @@ import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import generated
-from coadjoint.solve.arrays import pack_parameters
+from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
@@ -34,7 +34,9 @@ from coadjoint.solve.request import (
     Request,
     check_count,
     check_positive,
+    check_progress,
     check_state,
+    check_steps,
     choose_method,
     list_times,
 )
@@ -73,12 +75,14 @@ def simulate(
     dense: Any,
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
-    initial, (start, times) = check_state(system, state), list_times(t, samples)
+    initial = check_state(system, state)
+    start, times = list_times(t, samples, initial.size)
     tolerances = rtol is not None or atol is not None
     rtol, atol = RTOL if rtol is None else rtol, ATOL if atol is None else atol
     check_positive(rtol=rtol, atol=atol, **({} if step is None else {"step": step}))
     check_count(max_steps=max_steps, **({} if threads is None else {"threads": threads}))
     check_target(target)
+    check_progress(progress)
     obstacle = generated.find_obstacle(system, inputs, target, reconstruct)
     request = Request(
         state=initial,
@@ -100,6 +104,7 @@ def simulate(
         events=read_events(system, events, followed=bool(reconstruct)),
         dense=bool(dense),
     )
+    check_steps(request)
     if not request.method.startswith(SCIPY):
         return generated.simulate(system, request)
     _check_alone(system, request, obstacle)
@@ -350,7 +355,13 @@ def _make_rates(
 
 def _make_slopes(system: System, parameters: Array, target: Any, driving: Driving) -> Rates:
     """The Jacobian for SciPy."""
-    evaluate = Following(system, "jacobian", parameters, target, driving)
+    if "jacobian" in system.functions:
+        evaluate: Rates = Following(system, "jacobian", parameters, target, driving)
+    else:
+
+        def evaluate(t: float, y: Array) -> Array:
+            driving.at(t)
+            return find_slopes(system, y, parameters, target=target, **driving.now)
 
     def jacobian(t: float, y: Array) -> Array:
         slopes = evaluate(t, y)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.course import UNTOLD, Course, relative, relative_of_each
+from coadjoint.solve.course import UNTOLD, Course
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.occurrences import Events
 
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 class Solution:
     """One trajectory, or a batch of them.
 
-    ``solution["Pi"]`` is ``(3, T)``, ``solution["Pi1"]`` and ``solution["energy"]`` are ``(T,)``.
-    Of a batch they are ``(3, *batch, T)`` and ``(*batch, T)``.
+    ``solution["Pi"]`` is ``(3, T)`` or ``(3, *batch, T)``; ``solution["energy"]`` is ``(T,)`` or
+    ``(*batch, T)``.
 
     Attributes:
         system: The System that was simulated.
@@ -42,14 +42,13 @@ class Solution:
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
             the last point inside), ``NONFINITE`` (rates or steps are not finite),
-            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances), ``MAX_STEPS`` or
-            ``EVENT`` (a terminal event; the last sample is where it occurred).
+            ``STEP_UNDERFLOW`` (no step was small enough), ``MAX_STEPS`` or ``EVENT`` (terminal).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
             each trajectory has constants of its own; None if there are none.
         events: The events that were looked for, by name: times, states and members of each.
-        dense: The steps, from which `at` has the state at any time; None without ``dense=True``.
+        dense: The steps, by which `at` knows the state at any time; None without ``dense=True``.
     """
 
     def __init__(
@@ -140,10 +139,7 @@ class Solution:
         return take_member(self, place)
 
     def at(self, t: ArrayLike) -> Solution:
-        """The same motion at other times, by the polynomials of its steps.
-
-        The states are those that samples at these times have, to the last bit; observables and the
-        drift since the start follow from them. What a trajectory of a batch did not reach is NaN.
+        """The same motion at other times, by its steps; NaN where one of a batch did not come.
 
         Args:
             t: A time, or several in any order, within the span of the solution.
@@ -231,10 +227,9 @@ class Solution:
         Nothing but the tolerances of the integration keeps a quaternion at unit length; this says
         how well they did.
         """
-        if self.reconstructed is None:
-            return {}
-        turning = (q for q in self.system.RECONSTRUCTED.values() if q.shape == (4,))
-        return {q.name: float(np.abs((self[q.name] ** 2).sum(axis=0) - 1).max()) for q in turning}
+        from coadjoint.solve.drift import find_attitude_drift
+
+        return find_attitude_drift(self)
 
     @cached_property
     def observables(self) -> Array:
@@ -277,29 +272,16 @@ class Solution:
         ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout. Of a batch it is an
         array; what a trajectory did not reach is left out.
         """
-        if not self.batch:
-            return {name: relative(self.change(name), self._sizes(name)) for name in self.conserved}
-        return {
-            name: relative_of_each(self.change(name), self._sizes(name), len(self.batch))
-            for name in self.conserved
-        }
+        from coadjoint.solve.drift import find_drift
 
-    def _sizes(self, name: str) -> Array:
-        """The values of a quantity, that of the start among them."""
-        values = self[name]
-        if self._at_start is None:
-            return values
-        return np.concatenate([self._at_start[name], values], axis=-1)
+        return find_drift(self)
 
     @property
     def conserved(self) -> tuple[str, ...]:
         """Names of the observables that the motion conserves; some only if inputs are constant."""
-        inputs = self.inputs
-        steady = inputs is None or inputs.ndim == 1 or bool((inputs == inputs[..., :1]).all())
-        if self.course.start is not None:
-            steady = not self.course.start.varies
-        quantities = self.system.OBSERVABLES.values()
-        return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
+        from coadjoint.solve.drift import list_conserved
+
+        return list_conserved(self)
 
     def first(self, name: str) -> Array:
         """The value at the start, ``(..., 1)``, also where no sample has it."""
@@ -324,27 +306,12 @@ class Solution:
             return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
-    @property
-    def _last_inputs(self) -> dict[str, float]:
-        """The last inputs by component."""
-        names = self.system.INPUTS.components
-        return dict(zip(names, self._inputs_over_time[:, -1].tolist(), strict=True))
-
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values, of one trajectory."""
+        from coadjoint.solve.summary import summarize
+
         self._check_alone("a summary")
-        parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
-        return {
-            "system": self.system.name,
-            "status": self.status,
-            "message": self.message,
-            "time": self.time_reached,
-            "samples": len(self),
-            "parameters": dict(parameters),
-            "final": self.final,
-            "drift": self.drift,
-            **({} if self.inputs is None else {"inputs": self._last_inputs}),
-        } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
+        return summarize(self)
 
     def to_xarray(self) -> Any:
         """The solution as an `xarray.Dataset` with units; see `coadjoint.solve.datasets`.
@@ -446,23 +413,17 @@ class Solution:
         return trace(self, path)
 
     def __repr__(self) -> str:
+        from coadjoint.solve.drift import describe_drift
+
         span = f"{len(self)} samples, t = {self.time[0]:g} .. {self.time[-1]:g}>"
         span = span if len(self) > 1 else f"1 sample, t = {self.time[0]:g}>"
         if self.batch:
             whole = "x".join(map(str, self.batch))
             lines = [f"<Solution of {self.system.name}: {whole} trajectories, {span}"]
             lines += [f"  {self.message}"] if self.message else []
-            return "\n".join([*lines, *self._describe_drift()])
-        lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
-        lines += self._describe_drift()
-        lines += [f"  |{name}|^2 - 1: {value:.1e}" for name, value in self.attitude_drift.items()]
-        return "\n".join(lines)
-
-    def _describe_drift(self) -> list[str]:
-        """A line for each conserved observable; of a batch the largest drift."""
-        most = " up to" if self.batch else ""
-        values = ((name, float(np.max(value))) for name, value in self.drift.items())
-        return [f"  drift of {name}:{most} {value:.1e}" for name, value in values]
+            return "\n".join([*lines, *describe_drift(self)])
+        head = f"<Solution of {self.system.name}: {self.status}, {span}"
+        return "\n".join([head, *describe_drift(self)])
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

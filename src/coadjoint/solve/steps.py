@@ -117,55 +117,121 @@ class Taylor:
 
     Args:
         expand: The coefficients of the motion of lanes up to an order, ``(n, order + 1, N)``.
+        rates: Rates of lanes, at states some time later.
         order: The order.
         rtol: Relative tolerance.
         atol: Absolute tolerance.
         size: A fixed step, or 0.
+        branches: Whether the rates have branch points: each step is then compared with them.
     """
-
-    tries_again = False
 
     def __init__(
         self,
+        *,
         expand: Callable[[Lanes, int], Array],
+        rates: Callable[[Lanes, Array, Array], Array],
         order: int,
         rtol: float,
         atol: float,
         size: float = 0.0,
+        branches: bool = False,
     ) -> None:
-        self.expand, self.order = expand, order
-        self.rtol, self.atol, self.size = rtol, atol, size
+        self.expand, self.rates, self.order = expand, rates, order
+        self.rtol, self.atol, self.size, self.branches = rtol, atol, size, branches
+        self.tries_again = branches and not size > 0
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `Method.try_step`."""
-        path = self.expand(lanes, self.order)
-        most = lanes.end - lanes.time
-        took = _fixed(self.size, most) if self.size > 0 else _free(lanes, self._choose(path), most)
-
-        def at(after: Array) -> Array:
-            total = path[:, self.order]
-            for k in range(self.order - 1, -1, -1):
-                total = total * after + path[:, k]
-            return total
-
+        path, most = self.expand(lanes, self.order), lanes.end - lanes.time
+        asked = self._choose(path) if not self.size > 0 else np.full(most.shape, self.size)
+        if self.branches:
+            h, state, accepted = self._follow(lanes, path, asked, most)
+        else:
+            h = _fixed(self.size, most) if self.size > 0 else _free(lanes, asked, most)
+            state, accepted = _evaluate_path(path, h), np.ones(h.shape, bool)
         return Attempt(
-            took=took,
-            state=at(took),
-            accepted=np.ones(took.shape, bool),
-            path=at,
+            took=h,
+            state=state,
+            accepted=accepted,
+            path=partial(_evaluate_path, path),
             coefficients=lambda: path,
         )
 
+    def _follow(
+        self, lanes: Lanes, path: Array, asked: Array, most: Array
+    ) -> tuple[Array, Array, Mask]:
+        """How far a series is followed, where to, and whether it has the rates there.
+
+        A step that has not is followed by a shorter one, and this by longer ones, as long as the
+        tolerances ask for more. There is none where it has a fixed length.
+        """
+        bound, adaptive = lanes.step, not self.size > 0
+        wanted = np.where(bound > 0.0, _smaller(bound, asked), asked)
+        h = _free(lanes, wanted, most) if adaptive else _fixed(self.size, most)
+        state, slopes = _evaluate_end(path, h)
+        accepted = self._is_followed(lanes, path, h, state, slopes)
+        # where a shorter step cannot help, there is none
+        known = np.isfinite(state).all(axis=0) & np.array(not adaptive)
+        ends = ~accepted & (_has_no_series(path) | known)
+        state, h = np.where(ends, lanes.state, state), np.where(ends, 0.0, h)
+        if adaptive:
+            longer = np.where(asked <= bound, 0.0, _larger(bound, h * 2.0))
+            lanes.step = np.where(accepted, np.where(bound > 0.0, longer, 0.0), h * 0.4)
+        return h, state, accepted
+
+    def _is_followed(
+        self, lanes: Lanes, path: Array, h: Array, state: Array, slopes: Array
+    ) -> Mask:
+        """Whether a series still has the rates of the system after a step."""
+        rates = self.rates(lanes, h, state)
+        gaps = rates - slopes
+        gap, size = _norm(gaps), _larger(_norm(rates), _norm(slopes))
+        tolerance, error = self._tolerance(path), h * gap
+        finite = np.isfinite(gaps).all(axis=0)
+        if self.size > 0:
+            return finite & ((gap <= size) | (error <= tolerance))
+        known = (gap <= 0.5 * size) | (error <= _norm(path[:, 0]) * 2.0**-44)
+        return finite & known & (error <= 128.0 * tolerance)
+
+    def _tolerance(self, path: Array) -> Array:
+        """What an error may be."""
+        return _larger(self.rtol * _norm(path[:, 0]), np.full(path.shape[2], self.atol))
+
     def _choose(self, path: Array) -> Array:
         """The step in which the last two orders are as small as the tolerances ask."""
-        order = self.order
-        least = np.full(path.shape[2], self.atol)
-        size = rough_log2(_larger(self.rtol * _norm(path[:, 0]), least))
+        order, size = self.order, rough_log2(self._tolerance(path))
         one = (size - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
         two = (size - rough_log2(_norm(path[:, order]))) * (1.0 / order)
         octaves = _smaller(one, two) - 0.7 / (order - 1) * 1.4426950408889634
+        if self.branches:
+            most = size - rough_log2(self.rtol * _norm(path[:, 1])) + 2.0
+            octaves = _smaller(octaves, most)
         limit = np.full(octaves.shape, 1000.0)
         return rough_power(_smaller(_larger(octaves, -limit), limit))
+
+
+def _evaluate_path(path: Array, after: Array) -> Array:
+    """The state of a path some time after it began."""
+    total = path[:, -1]
+    for k in range(path.shape[1] - 2, -1, -1):
+        total = total * after + path[:, k]
+    return total
+
+
+def _evaluate_end(path: Array, after: Array) -> tuple[Array, Array]:
+    """The state of a path some time after it began, and its rates."""
+    state = path[:, -1]
+    rates = np.zeros(state.shape)
+    for k in range(path.shape[1] - 2, -1, -1):
+        rates = rates * after + state
+        state = state * after + path[:, k]
+    return state, rates
+
+
+def _has_no_series(path: Array) -> Mask:
+    """Whether rates are finite, and coefficients of the highest order are not."""
+    rates, last = (np.isfinite(path[:, order]).all(axis=0) for order in (1, -1))
+    return np.asarray(rates & ~last)
 
 
 def _norm(rows: Array) -> Array:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
@@ -95,8 +96,11 @@ class System(Functions):
 
     def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
-        if KERNEL_FUNCTIONS[function].below:
-            return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+        match KERNEL_FUNCTIONS[function].below:
+            case "reconstructed":
+                return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+            case "vector":
+                return Quantities(*self.STATE.values(), *map(_name_below, self.STATE.values()))
         return self.STATE
 
     def sizes(self, function: str) -> dict[str, int]:
@@ -214,8 +218,8 @@ class System(Functions):
                 which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
                 `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
                 ``"dop853"``. Where generated solvers do not apply it is ``"scipy:DOP853"``: where
-                a System keeps constraints or has a ``[domain]``, with ``reconstruct``, inputs that
-                are a function, or the target ``"python"``. `Solution.method` says which it was.
+                rates are loops over a table, with ``reconstruct``, inputs that are a function, or
+                the target ``"python"``. `Solution.method` says which it was.
             rtol: Relative tolerance of a step; 1e-10 if none is given.
             atol: Absolute tolerance of a step; 1e-12 if none is given.
             step: A fixed step for a generated method, in the place of tolerances; the order of
@@ -385,6 +389,12 @@ class System(Functions):
         tables |= {name: quantities for name, quantities in driving.items() if quantities}
         told = (f"{name} {', '.join(q.components) or 'none'}" for name, q in tables.items())
         return f"<System {self.name}: {'; '.join(told)}>"
+
+
+def _name_below(quantity: Quantity) -> Quantity:
+    """A quantity of the state as what stands below it: the same rows of a vector."""
+    name, *components = (f"{each} of the vector" for each in (quantity.name, *quantity.components))
+    return replace(quantity, name=name, components=tuple(components))
 
 
 def load_folder(folder: Path) -> System:

@@ -98,7 +98,8 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
                 Solve(matrix=own, known=rest, block=block, names=[names[i] for i in block])
             )
     pairs = zip(setting.momenta, names, setting.weights, strict=True)
-    energy = sum((field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs), -of.lagrangian)
+    products = [field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs]
+    energy = field.sum([*products, -of.lagrangian])
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
     return LegendreTransform(

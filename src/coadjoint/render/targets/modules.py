@@ -52,10 +52,18 @@ class KernelModule(Kernel):
         Raises:
             OutputError: It has none of this name.
         """
-        function: Callable[..., Any] | None = getattr(self._module, name, None)
-        if function is None:
-            raise self.explain_broken(f"has no function {name}")
+        function: Callable[..., Any] = self.value(name)
         return function
+
+    def value(self, name: str) -> Any:
+        """What a name of the file stands for.
+
+        Raises:
+            OutputError: It has no such name.
+        """
+        if not hasattr(self._module, name):
+            raise self.explain_broken(f"has no function {name}")
+        return getattr(self._module, name)
 
     def explain_broken(self, problem: str, **parts: Any) -> OutputError:
         """What is wrong with the file."""

@@ -37,15 +37,25 @@ _LOOP = re.compile(
 
 def read(text: str, program: Program, system: str) -> list[Body]:
     """The branches of the function of a Program."""
-    return read_c(text, f"{system}_{program.name}")
+    name = f"{system}_{program.name}"
+    if program.table is None:
+        return read_c(text, name)
+    from coadjoint.render.targets.c.loop_reader import read_loops  # which reads expressions here
+
+    return [read_loops(text, _find_function(text, name), program)]
+
+
+def _find_function(text: str, name: str) -> str:
+    """The body of a function without its comments."""
+    function = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
+    if not function:
+        raise failure(f"kernel.c has no function {name!r}", name)
+    return re.sub(r"/\*.*?\*/|\(void\)\w+;", "", function[1], flags=re.DOTALL)
 
 
 def read_c(text: str, name: str) -> list[Body]:
     """The branches of a C function: one, or one for shared and one for separate parameters."""
-    function = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
-    if not function:
-        raise failure(f"kernel.c has no function {name!r}", name)
-    body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", function[1], flags=re.DOTALL)
+    body = _find_function(text, name)
     zeros, body = _take_zeros(_STEPS.sub("", body))
     branches = re.fullmatch(
         r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",

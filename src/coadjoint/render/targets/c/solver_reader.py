@@ -18,8 +18,7 @@ FILE = "solver.c"
 #: The functions that the system has a part in, by name, with the text before their bodies.
 _FUNCTIONS = {
     "find_fixed": "INLINE void find_fixed(Block *restrict _block)",
-    "expand": "static void expand(const Block *restrict _block, "
-    "V _path[restrict STATE][ORDER + 1])",
+    "expand": "APART void expand(const Block *restrict _block, V _path[restrict STATE][ORDER + 1])",
     **{
         f"find_{name}": f"static void find_{name}(\n    const Block *restrict _block, V _after, "
         "const V *restrict _state, V *restrict _rows)"

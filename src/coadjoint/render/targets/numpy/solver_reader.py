@@ -61,7 +61,7 @@ def _is_allowed(item: ast.stmt) -> bool:
     match item:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
-        case ast.Assign(targets=[ast.Name(id="ID")], value=ast.Constant()):
+        case ast.Assign(targets=[ast.Name(id="ID" | "BRANCHES")], value=ast.Constant()):
             return True
     return False
 
