@@ -133,7 +133,7 @@ def stack_vector(system: Any, function: str, state: Values, vector: Values) -> A
         pack(each, system.STATE, name) for each, name in ((state, "state"), (vector, "vector"))
     ]
     for each, name in zip(packed, ("state", "vector"), strict=True):
-        _check_rows(each, system.STATE, name, system.name)
+        check_rows(each, system.STATE, name, system.name)
     if packed[0].shape != packed[1].shape:
         raise KernelArgumentError(
             f"the state has the shape {packed[0].shape}, the vector {packed[1].shape}; expected "
