@@ -278,7 +278,13 @@ def _find_start(solution: Solution, dense: Dense) -> Start:
     inputs = _find_inputs(dense.signal, np.array([dense.start]))
     varies = isinstance(dense.signal, Signal) and type(dense.signal) is not Signal
     below = None if solution.reconstructed is None else solution.reconstructed[..., 0].copy()
-    return Start(dense.start, solution.state[..., 0].copy(), inputs, varies, below)
+    return Start(
+        time=dense.start,
+        state=solution.state[..., 0].copy(),
+        inputs=inputs,
+        varies=varies,
+        reconstructed=below,
+    )
 
 
 def _find_states(solution: Solution, dense: Dense, times: Array) -> Array:

@@ -294,7 +294,7 @@ def _find_start(request: Request, signal: Signal | Array | None) -> Start:
         inputs: Array | None = signal[..., np.newaxis]
     else:
         inputs = None if signal is None else signal.over(np.array([request.start]))
-    return Start(request.start, request.state.copy(), inputs, varies)
+    return Start(time=request.start, state=request.state.copy(), inputs=inputs, varies=varies)
 
 
 def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:

@@ -207,7 +207,13 @@ def _make_solution(
         steady = driving.is_constant
         given = driving.over(times[:1]).get("inputs")
         below = states[n:, 0].copy() if len(states) > n else None
-        start = Start(request.start, states[:n, 0].copy(), given, not steady, below)
+        start = Start(
+            time=request.start,
+            state=states[:n, 0].copy(),
+            inputs=given,
+            varies=not steady,
+            reconstructed=below,
+        )
         times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
