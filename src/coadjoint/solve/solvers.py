@@ -50,13 +50,13 @@ MOST_STEPS: Final = 4
 def choose_order(rtol: float) -> int:
     """The order of the method of Taylor that a relative tolerance asks for.
 
-    Two more than that of Jorba and Zou, who count operations of sums alone: measured best, see
+    Three more than that of Jorba and Zou, who count operations of sums alone: measured best, see
     docs/decisions/solver-speed.md.
 
     >>> choose_order(1e-10), choose_order(2e-16), choose_order(1e-2)
-    (15, 22, 6)
+    (16, 23, 7)
     """
-    return min(max(ORDERS[0], ceil(3.0 - log(rtol) / 2.0)), ORDERS[1])
+    return min(max(ORDERS[0], ceil(4.0 - log(rtol) / 2.0)), ORDERS[1])
 
 
 @dataclass(frozen=True)
