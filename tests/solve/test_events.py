@@ -9,7 +9,7 @@ from scipy.special import ellipk
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.events import Event
-from coadjoint.systems import rigid_body
+from coadjoint.systems import heavy_top, rigid_body
 from tests.constrained import PENDULUM as ROD
 from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
@@ -345,6 +345,33 @@ def test_events_before_the_edge_of_a_domain_are_found(options):
         [2.0, 0.0], (0, 5), events=Event("h == 1", terminal=True), target="numpy", **options
     )
     assert (early.status, early["h"][-1]) == ("EVENT", pytest.approx(1.0, abs=1e-12))
+
+
+def test_events_are_the_changes_of_sign_of_samples():
+    """Of formulas typed by hand in NumPy, on a grid so fine that none hides between its times."""
+    state = np.random.default_rng(1).normal(size=(6, 6))
+    state[3:] /= np.linalg.norm(state[3:], axis=0)
+    times = np.linspace(0, 4, 8001)
+    sampled = heavy_top.simulate(state, times)
+    pi, gamma, omega = sampled["Pi"], sampled["Gamma"], sampled["Omega"]
+    values = {
+        "Gamma3 - 0.1": gamma[2] - 0.1,
+        "Pi1*Gamma2 - 0.3": pi[0] * gamma[1] - 0.3,
+        "sin(3*t)*Pi3 - Gamma1": np.sin(3 * times) * pi[2] - gamma[0],
+        "exp(Gamma1) - 1.5": np.exp(gamma[0]) - 1.5,
+        "norm(cross(Pi, Gamma)) - m": np.linalg.norm(np.cross(pi, gamma, axis=0), axis=0) - 1,
+        "energy - Pi2^2": sampled["energy"] - pi[1] ** 2,
+        "Omega1/(2 + Gamma3) == 0.2": omega[0] / (2 + gamma[2]) - 0.2,
+    }
+    found = heavy_top.simulate(state, (0, 4), events=list(values), samples=1).events
+    for name, value in values.items():
+        for member in range(6):
+            change = np.flatnonzero(value[member, 1:] * value[member, :-1] < 0)
+            own = found[name].of(member)
+            assert len(own) == len(change), (name, member)
+            assert ((times[change] <= own.time) & (own.time <= times[change + 1])).all()
+            assert np.array_equal(own.direction, np.sign(np.diff(value[member])[change]))
+        assert len(found[name]) >= 5, name
 
 
 def test_a_checkpoint_with_events_is_refused(tmp_path):
