@@ -250,10 +250,8 @@ def call(
 def _describe(ensemble: Ensemble) -> _Run:
     """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
     members, inputs = ensemble.state.shape[1], ensemble.inputs
-    arrays = {
-        name: getattr(ensemble, name)
-        for name in ("state", "time", "step", "next", "steps", "rejected", "status")
-    }
+    names = ("state", "time", "step", "next", "steps", "rejected", "status")
+    arrays = {name: getattr(ensemble, name) for name in names}
     arrays |= {"parameters": ensemble.parameters, "samples": ensemble.samples}
     arrays |= {"knots": inputs.knots, "inputs": inputs.values, "slopes": inputs.slopes}
     assert all(array.flags.c_contiguous for array in arrays.values())
