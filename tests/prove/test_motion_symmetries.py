@@ -131,6 +131,9 @@ def test_what_follows_on_a_section_is_not_moved():
     """q2 is q1 there; the rest of the refusals name what to do, which is done above."""
     with pytest.raises(SpecError, match="expected one of q1, p1"):
         spec(SECTION, ('map = { q1 = "-q2"', 'map = { q2 = "-q2", q1 = "-q2"'))
+    linear = ('generators = { q1 = "s*p2", p1 = "-s*q1" }', 'linear = ["q1", "q2"]')
+    with pytest.raises(SpecError, match="'q2' is not a variable of the state"):
+        spec(SECTION, linear)
     with pytest.raises(CoadjointError, match="Declare the momentum map as map"):
         verdicts(SECTION, ('map = "s*(q1^2 + p2^2)/2"\n', ""))
 

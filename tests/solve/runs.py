@@ -30,6 +30,10 @@ def check_same(found, solution):
         assert np.array_equal(getattr(found, name), getattr(solution, name)), name
     assert repr(found.final) == repr(solution.final)
     assert repr(found.drift) == repr(solution.drift)
+    system = solution.system
+    followed = () if solution.reconstructed is None else system.RECONSTRUCTED.components
+    for name in (*system.STATE.components, *followed):
+        assert np.array_equal(found.first(name), solution.first(name))
     check_same_events(found.events, solution.events)
     for name in ("system", "status", "message", "settings"):
         assert np.array_equal(getattr(solution, name), getattr(found, name)), name
@@ -76,10 +80,10 @@ def made(batch=(), **changes):
 
 
 @cache
-def follow_sleigh():
+def follow_sleigh(samples=7):
     """A sleigh with its place."""
     return built(FOLLOWED_SLEIGH).simulate(
-        [1, 1], (0, 2), samples=7, target="numpy", reconstruct=True
+        [1, 1], (0, 2), samples=samples, target="numpy", reconstruct=True
     )
 
 
@@ -114,6 +118,7 @@ def drive_members(force=None, **options):
 RUNS = {
     "one": made,
     "reconstructed": follow_sleigh,
+    "the end of what is reconstructed": partial(follow_sleigh, 1),
     "time": shake_top,
     "constant inputs": partial(drive_point, {"f": 1 / 3}),
     "sampled inputs": sample_point,

@@ -646,6 +646,7 @@ ELSEWHERE = {
     "Write diag(m) for a mass of each row.": "test_newton.py",
     "Write vector(": "tests/derive/test_external.py",
     "Remove the momentum ": "below",
+    "Declare an angle, as theta = ": "test_followed.py",
     "The first is in line ": "names the place",
     "Blocks of ": "names what there is",
     "Declared are ": "names what there is",

@@ -302,8 +302,10 @@ def lower(equations: Equations) -> dict[str, Program]:
     programs: dict[str, Program] = {}
     looped = _loop(equations)
     for name, function in KERNEL_FUNCTIONS.items():
+        if function.looped == ("only" if looped is None else "never"):
+            continue
         rows = rows_of(equations, name)
-        if rows is None or function.looped == ("only" if looped is None else "never"):
+        if rows is None:
             continue
         if looped is not None and name == "rhs":
             programs[name] = looped

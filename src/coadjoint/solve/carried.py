@@ -188,7 +188,7 @@ def _read_course(said: Any, path: Path) -> dict[str, Any]:
     """
     try:
         return read_record(json.loads(said) if isinstance(said, str) else said)
-    except (KeyError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise explain_unread(path, f"its course is damaged: {error}") from error
 
 

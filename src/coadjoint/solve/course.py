@@ -29,12 +29,14 @@ class Start:
         state: Where, ``(n, *batch)``.
         inputs: Inputs then, as a Solution of one sample has them.
         varies: Whether inputs change later.
+        reconstructed: What is reconstructed, ``(k,)`` of one trajectory; None if nothing is.
     """
 
     time: float
     state: Array
     inputs: Array | None
     varies: bool
+    reconstructed: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -126,10 +128,12 @@ def read_record(record: dict[str, Any]) -> dict[str, Any]:
         name: np.array(record[name], kind) for name, kind in _ARRAYS.items() if name in record
     }
     if "start" in record:
-        start = record["start"]
-        inputs = None if start["inputs"] is None else np.array(start["inputs"], np.float64)
-        state = np.array(start["state"], np.float64)
-        found["start"] = Start(start["time"], state, inputs, start["varies"])
+        arrays = {
+            name: None if value is None else np.array(value, np.float64)
+            for name, value in record["start"].items()
+            if name in ("state", "inputs", "reconstructed")
+        }
+        found["start"] = Start(**(record["start"] | arrays))
     return found
 
 

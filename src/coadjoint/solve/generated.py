@@ -16,7 +16,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense import make_driving
+from coadjoint.solve.dense_output import make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
@@ -71,11 +71,11 @@ def simulate(system: System, request: Request) -> Solution:
     run, driven = _gather(system, request)
     now = _drive(system, run, request.start)
     check_starts(system, request, run, now)
+    recording = _make_recording(system, request, run, driven)
     stepper = system._solvers.get(request.choice, request.target)
     run.begin(request.start)
     _end_undefined(system, run, now)
     checkpoint = _resume(system, request, run, stepper)
-    recording = _make_recording(system, request, run, driven)
     with ExitStack() as stack:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
@@ -294,7 +294,7 @@ def _find_start(request: Request, signal: Signal | Array | None) -> Start:
         inputs: Array | None = signal[..., np.newaxis]
     else:
         inputs = None if signal is None else signal.over(np.array([request.start]))
-    return Start(request.start, request.state.copy(), inputs, varies)
+    return Start(time=request.start, state=request.state.copy(), inputs=inputs, varies=varies)
 
 
 def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:

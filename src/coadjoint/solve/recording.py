@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.dense import Dense, move_onto_constraints
+from coadjoint.solve.dense_output import Dense, move_onto_constraints
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending, list_occurrences
 

@@ -18,7 +18,7 @@ from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense import Trail, make_driving
+from coadjoint.solve.dense_output import Trail, make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import Surroundings, read_events
@@ -206,7 +206,14 @@ def _make_solution(
     if request.samples == 1:
         steady = driving.is_constant
         given = driving.over(times[:1]).get("inputs")
-        start = Start(request.start, states[:n, 0].copy(), given, not steady)
+        below = states[n:, 0].copy() if len(states) > n else None
+        start = Start(
+            time=request.start,
+            state=states[:n, 0].copy(),
+            inputs=given,
+            varies=not steady,
+            reconstructed=below,
+        )
         times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")

@@ -22,7 +22,7 @@ from coadjoint.solve.occurrences import Events
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from coadjoint.solve.dense import Dense
+    from coadjoint.solve.dense_output import Dense
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -147,7 +147,7 @@ class Solution:
         Raises:
             KernelArgumentError: It was simulated without ``dense=True``, or a time is outside.
         """
-        from coadjoint.solve.dense import evaluate_at
+        from coadjoint.solve.dense_output import evaluate_at
 
         return evaluate_at(self, t)
 
@@ -263,7 +263,8 @@ class Solution:
         if start is None:
             return None
         state, time = start.state[..., np.newaxis], np.array([start.time])
-        return Solution(self.system, time, state, self.parameters, "", "", None, start.inputs)
+        below = None if start.reconstructed is None else start.reconstructed[..., np.newaxis]
+        return Solution(self.system, time, state, self.parameters, "", "", below, start.inputs)
 
     @cached_property
     def drift(self) -> dict[str, Any]:

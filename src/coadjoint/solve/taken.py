@@ -1,7 +1,7 @@
 """Steps that were taken: what every kind of them can tell of the states on the way.
 
 Comes in: nothing. Goes out: the protocol of `coadjoint.solve.recording.Polynomials`, the steps of
-generated solvers, and `coadjoint.solve.dense.Interpolants`, those of SciPy.
+generated solvers, and `coadjoint.solve.dense_output.Interpolants`, those of SciPy.
 Read next: `coadjoint.solve.crossings`, which looks for events in them.
 """
 

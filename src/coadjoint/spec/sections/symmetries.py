@@ -143,14 +143,18 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     Raises:
         SpecError: There is none of that name.
     """
-    reduction = reading.file.reduction
-    given = () if reduction is None else reduction.section  # these follow from the others
-    variables = (v for v in state_of(VARIABLES.of(reading)) if v.name not in given)
-    state = {variable.name: variable for variable in variables}
+    state = _list_movable(reading)
     if name not in state:
         problem = f"{name!a} is not a variable of the state"
         raise reading.unknown(key, problem, name, state)
     return state[name]
+
+
+def _list_movable(reading: Reading) -> dict[str, Variable]:
+    """The variables of the state by name, without those that [reduction] gives."""
+    reduction = reading.file.reduction
+    given = () if reduction is None else reduction.section
+    return {v.name: v for v in state_of(VARIABLES.of(reading)) if v.name not in given}
 
 
 def read_move(
@@ -168,7 +172,7 @@ class _Actions:
     def __init__(self, reading: Reading) -> None:
         self.reading, self.source = reading, reading.source
         self.scalars = scalars_of(reading)
-        self.state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+        self.state = _list_movable(reading)
 
     def symmetry(self, name: str, part: SymmetryPart) -> Symmetry:
         """One declared action."""

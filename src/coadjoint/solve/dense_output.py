@@ -277,7 +277,14 @@ def _find_start(solution: Solution, dense: Dense) -> Start:
         return solution.course.start
     inputs = _find_inputs(dense.signal, np.array([dense.start]))
     varies = isinstance(dense.signal, Signal) and type(dense.signal) is not Signal
-    return Start(dense.start, solution.state[..., 0].copy(), inputs, varies)
+    below = None if solution.reconstructed is None else solution.reconstructed[..., 0].copy()
+    return Start(
+        time=dense.start,
+        state=solution.state[..., 0].copy(),
+        inputs=inputs,
+        varies=varies,
+        reconstructed=below,
+    )
 
 
 def _find_states(solution: Solution, dense: Dense, times: Array) -> Array:
