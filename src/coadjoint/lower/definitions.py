@@ -57,20 +57,14 @@ def _definitions_of(
         closed: Names that are written out, over state, inputs and parameters.
     """
     field, elements = equations.setting.field, list(elements)
-    values = dict(equations.definitions_of(elements))
-    values |= {name: equations.close(values[name]) for name in closed & values.keys()}
-    kept: dict[str, Element] = {}
-
-    def need(element: Element) -> None:
-        names = field.reach(element) & values.keys() - kept.keys()
-        for name in filter(names.__contains__, values):
-            if name not in kept:
-                need(values[name])
-                kept[name] = values[name]
-
-    for element in elements:
-        need(element)
-    return list(kept.items())
+    needed = set[str]().union(*map(field.reach, elements))
+    kept: Lines = []
+    for name, value in reversed(equations.definitions_of(elements)):
+        if name in needed:
+            written = equations.close(value) if name in closed else value
+            kept.append((name, written))
+            needed |= field.reach(written)
+    return kept[::-1]
 
 
 def _has_sum_below(field: Field, element: Element) -> bool:
