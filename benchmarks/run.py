@@ -23,6 +23,7 @@ BENCHMARKS = (
     "call_overhead",
     "ensembles",
     "trajectories",
+    "memory",
 )
 
 

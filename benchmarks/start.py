@@ -1,6 +1,12 @@
-"""How long one waits before anything begins: importing a system, and the help of the program."""
+"""How long one waits before anything begins: imports, the help of the program, a first call."""
 
 from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from statistics import median
 
 from figures import Figure, fresh_process, script
 
@@ -20,10 +26,56 @@ print(time.process_time())
 """
 
 
+#: Processor seconds of a first call beyond importing NumPy, those of the compiler included.
+FIRST = """
+import os, sys
+import numpy as np
+def seconds():
+    return sum(os.times()[:4])
+start = seconds()
+from importlib import import_module
+system = import_module(f"coadjoint.systems.{sys.argv[1]}").system
+system.rhs(np.ones(system.STATE.size))
+assert "sympy" not in sys.modules
+print(seconds() - start)
+"""
+#: Seconds on a new machine and in a second process, for each system.
+FIRST_TARGETS = {"heavy_top": (1.5, 0.05), "so8_body": (1.5, 0.05)}
+
+
+def first_calls(name: str, runs: int = 5) -> tuple[float, float]:
+    """Seconds of the first ``rhs`` with an empty cache, and in processes after that: medians."""
+    fresh, again = [], []
+    for _ in range(runs):
+        with tempfile.TemporaryDirectory() as cache:
+            for taken in (fresh, again):
+                done = subprocess.run(
+                    [sys.executable, "-P", "-c", FIRST, name],
+                    env={**os.environ, "COADJOINT_CACHE": f"{cache}/cache"},
+                    check=True,
+                    capture_output=True,
+                    text=True,
+                )
+                taken.append(float(done.stdout))
+    return median(fresh), median(again)
+
+
+def first_figures() -> list[Figure]:
+    """How long the first call takes."""
+    figures = []
+    for name, targets in FIRST_TARGETS.items():
+        cases = ("with an empty cache", "in a second process")
+        for case, most, taken in zip(cases, targets, first_calls(name), strict=True):
+            what = f"{name}: first rhs beyond importing NumPy, {case}"
+            figures.append(Figure(what, f"<= {most:g} s", f"{taken:.3f} s", taken <= most))
+    return figures
+
+
 def measure() -> list[Figure]:
     """Processor time of a fresh process, Python's own start included."""
     system, program = fresh_process(IMPORT), fresh_process(HELP)
     return [
+        *first_figures(),
         Figure(
             "import coadjoint.systems.heavy_top", "<= 0.15 s", f"{system:.3f} s", system <= 0.15
         ),

@@ -39,6 +39,7 @@ class TextSystem:
     def __init__(self, context, texts, folder: Path, c_flags=EXACT):
         self.name = context.name
         self.PARAMETERS = {quantity.name: quantity for quantity in context.parameters}
+        self.DOMAIN = context.domain
         self.rows = {program.name: program.shape for program in context.programs}
         self.python = {}
         self.texts = texts

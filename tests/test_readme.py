@@ -55,7 +55,7 @@ def test_python_of_the_readme_runs(folder):
     assert names["motion"]["Pi2"].min() > 0.9
 
 
-@pytest.mark.parametrize("page", ["python", "algebras", "theory"])
+@pytest.mark.parametrize("page", ["python", "simulation", "events", "algebras", "theory"])
 def test_python_of_a_page_runs(page, folder):
     """The Python blocks of a page run one after the other, in the folder of the gyrostat."""
     names = {}

@@ -38,7 +38,7 @@ def read_bounded(
         ``routes``, the ``state`` and ``parameters`` by component, and ``sha256`` of its bytes.
 
     Raises:
-        CoadjointError: What `coadjoint.read_spec` raises.
+        CoadjointError: What the same work in the caller's process raises.
         ResourceError: The child ran out of time or memory.
     """
     (record,) = read_all_bounded([fspath(path)], seconds=seconds, memory=memory)
@@ -56,19 +56,12 @@ def derive_bounded(
 ) -> dict[str, Any]:
     """The derivation of a spec, step by step, made in a bounded child.
 
-    Args:
-        path: A spec in TOML.
-        route: One of its routes; by default the first.
-        seconds: Processor time; see `coadjoint.budget.allowed_seconds`.
-        memory: Limit of address space, bytes.
+    It follows one of the routes, by default the first; other arguments and errors are those of
+    `read_bounded`.
 
     Returns:
         The fields of a `coadjoint.derive.document.Document`, for
         `coadjoint.render.document.render_document`.
-
-    Raises:
-        CoadjointError: What `coadjoint.derive` raises.
-        ResourceError: The child ran out of time or memory.
     """
     argument = {"path": fspath(path), "route": route}
     return _run("coadjoint.bounded:document_record", argument, seconds, memory)
@@ -79,18 +72,11 @@ def prove_bounded(
 ) -> dict[str, Any]:
     """The certificate of a spec, made in a bounded child; what is refuted raises nothing.
 
-    Args:
-        path: A spec in TOML.
-        seconds: Processor time; see `coadjoint.budget.allowed_seconds`.
-        memory: Limit of address space, bytes.
+    Arguments and errors are those of `read_bounded`.
 
     Returns:
         What ``coadjoint prove --json`` prints: ``system``, ``holds``, and ``claims`` with
         statement, verdict and method of each.
-
-    Raises:
-        CoadjointError: What `coadjoint.prove` raises.
-        ResourceError: The child ran out of time or memory.
     """
     return _run("coadjoint.bounded:certificate_record", {"path": fspath(path)}, seconds, memory)
 

@@ -93,8 +93,9 @@ class KernelFunction:
         doc: What a reader of a System is told beyond that.
         constrained: The summary of a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
-        below: Whether the rows of what is reconstructed follow those of the state in its first
-            argument.
+        below: What follows the rows of the state in its first argument: what is reconstructed, or
+            a vector with a row for each of them.
+        looped: Whether only systems whose rates are loops over a table have it, or only others.
     """
 
     name: str
@@ -103,7 +104,8 @@ class KernelFunction:
     doc: str = ""
     constrained: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
-    below: bool = False
+    below: Literal["", "reconstructed", "vector"] = ""
+    looped: Literal["", "only", "never"] = ""
 
 
 @dataclass(frozen=True)

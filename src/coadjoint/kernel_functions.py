@@ -21,6 +21,19 @@ _ENTRIES: Final = (
         summary="Derivative of rhs by the state, one row for each rate",
         shape="(n, n, *batch)",
         by="state",
+        doc="Systems whose rates are loops have `jacobian_vector` in its place.",
+        looped="never",
+    ),
+    KernelFunction(
+        name="jacobian_vector",
+        summary="Derivative of rhs along a vector, the Jacobian times it",
+        shape="(n, *batch)",
+        doc="""Only systems whose rates are loops over a table of coefficients have it: a free body
+on so(9) and above. Its second argument is the vector, in the forms of the state; `evaluate` and
+`bind` take one array, ``(2*n, *batch)``, with the vector below the state.""",
+        by="state",
+        below="vector",
+        looped="only",
     ),
     KernelFunction(
         name="input_jacobian",
@@ -28,6 +41,7 @@ _ENTRIES: Final = (
         shape="(n, m, *batch)",
         doc="Only systems with inputs have it.",
         by="inputs",
+        looped="never",
     ),
     KernelFunction(
         name="parameter_jacobian",
@@ -35,6 +49,7 @@ _ENTRIES: Final = (
         shape="(n, k, *batch)",
         doc="Only systems with parameters have it.",
         by="parameters",
+        looped="never",
     ),
     KernelFunction(name="energy", summary="Energy", shape="batch"),
     KernelFunction(
@@ -51,7 +66,9 @@ _ENTRIES: Final = (
         doc="""Of a constrained motion the velocities stand for their momenta,
 ``Omega_momentum``: with those and the positions as coordinates, the motion is this matrix times
 the gradient of the energy, which is the velocities and minus the slopes of the constrained
-Lagrangian. It is antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.""",
+Lagrangian. It is antisymmetric, so energy is kept; the Jacobi identity it need not satisfy.
+Systems whose rates are loops over a table have no such matrix.""",
+        looped="never",
     ),
     KernelFunction(
         name="constraint_residual",
@@ -75,7 +92,7 @@ gives no velocity outright.""",
         shape="(r, *batch)",
         doc="""Rows are the components of ``RECONSTRUCTED``. In the first argument these follow the
 state: ``(n + r, *batch)``, or a mapping that names them all.""",
-        below=True,
+        below="reconstructed",
     ),
     KernelFunction(
         name="domain",

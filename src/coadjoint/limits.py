@@ -74,12 +74,15 @@ INVARIANT_TERMS = 25_000
 #: Velocities coupled by a kinetic energy that the kernel solves for: unrolled, twelve take 90
 #: intermediates, whose derivatives are most of a Jacobian.
 COUPLED_VELOCITIES = 12
-#: Work of one search whose result nobody claims, in operations of exact arithmetic, of which each
+#: Work of one search whose result is not claimed, in operations of exact arithmetic, of which each
 #: takes 1 to 15 microseconds; the largest one of a shipped system, the Casimirs of so(8), takes
 #: 410 000. See `coadjoint.prove.searches`.
 SEARCH_WORK = 2_000_000
 #: Operations of one function after lowering.
 OPERATIONS = 20_000
+#: Entries of a table of coefficients, which loops run over; so(20) has 6840, and with as many
+#: components as a state may have, so(23) would have 10 626.
+TABLE_ENTRIES = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
 C_STATEMENTS = 1000
 

@@ -165,13 +165,7 @@ def check(
 ) -> Outcome:
     """Derive everything afresh and compare with what is checked in; nothing is written.
 
-    Args:
-        paths: Spec files.
-        output: The generated folder.
-        jobs: How many systems are worked on at a time.
-        complete: Whether these are all the systems of the folder, so that others are extra.
-        seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
-        progress: Told of every stage of every system.
+    Arguments are those of `regenerate`; where these are all the systems, others are extra.
 
     Raises:
         DriftError: Files are missing, extra or changed; its ``differences`` list them.

@@ -11,6 +11,25 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 
+#: Chaplygin's sleigh, without claims.
+SLEIGH = """title = "Sleigh"
+routes = ["nonholonomic", "hamel"]
+[algebra]
+name = "se(2)"
+[variables]
+v = { role = "velocity", block = ["P1"] }
+u = { role = "velocity", block = ["P2"] }
+omega = { role = "velocity", block = "rotation" }
+[parameters]
+m = { positive = true, default = 1 }
+I = { positive = true, default = 1 }
+a = { positive = true, default = "1/2" }
+[lagrangian]
+l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
+[constraints]
+blade = "u == 0"
+"""
+
 #: Zero for all real x and y.
 HIDDEN_ZEROS = (
     "sin(-({x})) + sin({x})",
@@ -649,24 +668,9 @@ l = "dot(Omega, diag(I)*Omega)/2 + k*Omega1*Omega3/(1 + k)"
 c = "{axis} == 0"
 """
         return Draft(head, ["energy"], [moving], ["Omega2"], ["I1", "I2", "k"])
-    head = """title = "Sleigh"
-routes = ["nonholonomic", "hamel"]
-[algebra]
-name = "se(2)"
-[variables]
-v = { role = "velocity", block = ["P1"] }
-u = { role = "velocity", block = ["P2"] }
-omega = { role = "velocity", block = "rotation" }
-[parameters]
-m = { positive = true, default = 1 }
-I = { positive = true, default = 1 }
-a = { positive = true, default = "1/2" }
-[lagrangian]
-l = "m*(v^2 + (u + a*omega)^2)/2 + I*omega^2/2"
-[constraints]
-blade = "u == 0"
-"""
-    return Draft(head, ["energy", "m*v^2 + (I + m*a^2)*omega^2"], ["v", "omega"], ["v"], ["a", "m"])
+    return Draft(
+        SLEIGH, ["energy", "m*v^2 + (I + m*a^2)*omega^2"], ["v", "omega"], ["v"], ["a", "m"]
+    )
 
 
 #: Families and how often each is drawn; constrained ones take the most time.

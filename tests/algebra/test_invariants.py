@@ -32,8 +32,9 @@ def test_killing_form_is_the_trace_of_products_of_ad(name):
     algebra = algebra_by_name(name)
     form = algebra.killing_form()
     xi, eta = vector(algebra.dimension, 1), vector(algebra.dimension, 2)
-    columns = list(zip(*algebra.ad(eta), strict=True))
-    trace = sum(pairing(row, column) for row, column in zip(algebra.ad(xi), columns, strict=True))
+    units = [[int(i == k) for i in range(algebra.dimension)] for k in range(algebra.dimension)]
+    once = [algebra.bracket(eta, unit) for unit in units]
+    trace = sum(algebra.bracket(xi, column)[k] for k, column in enumerate(once))
     assert pairing(xi, [pairing(row, eta) for row in form]) == trace
     assert form == tuple(zip(*form, strict=True))
 

@@ -1,5 +1,6 @@
 """Compilers: found, missing, failing, hanging, lying; CC is a program and nothing else."""
 
+import platform
 import shutil
 import signal
 import stat
@@ -13,8 +14,15 @@ import pytest
 
 from coadjoint.build import compiler
 from coadjoint.build.cache import cache_folder
-from coadjoint.build.compiler import Compiler, CompilerWarning, compile_kernel, find_compiler
+from coadjoint.build.compiler import (
+    Compiler,
+    CompilerWarning,
+    Source,
+    compile_kernel,
+    find_compiler,
+)
 from coadjoint.errors import CompilerError
+from coadjoint.resources import systems_folder
 from coadjoint.solve import kernels
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top
@@ -322,6 +330,39 @@ def test_machines_without_march_native_still_compile(monkeypatch, tmp_path):
     with pytest.warns(CompilerWarning, match="picky refuses -march=native"):
         made = compile_kernel(Compiler((str(fake),), "picky"), sources(tmp_path), "exact")
     assert made.is_file()
+
+
+def test_a_compiler_that_does_not_know_wide_vectors_keeps_the_rest(monkeypatch, tmp_path):
+    """One unknown option costs that option alone, and the message names it."""
+    monkeypatch.setattr(compiler, "MACHINES", (("-O3", "-mno-such-width=512"), ("-O3",), ()))
+    real = find_compiler().command[0]
+    log = tmp_path / "log"
+    fake = script(tmp_path, "old", f'echo "$@" >> {log}; exec {real} "$@"')
+    with pytest.warns(CompilerWarning, match=r"old refuses -mno-such-width=512; kernels"):
+        made = compile_kernel(Compiler((str(fake),), "old"), sources(tmp_path), "exact")
+    assert made.is_file()
+    assert log.read_text().splitlines()[-1].split().count("-O3") == 2
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="an option of x86 alone")
+def test_wide_vectors_are_asked_for_and_change_nothing_without_them(tmp_path):
+    """Kernels ask for 512 bits; for a processor of 256 the compiler writes the same text."""
+    found = find_compiler()
+    assert "-mprefer-vector-width=512" in found.flags("exact")
+    assert "-mprefer-vector-width=512" in found.flags("fast", Source("solver", ("-DRK4",)))
+    if not found.is_gnu:
+        pytest.skip("checked for GCC")
+    text = (systems_folder() / "heavy_top" / "kernel.c").read_bytes()
+    for place, options in (("a", []), ("b", ["-mprefer-vector-width=512"])):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "kernel.c").write_bytes(text)
+        header = (systems_folder() / "heavy_top" / "kernel.h").read_bytes()
+        (tmp_path / place / "kernel.h").write_bytes(header)
+        command = [*found.command, "-O3", "-march=haswell", *options, "-S", "kernel.c"]
+        subprocess.run(command, check=True, cwd=tmp_path / place)
+    written = [(tmp_path / place / "kernel.s").read_text() for place in ("a", "b")]
+    assert "ymm" in written[0]
+    assert written[0] == written[1]
 
 
 def test_without_a_compiler_numpy_stands_in_and_says_so_once(monkeypatch, fresh_top, tmp_path):

@@ -11,7 +11,7 @@ import pytest
 
 from coadjoint.build import library
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import find_compiler
+from coadjoint.build.compiler import find_compiler, one_function
 from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, OutputError
 from coadjoint.systems import rigid_body
@@ -33,15 +33,19 @@ def load():
 
 
 def test_a_bound_call_computes_what_the_function_does(cache):
-    """Arguments packed once, all of them or all but members, state and result."""
+    """Arguments packed once, all or all but members, state, parameters and result."""
     state, parameters = np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0])
     bound, two = np.zeros(3), np.zeros((3, 2))
     arguments = (1, state.ctypes.data, 1, parameters.ctypes.data, 0, bound.ctypes.data, 1)
     load().bind("rhs", *arguments)()
-    load().bind_at("rhs", *arguments)(2, np.outer(state, [1.0, 2.0]).ctypes.data, two.ctypes.data)
+    both = np.outer(state, [1.0, 2.0])
+    load().bind_at("rhs", *arguments)(2, both.ctypes.data, None, two.ctypes.data)
     # dPi1/dt = (1/I3 - 1/I2) Pi2 Pi3 and cyclic, exact in these numbers
     assert bound.tolist() == [-1.5, 2.25, -1.0]
     assert two.tolist() == [[-1.5, -6.0], [2.25, 9.0], [-1.0, -4.0]]
+    other = np.array([2.0, 4.0, 8.0])  # twice as heavy, half as fast
+    load().bind_at("rhs", *arguments)(2, both.ctypes.data, other.ctypes.data, two.ctypes.data)
+    assert two.tolist() == [[-0.75, -3.0], [1.125, 4.5], [-0.5, -2.0]]
 
 
 def test_an_object_of_another_run_is_refused(cache):
@@ -108,9 +112,11 @@ def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
         library._key(replace(compiler, version="another"), SOURCES, "exact"),
         library._key(replace(compiler, command=("/bin/true",)), SOURCES, "exact"),
     ]
-    for name in ("__version__", "_processor", "SUPPORT"):
+    for name in ("__version__", "tell_processor", "SUPPORT"):
         with monkeypatch.context() as patch:
-            patch.setattr(library, name, (lambda: "another") if name == "_processor" else "another")
+            patch.setattr(
+                library, name, (lambda: "another") if name == "tell_processor" else "another"
+            )
             keys.append(library._key(compiler, SOURCES, "exact"))
     assert len(set(keys)) == len(keys) == 9
     assert library._key(compiler, SOURCES, "exact") == keys[0]
@@ -149,4 +155,4 @@ def test_builders_at_one_time_do_not_disturb_one_another(cache):
     answers = [process.communicate()[0].strip() for process in started]
     assert answers == ["[-1.5, 2.25, -1.0]"] * 6
     assert not list((cache / "work").iterdir())
-    assert fetch(library._key(find_compiler(), SOURCES, "exact"))
+    assert fetch(library._key(find_compiler(), SOURCES, "exact", one_function("rhs")))

@@ -124,7 +124,7 @@ def test_interrupt_exits_with_130(monkeypatch):
 
 def test_interrupt_of_a_real_run_leaves_no_traceback(folder):
     """A process that is interrupted while it simulates ends with 130."""
-    words = ["simulate", "rigid_body", "--time", "1e9", "--json"]
+    words = ["simulate", "rigid_body", "--time", "1e9", "--max-steps", "1000000000", "--json"]
     command = [sys.executable, "-P", "-m", "coadjoint.cli", *words]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

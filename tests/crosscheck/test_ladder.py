@@ -193,7 +193,7 @@ def test_rung_4_detects_exchanged_rows(tmp_path):
     def exchange(texts):
         spoiled = dict(texts)
         for file in ("kernel.py", "kernel.c", "kernel_python.py"):
-            text = texts[file].replace(rows[0], "?").replace(rows[1], rows[0]).replace("?", rows[1])
+            text = texts[file].replace(rows[0], "@").replace(rows[1], rows[0]).replace("@", rows[1])
             assert text != texts[file]
             spoiled[file] = text
         return spoiled

@@ -30,7 +30,10 @@ pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this mach
 FAILS_ON_KERNELS = '[ "$1" = --version ] && exec {real} --version\nexit 1'
 #: A macro that shortens every loop, behind the definitions of the template.
 MACRO = "#define COADJOINT_INDEPENDENT\n#endif"
-SHORTER = "\n#undef COADJOINT_INDEPENDENT\n#define COADJOINT_INDEPENDENT count -= count > 1;"
+SHORTER = (
+    "\n#undef COADJOINT_INDEPENDENT"
+    "\n#define COADJOINT_INDEPENDENT if (count -= count > 1, _last -= _last > count, 1)"
+)
 
 
 @pytest.fixture(autouse=True)
@@ -112,7 +115,7 @@ def test_a_missing_include_fails(rendered):
 @pytest.mark.parametrize(
     ("file", "good", "bad", "message"),
     [
-        ("kernel.c", "_n < count;", "_n + 1 < count;", "rung 3.*no loop over the members"),
+        ("kernel.c", "_n < _last;", "_n + 1 < _last;", "rung 3.*no loop over the members"),
         (
             "kernel.c",
             MACRO,
@@ -128,6 +131,13 @@ def test_incomplete_templates_fail(rendered, file, good, bad, message):
     """A template that skips the last member fails, in each language, also through a macro."""
     with pytest.raises((CrossCheckError, OutputError), match=message):
         pipeline.verify(spoiled(rendered, file, good, bad))
+
+
+def test_a_member_lost_between_the_parts_of_a_loop_is_noticed(rendered):
+    """Where results are aligned to vectors, the member between the two parts is computed."""
+    good, bad = "_first = _last, _last", "_first = _last + (_last > 0 && _last < count), _last"
+    with pytest.raises(CrossCheckError, match=r"wrong kernel was compiled|rung [45]"):
+        pipeline.verify(spoiled(rendered, "kernel.c", good, bad))
 
 
 @pytest.mark.parametrize("file", ["kernel.c", "kernel.py", "kernel_python.py"])

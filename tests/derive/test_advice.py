@@ -25,6 +25,19 @@ SUM = "v1 + v2 + v3 + v4 + v5 + v6 + v7 + v8 + v9 + v10 + v11 + v12 + v13"
 CHAIN = "v1*v2 + v2*v3 + v3*v4"
 PLANES = [('"so(3)"', '"so(4)"'), ('"lie-poisson"]', '"lie-poisson", "manakov"]')]
 ADVECTED = ("[hamiltonian]", 'S = { role = "advected", representation = "ROLE" }\n[hamiltonian]')
+#: Four velocities that the kinetic energy couples, along a frame.
+COUPLED = f"""
+title = "A chain"
+routes = ["nonholonomic", "hamel"]
+[variables]
+q = {{ role = "coordinate", shape = [4] }}
+v = {{ role = "velocity", of = "q" }}
+[parameters]
+k = {{ positive = true, default = 1 }}
+[lagrangian]
+l = "2*dot(v, v) + {CHAIN}"
+[claims]
+"""
 TURN = '\n[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\n'
 BY_BRACKETS = (
     'basis = ["A", "B", "C"]\nbrackets = { "[A, B]" = "C", "[B, C]" = "A", "[C, A]" = "B" }'
@@ -228,6 +241,12 @@ ADVICE = [
         "Leave time out.",
         change('\ntime = "s"', ""),
     ),
+    (
+        COUPLED,
+        change("[claims]", '[double_bracket]\nG = "k"\n[claims]'),
+        "Write dissipation of velocities in [dissipation].",
+        change('[double_bracket]\nG = "k"', '[dissipation]\nR = "k*dot(v, v)/2"'),
+    ),
 ]
 
 
@@ -263,6 +282,7 @@ ELSEWHERE = {
     "Add it to routes to have it proved too.": "above",
     "Write constraints as Y == ..., which gives velocities.": "test_nonholonomic.py",
     "Write what presses as a scalar constraint of its own": "test_friction.py",
+    "Add the square of a slip speed to": "test_friction.py",
     "Remove ": "above, and test_friction.py",
     "Declare that input and name it": "test_driving.py",
     "Declare the functions: [poisson] nambu = [...].": "test_nambu.py",

@@ -109,5 +109,5 @@ def test_a_section_that_is_none_is_refused(old, new, found):
 def test_a_restriction_keeps_no_bracket():
     """Claimed Casimirs belong to the whole system, which the message says."""
     text = TOP + '\n[reduction]\nsection = { Gamma = "0*Pi" }\n'
-    with pytest.raises(SpecError, match="no bracket"):
+    with pytest.raises(SpecError, match="no declared bracket"):
         spec(text)

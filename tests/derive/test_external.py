@@ -11,6 +11,7 @@ from coadjoint.derive import derive
 from coadjoint.derive.mechanics import external
 from coadjoint.errors import DerivationError, SpecError
 from coadjoint.prove import Verdict
+from coadjoint.prove.energy import Balance
 from tests.sources.test_multipliers import written_out
 from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
@@ -236,13 +237,70 @@ def test_a_force_asks_for_a_mass_matrix_that_can_be_inverted():
         derive(spec(OSCILLATORS, ("m*(v1^2 + v1*v2 + v2^2)", "m*v1^2")))
 
 
-def test_a_force_along_a_matrix_is_a_vector_of_what_acts_along_its_components():
-    """A matrix is refused with what is expected; the advice is followed and leads on."""
+def with_force(text, force):
+    """A declaration whose matrix has another force along it."""
+    return spec(text, ('V = "f"', f'V = "{force}"'), ("f = { shape = [3], default = 1 }", FORCE))
+
+
+FORCE = 'F = { shape = [3], form = "symmetric", default = 1 }\nA = { shape = [2, 2], default = 1 }'
+
+
+def test_a_force_along_a_matrix_is_a_matrix_or_a_vector_along_its_components():
+    """What is neither is refused with what is expected; the advice is followed and leads on."""
     with pytest.raises(SpecError) as caught:
-        spec(MATRIX, ('V = "f"', 'V = "-V"'), ("f = { shape = [3], default = 1 }", ""))
+        with_force(MATRIX, "hat(vector(1, 2, 3))")
     said = str(caught.value)
-    assert "the value is a 2 by 2 matrix; expected a 3-vector, along the components" in said
-    assert "V11, V12, V22 of the matrix 'V'" in said
+    assert "the value is a 3 by 3 matrix; expected a 3-vector, along the components" in said
+    assert "V11, V12, V22 of the matrix 'V', or a 2 by 2 matrix that is symmetric" in said
     advice = said.partition("Write ")[2].partition(" for ")[0]
     assert advice == "vector(V11, 0, 0)"
-    assert spec(MATRIX, ('V = "f"', f'V = "{advice}"'), ("f = { shape = [3], default = 1 }", ""))
+    with pytest.raises(DerivationError, match="the value is not symmetric"):
+        derive(with_force(MATRIX, "A"))
+    assert with_force(MATRIX, advice)
+
+
+@pytest.mark.parametrize("route", ["euler-lagrange", "canonical"])
+def test_a_matrix_force_is_added_to_the_rate_of_the_momentum_matrix(route):
+    """``dP/dt = F`` where ``tr(P dS/dt)`` pairs; its power ``tr(F V)`` is that of the energy."""
+    declared = with_force(MATRIX, "F - P")
+    found = derive(declared, route)
+    rates = dict(zip(found.variables, found.rates, strict=True))
+    names = ("11", "12", "22")
+    forces = [sympy.Symbol(f"F{n}") - sympy.Symbol(f"P{n}") for n in names]
+    assert same([rates[f"P{n}"] for n in names], forces)
+    certificate = prove_claims(declared)
+    (law,) = [c for c in certificate.claims if "changes by the power" in c.statement]
+    assert law.verdict is Verdict.PROVED
+    motion = Balance(found)
+    field, P = motion.field, [found.setting.field[f"P{n}"] for n in names]
+    p11, p12, p22 = (field[f"F{n}"] - p for n, p in zip(names, P, strict=True))
+    by_hand = p11 * field["V11"] + 2 * p12 * field["V12"] + p22 * field["V22"]
+    assert field.is_zero(motion.power - by_hand)
+
+
+BODY = """
+title = "A body in four dimensions, pushed"
+routes = ["euler-poincare", "lie-poisson"]
+[algebra]
+name = "so(4)"
+[variables]
+Omega = { role = "velocity", form = "antisymmetric" }
+M = { role = "momentum", form = "antisymmetric" }
+[parameters]
+J = { shape = [4], positive = true, default = [1, 2, 3, 4] }
+[inputs]
+T = { shape = [6], form = "antisymmetric", default = 0 }
+[lagrangian]
+l = "trace(Omega*diag(J)*transpose(Omega))/2"
+[forces]
+Omega = "FORCE"
+"""
+
+
+def test_a_matrix_force_along_an_algebra_is_the_vector_of_its_entries():
+    """On so(4), declared both ways; and a force that is not antisymmetric is refused."""
+    vector = "vector(T12 - M12, T13 - M13, T14 - M14, T23 - M23, T24 - M24, T34 - M34)"
+    whole, along = (derive(spec(BODY, ("FORCE", force))).rates for force in ("T - M", vector))
+    assert same(whole, along)
+    with pytest.raises(DerivationError, match="the value is not antisymmetric"):
+        derive(spec(BODY, ("FORCE", "T + diag(J)")))

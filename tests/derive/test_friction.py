@@ -209,10 +209,101 @@ def test_definitions_that_forces_use_are_computed_once():
     assert known["_a1"] == field["u"] + field["l"] * field.call("sin", field["theta"]) * field["om"]
 
 
+DRY = ("sqrt(slip^2 + eps^2)", "sqrt(slip^2)")
+#: On a belt that runs with the speed eps.
+BELT = ("sqrt(slip^2 + eps^2)", "sqrt((slip - eps)^2)")
+#: A particle with dry friction on a route without constraints, by forces or Rayleigh's function.
+SLIDER = """
+title = "A particle on a rough plane"
+routes = ["euler-lagrange", "canonical"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "q" }
+[parameters]
+mu = { positive = true, default = 1 }
+slow = { default = 1 }
+[lagrangian]
+l = "dot(v, v)/2 - dot(q, q)/2"
+"""
+SLIDES = SLIDER + '[forces]\nv = "-mu*v/norm(v)"\n'
+LOGS = SLIDER + '[forces]\nv = "mu*log(dot(v, v))*v"\n'
+LOSES = SLIDER + '[dissipation]\nR = "mu*norm(v)"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "root", "slow"),
+    [
+        (ROD, [DRY], DRY[1], "sqrt(slip^2 + eps^2)"),
+        (ROD, [BELT], BELT[1], "sqrt((slip - eps)^2 + eps^2)"),
+        (SLIDES, [], "norm(v)", "sqrt(dot(v, v) + slow^2)"),
+        (LOGS, [], "dot(v, v))*v", "dot(v, v) + slow^2)*v"),
+        (LOSES, [], "norm(v)", "sqrt(dot(v, v) + slow^2)"),
+    ],
+)
+def test_friction_without_a_slip_speed_or_a_domain_is_refused(text, changes, root, slow):
+    """The error points at the force; both its ways out are followed and lead on."""
+    with pytest.raises(DerivationError, match="the force has no value where") as caught:
+        derive(spec(text, *changes))
+    assert caught.value.parts["key"] in ("forces.u", "forces.v", "dissipation.R")
+    advice = str(caught.value).partition("or write [domain] with ")[2].removesuffix(".")
+    assert derive(spec(f"{text}[domain]\n{advice}\n", *changes)).exact.rates
+    assert derive(spec(text, *changes, (root, slow))).exact.rates
+
+
+@pytest.mark.parametrize(
+    ("condition", "excludes"),
+    [
+        ("slip > eps", True),
+        ("slip >= eps", False),
+        ("slip - eps >= 0.01", True),
+        ("sqrt((slip - eps)^2) > 0.01", True),
+        ("slip > -eps", False),
+        ("y > 0", False),
+    ],
+)
+def test_a_domain_excludes_zero_slip_or_does_not(condition, excludes):
+    """On the belt zero slip is the speed eps of the foot, and rest is not."""
+    declared = spec(f'{ROD}[domain]\nhere = "{condition}"\n', BELT)
+    if excludes:
+        assert derive(declared).exact.rates
+    else:
+        with pytest.raises(DerivationError, match="as friction at zero slip"):
+            derive(declared)
+
+
+MOMENTUM = ("[parameters]", 'p = { role = "momentum", of = "q" }\n[parameters]')
+HAMILTONIAN = ('l = "dot(v, v)/2 - dot(q, q)/2"', 'h = "dot(p, p)/2 + dot(q, q)/2"')
+ONE_ROUTE = ('"euler-lagrange", "canonical"', '"canonical"')
+
+
+@pytest.mark.parametrize(("least", "excludes"), [("0.01", True), ("-1", False)])
+@pytest.mark.parametrize(
+    "changes",
+    [[MOMENTUM], [MOMENTUM, HAMILTONIAN, ("[lagrangian]", "[hamiltonian]"), ONE_ROUTE]],
+    ids=["lagrangian", "hamiltonian"],
+)
+def test_a_domain_of_momenta_excludes_zero_slip_or_does_not(changes, least, excludes):
+    """The momenta at rest are those of the Lagrangian or the Hamiltonian: zero."""
+    declared = spec(f'{SLIDES}[domain]\nmoves = "dot(p, p) > {least}"\n', *changes)
+    if excludes:
+        assert derive(declared).exact.rates
+    else:
+        with pytest.raises(DerivationError, match="as friction at zero slip"):
+            derive(declared)
+
+
+@pytest.mark.parametrize(
+    "force", ["-mu*norm(v)*v", "-mu*v/(norm(v) + slow)", "-q/norm(q)^3", "v/(mu + v1)"]
+)
+def test_what_has_a_value_at_rest_needs_no_domain(force):
+    """Drag grows with the speed; a law of gravitation has a pole at a position."""
+    assert derive(spec(SLIDES, ("-mu*v/norm(v)", force))).exact.rates
+
+
 def test_friction_that_is_not_regularised_excludes_rest():
     """Coulomb's law with |slip| below has no value at rest, which [domain] keeps out."""
     slipping = '[domain]\nslipping = "slip^2 > eps^2"\n'
-    equations = derive(spec(ROD + slipping, ("sqrt(slip^2 + eps^2)", "sqrt(slip^2)")))
+    equations = derive(spec(ROD + slipping, DRY))
     (condition,) = (element for bound, element in bounds(equations) if bound.name == "slipping")
     field, rest = equations.setting.field, AT | {"u": -2 * SIN / 2}
     assert field.evaluate(condition, rest, Fraction, function) == -16

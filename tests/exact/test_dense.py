@@ -13,6 +13,7 @@ from coadjoint.exact.dense import (
     determinant,
     diagonal,
     dot,
+    hat,
     identity,
     inverse,
     minor,
@@ -83,6 +84,13 @@ def test_sparse_matrices_are_weighted():
         ("none", 15),
     )
     assert diagonal((4, 5)) == ((4, 0), (0, 5))
+
+
+def test_the_hat_of_a_vector_is_its_cross_product():
+    """``hat(a) b = a x b``, against NumPy; and it is antisymmetric."""
+    a, b = (2, 3, 5), (7, 11, 13)
+    assert apply(hat(a), b) == tuple(np.cross(a, b))
+    assert transpose(hat(a)) == scale(-1, hat(a))
 
 
 def test_products_with_zero_are_passed_over():

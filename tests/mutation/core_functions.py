@@ -150,7 +150,12 @@ CORE = (
         "nonholonomic",
         "_forces _project_mass _project_forces",
         systems=("chaplygin_sleigh", "chaplygin_ball_centred"),
-        tests=(*distributions.PARTICLE, *distributions.MOVING_MASS, *distributions.FORCED),
+        tests=(
+            *distributions.PARTICLE,
+            *distributions.MOVING_MASS,
+            *distributions.FORCED,
+            *distributions.FRICTION,
+        ),
         fallacies={
             "_forces: flip inertial": "ad* of the other sign",
             "_forces: drop inertial": "no ad* at all",

@@ -8,11 +8,11 @@ from coadjoint.exact import Field
 from coadjoint.poisson import (
     canonical,
     declare_bracket,
-    freeze_bracket,
     lie_poisson,
     magnetic,
     nambu,
 )
+from coadjoint.theory import freeze_bracket
 
 PAIRS = [(f"r{n}", f"v{n}") for n in (1, 2, 3)]
 

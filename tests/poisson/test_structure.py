@@ -11,11 +11,11 @@ from coadjoint.poisson import (
     PoissonStructure,
     canonical,
     declare_bracket,
-    freeze_bracket,
     lie_poisson,
     nambu,
 )
 from coadjoint.poisson.structure import antisymmetric, compatible_sum
+from coadjoint.theory import freeze_bracket
 
 NAMES = ["so(3)", "se(3)", "so(4)", "sp(4)", "g(3)", "bargmann", "su(3)", "so(2,1)", "h(2)"]
 

@@ -8,8 +8,7 @@ from operator import mul
 
 import pytest
 
-from coadjoint.errors import DerivationError
-from coadjoint.prove import Verdict, prove
+from coadjoint.prove import Verdict
 from coadjoint.prove.almost_poisson import (
     ReducedBracket,
     _inverse_of_numbers,
@@ -17,9 +16,9 @@ from coadjoint.prove.almost_poisson import (
     about_reduced_jacobi,
 )
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.integrability import Basis
 from coadjoint.prove.zero import Decision, decide_zero
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
-from tests.specs import spec
 
 
 def examined(rates):
@@ -121,11 +120,29 @@ def test_forces_stand_beside_the_bracket():
     assert found[statement][1] is Verdict.PROVED
 
 
-def test_moving_constraints_have_no_bracket_with_the_energy():
-    """Where u == k the energy is not H, and nothing is emitted or claimed."""
+def test_moving_constraints_add_a_drift_to_the_bracket():
+    """Where u == k the energy is not H, and no kernel computes the bracket."""
     moving = ("u == 0", "u == k")
-    assert examined(motion(SLEIGH, moving)) == {}
+    found = examined(motion(SLEIGH, moving))
+    assert {verdict for _, verdict in found.values()} == {Verdict.PROVED}
+    law = "the motion of (M_omega, M_v) is the bracket with H and the drift along beta"
+    assert found[law] == ("bracket", Verdict.PROVED)
+    assert any(text.endswith("and H = E - <p, beta>") for text in found)
     assert motion(SLEIGH, moving).equations.exact.poisson_tensor is None
+
+
+@pytest.mark.parametrize("change", ["k", "k*m", "t*k"])
+def test_the_energy_is_not_h_where_constraints_move(change, monkeypatch):
+    """With H = E in its place the gradient is another one."""
+    timed = ("[lagrangian]", '[time]\nname = "t"\n[lagrangian]') if "t" in change else ("", "")
+    rates = motion(SLEIGH, ("u == 0", f"u == {change}"), timed)
+    found = examined(rates)
+    assert {verdict for _, verdict in found.values()} == {Verdict.PROVED}
+    drift = Basis.drift.func
+    monkeypatch.setattr(Basis, "drift", property(lambda self: tuple(0 * x for x in drift(self))))
+    bracket = ReducedBracket(rates.equations)
+    assert decide_zero(bracket.gradient_defects(), rates.field).verdict is Verdict.REFUTED
+    assert decide_zero(bracket.motion_defects(rates), rates.field).verdict is Verdict.REFUTED
 
 
 def test_kept_constraints_emit_no_bracket():
@@ -194,15 +211,3 @@ def test_matrices_of_numbers_are_inverted_by_elimination():
     assert product == [[int(i == j) for j in range(3)] for i in range(3)]
     with pytest.raises(ZeroDivisionError):
         _inverse_of_numbers([[Fraction(1), Fraction(2)], [Fraction(2), Fraction(4)]])
-
-
-def test_affine_constraints_have_no_bracket_with_the_energy():
-    """The surface moves; what the message says to claim in its place is proved."""
-    rise = ('"w == y*u"', '"w == y*u + k"')
-    asked = ('conserved = ["energy"]', 'casimirs = ["k"]')
-    with pytest.raises(DerivationError, match=r"affine term.*Name what is conserved in claims"):
-        prove(spec(PARTICLE, rise, asked))
-    named = ('conserved = ["energy"]', 'conserved = ["v"]')
-    found = {claim.statement: claim.verdict for claim in prove(spec(PARTICLE, rise, named)).claims}
-    assert set(found.values()) == {Verdict.PROVED}
-    assert "v is conserved" in found

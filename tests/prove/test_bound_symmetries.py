@@ -4,9 +4,9 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.errors import DerivationError, SpecError
+from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict, bound_symmetries, prove
-from coadjoint.prove.bound_symmetries import about_constrained_symmetries
+from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from tests.constrained import BALL, PARTICLE, SLEIGH, motion
 from tests.prove.test_momenta import AXIAL
 from tests.specs import spec
@@ -65,7 +65,7 @@ TURNED = '[symmetries.J]\nalgebra = "so(2)"\nvector = "b"\ngenerators = { phi = 
 
 def examined(text, *changes):
     """Verdict by statement."""
-    claims = list(about_constrained_symmetries(motion(text, *changes)))
+    claims = list(about_motion_symmetries(motion(text, *changes)))
     assert {kind for _, kind, _ in claims} <= {"symmetry", "momentum"}
     return {statement: examine().verdict for statement, _, examine in claims}
 
@@ -234,8 +234,68 @@ def test_brackets_under_constraints_claim_no_flow():
 
 
 def test_a_momentum_that_nothing_gives_is_declared():
-    """Over an algebra no bracket generates it; time has the energy for a momentum."""
+    """Over an algebra no bracket generates it."""
     with pytest.raises(DerivationError, match="Declare the momentum map as map"):
         derive(spec(BALL + SPIN, *AXIAL, ('map = "a*I3*Omega3"\n', "")))
-    with pytest.raises(SpecError, match=r"time moves under \[constraints\]"):
-        spec(PARTICLE + MOVED + 'time = "a[1]"\n')
+
+
+STILL = """
+[symmetries.J]
+algebra = "so(2)"
+vector = "a"
+generators = { x = "0*a" }
+time = "a"
+"""
+CONSTRAINTS = ["w == y*u", "2*w == 2*y*u", "w == y*u + k", "2*w == 2*y*u + 2*k"]
+
+
+@pytest.mark.parametrize("constraint", CONSTRAINTS)
+def test_a_shift_of_time_has_minus_the_energy_for_a_momentum(constraint):
+    """The energy is conserved, or changes by the work k lambda of the surface that moves."""
+    found = examined(PARTICLE + STILL, ("w == y*u", constraint))
+    assert set(found.values()) == {Verdict.PROVED}
+    conserved = "J is conserved, by its momentum equation" in found
+    assert conserved == ("k" not in constraint)
+    if not conserved:
+        (law,) = (text for text in found if text.startswith("dJ/dt"))
+        factor = "2*" if constraint.startswith("2") else ""
+        assert law.replace("blade_reaction*k", "k*blade_reaction") == (
+            f"dJ/dt = -{factor}k*blade_reaction"
+        )
+
+
+TIMED = ("[lagrangian]", '[time]\nname = "t"\n[lagrangian]')
+SLOWER = (TIMED, ('time = "a"', 'time = "a*t"'))
+
+
+@pytest.mark.parametrize("constraint", CONSTRAINTS[:2])
+def test_motions_of_kinetic_energy_alone_may_be_slower(constraint):
+    """Velocities change by -xi; J = -E t has the rate -E."""
+    found = examined(PARTICLE + STILL, ("w == y*u", constraint), *SLOWER)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "the flow of J keeps the constraints" in found
+    assert any(text.startswith("dJ/dt = -") for text in found)
+
+
+@pytest.mark.parametrize(
+    ("change", "statement"),
+    [
+        (("(u^2 + v^2 + w^2)/2", "(u^2 + v^2 + w^2)/2 - k*x"), "takes motions to motions"),
+        (("w == y*u", "w == y*u + k"), "keeps the constraints"),
+        (("w == y*u", "2*w == 2*y*u + k"), "keeps the constraints"),
+    ],
+)
+def test_slower_motions_in_a_field_or_on_a_moving_surface_are_others(change, statement):
+    """A potential and an affine term have scales of their own."""
+    found = refuted(examined(PARTICLE + STILL, change, *SLOWER))
+    assert any(statement in text for text in found)
+
+
+def test_time_on_a_surface_whose_speed_changes_is_no_symmetry():
+    """With dz = y dx + k t dt the constraint is another one later; k t u^0 in place of k."""
+    later = ("w == y*u", "w == y*u + k*t")
+    found = refuted(examined(PARTICLE + STILL, TIMED, later))
+    assert any("keeps the constraints" in text for text in found)
+    lifted = ('{ x = "0*a" }', '{ z = "a*k*t" }')  # the surface, in time, moves with z
+    found = examined(PARTICLE + STILL, TIMED, later, lifted)
+    assert found["the flow of J keeps the constraints"] is Verdict.PROVED

@@ -3,11 +3,8 @@
 import pytest
 
 from coadjoint.derive import derive
-from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict
 from coadjoint.prove.almost_poisson import ReducedBracket
-from coadjoint.prove.carried import carry_over
-from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.integrals import is_conserved
 from tests.constrained import PARTICLE
 from tests.specs import prove_claims, spec
@@ -135,14 +132,6 @@ def test_casimirs_of_an_almost_poisson_bracket():
     assert verdicts(PARTICLE, other)["{z, u*(1 + y^2)} = y/m"] is Verdict.PROVED
     turned = ('conserved = ["energy"]', 'brackets = { "{z, u*(1 + y^2)}" = "-y/m" }')
     assert verdicts(PARTICLE, turned)["{z, u*(1 + y^2)} = -y/m"] is Verdict.REFUTED
-
-
-def test_affine_constraints_leave_no_bracket():
-    """The message says what to claim instead."""
-    text = PARTICLE.replace('conserved = ["energy"]', 'casimirs = ["x"]')
-    along = motion_of(derive(spec(text, ('"w == y*u"', '"w == y*u + k"'))))
-    with pytest.raises(DerivationError, match="Name what is conserved in claims"):
-        carry_over(along)
 
 
 def test_a_transformation_of_a_sleigh_keeps_its_constraint():

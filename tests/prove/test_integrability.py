@@ -118,7 +118,9 @@ def test_constraints_that_are_kept_are_solved_for_a_velocity():
     assert statement.startswith("the constraint is integrable")
     assert verdict is Verdict.PROVED
     kept = ("w == y*u", "w - y*u == 0")
-    assert set(values(PARTICLE, kept)) == {"blade([D_v, D_w])"}
+    assert set(values(PARTICLE, kept)) == {"blade([D_u, D_v])"}  # w has the coefficient 1
+    poles = ("w == y*u", "x*w == x*y*u")
+    assert set(values(PARTICLE, poles)) == {"blade([D_v, D_w])"}
     assert found(PARTICLE, kept)[0][0].startswith("the constraint is not integrable")
 
 

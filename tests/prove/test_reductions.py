@@ -196,7 +196,7 @@ def test_spoiled_friction_breaks_the_balance_on_the_section(factor, monkeypatch)
         (('section = { q2 = "q1", p2 = "p1" }', 'section = { q2 = "q1", v2 = "p1" }'), "variable"),
         (('p2 = "p1" }', 'p2 = "m*v1" }'), "'v1' is a velocity"),
         (('"p1 - p2"]', '"v1 - v2"]'), "'v1' is a velocity"),
-        (("[hamiltonian]", '[lagrangian]\nl = "v1^2"\n[hamiltonian]'), "spec of the whole system"),
+        (("[hamiltonian]", '[lagrangian]\nl = "v1^2"\n[hamiltonian]'), "Remove .lagrangian."),
     ],
 )
 def test_a_section_is_over_the_state(change, said):

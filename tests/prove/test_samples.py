@@ -112,6 +112,10 @@ RELATED = {
         ("phi + theta", "phi", "theta"),
         lambda c, s: c[0] - c[1] * c[2] + s[1] * s[2],
     ),
+    "difference": (
+        ("phi - theta", "phi", "theta"),
+        lambda c, s: s[0] - s[1] * c[2] + c[1] * s[2],
+    ),
     "shift": (
         ("phi + alpha", "phi - alpha", "2*alpha"),
         lambda c, s: c[2] - c[0] * c[1] - s[0] * s[1],

@@ -198,3 +198,29 @@ def test_the_method_names_relations_of_functions_that_are_gone(integral, method)
     (one,) = (each for each in found if each.statement == f"{integral} is conserved")
     assert one.verdict is Verdict.PROVED
     assert one.method.startswith(method)
+
+
+def with_metric(G):
+    """A rigid body with a double bracket."""
+    return spec(RIGID_BODY, ("[claims]", f'[double_bracket]\nG = "{G}"\n[claims]'))
+
+
+@pytest.mark.parametrize(
+    ("G", "said"),
+    [
+        ("-I1", r"semidefinite\. At I1 = \S+ the smallest eigenvalue is -\S+; expected none below"),
+        ("rows(vector(1, 1, 0), vector(0, 1, 0), vector(0, 0, 1))", "the difference is -1; expect"),
+    ],
+)
+def test_a_refuted_metric_says_which_number_is_wrong(G, said):
+    """An eigenvalue is to be no less than 0, and a difference is to be 0."""
+    with pytest.raises(ClaimError, match=said):
+        prove_claims(with_metric(G)).require()
+
+
+def test_the_advice_about_a_metric_names_its_table():
+    """What is only supported is accepted in [double_bracket], as the message says."""
+    G = "I1 + I1*sin(Pi1)^3"
+    with pytest.raises(ClaimError, match=r'accept = "numerical" in .* in \[double_bracket\]'):
+        prove_claims(with_metric(G)).require()
+    assert prove_claims(with_metric(f'{G}"\naccept = "numerical')).require()

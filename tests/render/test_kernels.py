@@ -104,7 +104,7 @@ def test_every_loop_is_vectorised(context, tmp_path):
     loops = {
         number
         for number, line in enumerate(texts["kernel.c"].splitlines(), 1)
-        if line.strip() == "for (size_t _n = 0; _n < count; ++_n) {"  # zeros have no brace
+        if line.strip() == "for (size_t _n = _first; _n < _last; ++_n) {"
     }
     found = {int(line) for line in re.findall(r"kernel\.c:(\d+):\d+: optimized: loop", report)}
     called = [
@@ -217,6 +217,21 @@ def test_numpy_kernel_refuses_shapes(state, parameters, out, found):
     target = None if out is None else np.empty(out)
     with pytest.raises(ValueError, match=found):
         namespace["rhs"](np.ones(state), np.ones(parameters), target)
+
+
+@pytest.mark.parametrize("size", [1, 5, 12_001])
+def test_numpy_kernel_divides_by_zero(size):
+    """Shared parameters of zero give infinities and NaN, as those of each member do."""
+    namespace = {}
+    exec(render_system(HEAVY_TOP)["kernel.py"], namespace)
+    parameters = np.array([0.0, 2.0, 3.0, 1.0, 9.0, 0.0, 0.0, 1.0])
+    state = np.random.default_rng(0).normal(size=(6, size))
+    for function in (namespace["rhs"], namespace["energy"]):
+        own = function(state, np.repeat(parameters[:, None], size, axis=1))
+        assert not np.isfinite(own).all()
+        assert np.array_equal(function(state, parameters), own, equal_nan=True)
+        if size == 1:
+            assert np.array_equal(function(state[:, 0], parameters), own[..., 0], equal_nan=True)
 
 
 def test_heads_say_where_a_file_comes_from(context):

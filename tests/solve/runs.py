@@ -9,6 +9,7 @@ import numpy as np
 
 from coadjoint.solve.course import Course
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.events import Event
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import kapitza_top, rigid_body
 from tests.driven_specs import POINT
@@ -25,8 +26,38 @@ def check_same(found, solution):
         if ours is not None:
             assert ours.shape == theirs.shape, name
             assert ours.tobytes() == theirs.tobytes(), name
+    for name in ("steps", "rejected", "time_reached"):
+        assert np.array_equal(getattr(found, name), getattr(solution, name)), name
+    assert repr(found.final) == repr(solution.final)
+    assert repr(found.drift) == repr(solution.drift)
+    system = solution.system
+    followed = () if solution.reconstructed is None else system.RECONSTRUCTED.components
+    for name in (*system.STATE.components, *followed):
+        assert np.array_equal(found.first(name), solution.first(name))
+    check_same_events(found.events, solution.events)
     for name in ("system", "status", "message", "settings"):
         assert np.array_equal(getattr(solution, name), getattr(found, name)), name
+
+
+def check_same_events(found, events):
+    """The events of two solutions are equal to the last bit."""
+    assert list(found) == list(events)
+    for name, each in events.items():
+        assert (found[name].event, found[name].batch) == (each.event, each.batch)
+        for part in ("member", "time", "direction", "state", "parameters", "inputs", "undefined"):
+            ours, theirs = getattr(each, part), getattr(found[name], part)
+            assert (ours is None) == (theirs is None), part
+            if ours is not None:
+                assert ours.shape == theirs.shape, part
+                assert ours.tobytes() == theirs.tobytes(), part
+
+
+@cache
+def turn_bodies(batch=()):
+    """A body, or some, with events: some that occur, one that never does, one undefined later."""
+    state = np.random.default_rng(6).normal(size=(3, *batch))
+    asked = ["Pi2", Event("sqrt(Pi1 + 1) == 1", terminal=3, name="third"), "Pi1 == 99"]
+    return rigid_body.simulate(state, (0, 30), samples=4, target="numpy", events=asked)
 
 
 def made(batch=(), **changes):
@@ -49,10 +80,10 @@ def made(batch=(), **changes):
 
 
 @cache
-def follow_sleigh():
+def follow_sleigh(samples=7):
     """A sleigh with its place."""
     return built(FOLLOWED_SLEIGH).simulate(
-        [1, 1], (0, 2), samples=7, target="numpy", reconstruct=True
+        [1, 1], (0, 2), samples=samples, target="numpy", reconstruct=True
     )
 
 
@@ -74,14 +105,30 @@ def shake_top():
     return kapitza_top.simulate(start, (0, 0.2), samples=5, target="numpy")
 
 
+def drive_members(force=None, **options):
+    """Three pushed points, the last of which leaves the finite numbers between two samples."""
+    times = np.array([0.0, 0.5, 1.0])
+    state = np.array([[0.3, 0.1, 1e308], [0.1, 0.2, 1e308]])
+    inputs = times, {"f": [1, 3, 2], "k": np.ones((2, 3))}, "linear"
+    inputs = inputs if force is None else {"f": force}
+    return built(POINT).simulate(state, (0, 1), None, inputs, target="numpy", **options)
+
+
 #: One solution of each kind.
 RUNS = {
     "one": made,
     "reconstructed": follow_sleigh,
+    "the end of what is reconstructed": partial(follow_sleigh, 1),
     "time": shake_top,
     "constant inputs": partial(drive_point, {"f": 1 / 3}),
     "sampled inputs": sample_point,
     "one sample": partial(made, time=np.zeros(1), state=np.ones((3, 1))),
+    "events": turn_bodies,
+    "events of members": partial(turn_bodies, (2, 3)),
     "batch": partial(made, (5,)),
     "batch of two axes": partial(made, (3, 2)),
+    "members on their way": partial(drive_members, samples=4),
+    "the end of members": partial(drive_members, samples=1),
+    "members with constant inputs": partial(drive_members, 1 / 3, samples=3),
+    "members with inputs of each": partial(drive_members, [1, 1 / 3, 2], samples=3),
 }

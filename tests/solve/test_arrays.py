@@ -39,7 +39,7 @@ def test_every_layout_gives_the_right_value(layout, target):
     [
         (STATE * 1j, "complex128"),
         (STATE.astype(object), "object"),
-        (["1", "2", "3"], "<U1"),
+        (["1", "2", "3"], r"state is \['1', '2', '3'\]; expected real numbers"),
         (STATE.astype(np.longdouble), "float128"),
         (np.array([2**60 + 1, 0, 0]), "int64"),
         (STATE > 0, "bool"),
@@ -48,7 +48,7 @@ def test_every_layout_gives_the_right_value(layout, target):
 )
 def test_types_that_would_lose_something_are_refused(state, found):
     """TypeError with the type that was found."""
-    with pytest.raises(KernelTypeError, match=found.replace("<", ".")) as caught:
+    with pytest.raises(KernelTypeError, match=found) as caught:
         rigid_body.rhs(state)
     assert isinstance(caught.value, TypeError)
 
@@ -139,7 +139,7 @@ def test_parameters_per_member_broadcast_with_shared_ones():
         ({"m": -1.0}, "parameter m of heavy_top is -1; expected a positive value"),
         ({"m": np.nan}, "expected a positive value"),
         ({"I2": 0.0}, "parameter I2"),
-        (np.ones(7), r"parameters of heavy_top has the shape \(7,\)"),
+        (np.ones(7), r"the shape of parameters of heavy_top is \(7,\)"),
         ({"m": np.ones(3), "g": np.ones(4)}, "do not fit together"),
         ({"I": [1.0, 2.0, 3.0], "I3": 4.0}, "parameters gives I3 twice"),
         ({"m": np.ones(5)}, r"batch shape \(5,\), the state \(\)"),

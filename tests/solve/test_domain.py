@@ -201,7 +201,7 @@ def test_what_is_not_a_number_is_outside():
     """A pivot or side that overflows to NaN or infinity is refused, not passed over."""
     with pytest.raises(KernelArgumentError, match="is inf; expected a finite value above 0"):
         simulate(built(BALL), {"Omega": [1, 2, 3], "Gamma": [0, 0, 1e200]}, 1)
-    with pytest.raises(KernelArgumentError, match="parameters have nan in row 7"):
+    with pytest.raises(KernelArgumentError, match="r of the parameters is nan"):
         simulate(built(BALL), {"Omega": [1, 2, 3], "Gamma": [0, 0, 1]}, 1, {"r": np.nan})
 
 

@@ -11,15 +11,17 @@ from time import process_time
 import numpy as np
 import pytest
 
-from coadjoint.build import compiler
+from coadjoint.build import compiler, library
 from coadjoint.build.compiler import CompilerWarning, find_compiler
-from coadjoint.errors import OutputError
+from coadjoint.errors import CompilerError, OutputError
+from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import BUILDS
 from coadjoint.render.targets.c import loader
 from coadjoint.render.targets.protocol import FEW
 from coadjoint.solve import kernels
 from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top, kirchhoff, quadrotor, rigid_body
+from tests.programs import HEAVY_TOP
 from tests.solve.systems import pendulum
 
 
@@ -64,16 +66,18 @@ def test_a_bound_call_works_without_a_compiler(monkeypatch, fresh):
 
 
 @pytest.mark.parametrize(
-    "spoil",
+    ("function", "spoil"),
     [
-        "s/= -Gamma2;/= Gamma2;/",  # one entry of the Poisson tensor, in both branches
-        "0,/Omega2 = _p2 [*] Pi2/s//Omega2 = _p2 * Pi1/",  # shared only
-        "s/parameters.3 [*] parameters_stride/parameters[2 * parameters_stride/",  # own only
-        "s/_n < count/_n + 1 < count/",  # the last member is left out
+        # one entry of the Poisson tensor, in both branches
+        ("poisson_tensor", "s/= -Gamma2;/= Gamma2;/"),
+        ("rhs", "0,/Omega2 = _p2 [*] Pi2/s//Omega2 = _p2 * Pi1/"),  # shared only
+        ("rhs", "s/parameters.3 [*] parameters_stride/parameters[2 * parameters_stride/"),  # own
+        # the last member is left out, of rows that are zero and of others
+        ("jacobian", "s/_n < count/_n + 1 < count/;s/_n < _last/_n + 1 < _last/"),
     ],
 )
-def test_every_branch_of_a_wrong_kernel_is_noticed(monkeypatch, fresh, tmp_path, spoil):
-    """Shared and own parameters, all functions, all members: compared before caching."""
+def test_every_branch_of_a_wrong_kernel_is_noticed(monkeypatch, fresh, tmp_path, function, spoil):
+    """Shared and own parameters, any function, all members: compared before caching."""
     real, script = find_compiler().command[0], tmp_path / "traitor"
     script.write_text(
         f"#!/bin/sh\n[ -f kernel.c ] && sed -i '{spoil}' kernel.c\nexec {real} \"$@\""
@@ -82,9 +86,60 @@ def test_every_branch_of_a_wrong_kernel_is_noticed(monkeypatch, fresh, tmp_path,
     system = fresh(heavy_top)
     text = (system.folder / "kernel.c").read_text()
     monkeypatch.setenv("CC", str(script))
-    with pytest.warns(CompilerWarning, match="a wrong kernel was compiled"):
-        system.rhs(np.ones(6))
+    with pytest.warns(CompilerWarning, match=rf"a wrong kernel was compiled: heavy_top.{function}"):
+        system.evaluate(function, np.ones(6))
     assert (system.folder / "kernel.c").read_text() == text
+
+
+def test_what_is_called_first_is_compiled_first(monkeypatch, fresh):
+    """Each function is an object of its own, until all of them are asked for as one."""
+    compiled = []
+    real = library.compile_kernel
+
+    def record(compiler, folder, build, source):
+        compiled.append(source.defines)
+        return real(compiler, folder, build, source)
+
+    monkeypatch.setattr(library, "compile_kernel", record)
+    again = fresh(heavy_top)
+    rendered = render_system(HEAVY_TOP)
+    for name, text in rendered.items():
+        (again.folder / name).write_text(text)
+    again = load_folder(again.folder)
+    state = np.arange(1.0, 7.0)
+    expected = {name: again.evaluate(name, state, target="numpy") for name in again.functions}
+    assert np.array_equal(again.rhs(state), expected["rhs"])
+    assert compiled == [("-DCOADJOINT_ONLY", "-DCOADJOINT_ONLY_RHS")]
+    own = again._kernels._loaded["c"]._libraries["rhs"]
+    with pytest.raises(CompilerError, match="has no function energy"):
+        own.find("energy")
+    again.energy(state)
+    again.rhs(state)
+    assert compiled[1:] == [("-DCOADJOINT_ONLY", "-DCOADJOINT_ONLY_ENERGY")]
+    again.prepare()
+    assert compiled[2:] == [()]
+    another = load_folder(again.folder)
+    for name, value in expected.items():
+        assert np.array_equal(another.evaluate(name, state), value)
+    assert len(compiled) == 3
+    assert len(set(another._kernels._loaded["c"]._libraries.values())) == 1
+
+
+def test_a_function_that_cannot_be_compiled_leaves_the_others_alone(monkeypatch, fresh, tmp_path):
+    """NumPy stands in for what failed, and C computes what was compiled."""
+    real, script = find_compiler().command[0], tmp_path / "weak"
+    script.write_text(
+        '#!/bin/sh\ncase "$*" in *ONLY_ENERGY*) exit 1;; esac\n' + f'exec {real} "$@"'
+    )
+    script.chmod(script.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("CC", str(script))
+    system, state = fresh(heavy_top), np.ones(6)
+    with pytest.warns(CompilerWarning, match="weak failed on kernel.c"):
+        assert np.array_equal(system.energy(state), system.energy(state, target="numpy"))
+    assert np.array_equal(system.rhs(state), system.rhs(state, target="numpy"))
+    chosen = system._kernels._chosen
+    assert chosen["energy", "c"] is chosen["energy", "numpy"]
+    assert chosen["rhs", "c"] is not chosen["rhs", "numpy"]
 
 
 @pytest.mark.parametrize("size", [1, 7, 500, 10_000])
@@ -225,7 +280,7 @@ def test_a_kernel_that_was_verified_says_nothing(fresh):
         ("import math\n", "import math (\n", "cannot be loaded: SyntaxError"),
         ("import math\n", "import no_such_module\n", "cannot be loaded: ModuleNotFoundError"),
         ("ID = ", "NAME = ", "cannot be loaded: AttributeError.*ID"),
-        ("def energy(", "def other(", "has no function energy"),
+        ("def rhs(", "def other(", "has no function rhs"),
         ("out = np.empty(shape + batch)", "out = missing", "does not run: rhs: NameError"),
     ],
 )

@@ -237,3 +237,14 @@ def test_a_system_that_reconstructs_nothing_says_so():
     """The free rigid body follows its momentum alone."""
     with pytest.raises(KernelArgumentError, match="rigid_body reconstructs nothing"):
         rigid_body.simulate([1, 2, 3], (0, 1), reconstruct=True)
+
+
+def test_the_end_alone_still_has_its_start():
+    """What is reconstructed begins where it did, though no sample has it; a file keeps it."""
+    run = {"target": "numpy", "reconstruct": True}
+    whole = built(FOLLOWED_SLEIGH).simulate([1, 1], (0, 2), samples=7, **run)
+    end = built(FOLLOWED_SLEIGH).simulate([1, 1], (0, 2), samples=1, **run)
+    for name in ("x", "y", "theta"):
+        assert end.first(name).tolist() == whole[name][:1].tolist()
+        assert np.array_equal(end[name], whole[name][-1:])
+    assert end.first("y") == 3

@@ -8,6 +8,7 @@ import multiprocessing
 import pickle
 import shutil
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,47 @@ def test_another_process_computes_the_same(motion, sleigh):
     assert again.state.tobytes() == motion.state.tobytes()
     assert again.system is heavy_top.system
     np.testing.assert_array_equal(rates, sleigh.rhs([1.0, 2.0], target="numpy"))
+
+
+@pytest.mark.parametrize("way", ["fork", "spawn", "forkserver"])
+def test_members_are_shared_among_processes(way):
+    """Solutions of parts of a batch have the bits of the whole, also after threads have run."""
+    state = np.random.default_rng(2).normal(size=(6, 24))
+    whole = heavy_top.simulate(state, (0, 2), samples=3, threads=2)
+    with warnings.catch_warnings(), multiprocessing.get_context(way).Pool(2) as pool:
+        warnings.simplefilter("ignore", DeprecationWarning)  # a fork where there were threads
+        calls = [(state[:, n : n + 8], (0, 2)) for n in (0, 8, 16)]
+        given = {"samples": 3, "threads": 2}
+        running = [pool.apply_async(heavy_top.simulate, call, given) for call in calls]
+        parts = [each.get(timeout=240) for each in running]
+    assert np.array_equal(np.concatenate([part.state for part in parts], axis=1), whole.state)
+    assert np.array_equal(np.concatenate([part.steps for part in parts]), whole.steps)
+    for part in parts:
+        assert part.system is heavy_top.system
+        assert (part.status == "OK").all()
+        assert part.member(7).final == {n: v[7] for n, v in part.final.items()}
+
+
+def test_joblib_runs_simulations(motion):
+    """In worker processes, which pickle by value what they can, as those of dask do."""
+    joblib = pytest.importorskip("joblib", reason="joblib is not installed")
+    call = joblib.delayed(heavy_top.simulate)
+    given = {"samples": 5, "target": "numpy"}
+    found = joblib.Parallel(2)(call(START, (0, 1), **given) for _ in range(2))
+    assert [each.state.tobytes() for each in found] == [motion.state.tobytes()] * 2
+
+
+def test_closures_travel_by_cloudpickle(sleigh):
+    """Dask and joblib send functions of a script so: systems within them stay references."""
+    cloudpickle = pytest.importorskip("cloudpickle", reason="it comes with joblib")
+    rates = sleigh.rhs([1.0, 2.0], target="numpy")
+
+    def ask():
+        return sleigh.rhs([1.0, 2.0], target="numpy")
+
+    sent = cloudpickle.dumps(ask)
+    assert len(sent) < 4000
+    assert np.array_equal(pickle.loads(sent)(), rates)
 
 
 def test_a_folder_that_is_gone_is_named(sleigh):

@@ -10,7 +10,7 @@ from scipy.special import ellipj
 
 from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import CrossCheckError, KernelArgumentError
-from coadjoint.solve import solvers
+from coadjoint.solve import march, solvers
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.solvers import Choice, choose_order
 from coadjoint.systems import heavy_top, kepler, rigid_body
@@ -18,6 +18,7 @@ from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
 from tests.kernels import COMPILER
 from tests.programs import BOUNDED
+from tests.solve.runs import drive_members
 from tests.solve.systems import POLE, build, pendulum
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
@@ -130,6 +131,35 @@ def test_a_batch_has_the_bits_of_single_runs(options, target):
     assert end.drift["energy"].max() > 0
 
 
+@pytest.mark.parametrize("options", [{}, {"method": "dop853"}, {"step": 0.1}], ids=str)
+def test_neighbours_and_their_order_change_no_bit(options, monkeypatch):
+    """Any number of members in any order, in slices and calls of any length, by any threads.
+
+    Some of them end early, so that lanes are given another member on the way.
+    """
+    source = np.random.default_rng(8)
+    state = source.normal(size=(6, 37)) * np.geomspace(0.1, 30, 37)
+    run = {"t": (0, 2), "samples": 5, **options}
+    if "step" not in options:
+        run["max_steps"] = int(np.median(heavy_top.simulate(state, **run).steps))
+    whole = heavy_top.simulate(state, threads=1, **run)
+    assert len(set(whole.status)) > 1
+    for members, threads, work, slice_ in (
+        (source.permutation(37), 1, 1, 256),
+        (source.permutation(37), 4, 3, 4),
+        (np.arange(37)[::-1], 3, 7, 1),
+        (np.arange(9), 2, 16, 8),
+        (np.array([5, 5, 36, 0]), 8, 2, 256),
+        (np.array([36]), 2, 5, 256),
+    ):
+        monkeypatch.setattr(march, "FIRST_WORK", work)
+        monkeypatch.setattr(march, "SLICE", slice_)
+        found = heavy_top.simulate(state[:, members], threads=threads, **run)
+        assert found.state.tobytes() == np.ascontiguousarray(whole.state[:, members]).tobytes()
+        for name in ("steps", "rejected", "time_reached", "status"):
+            assert np.array_equal(getattr(found, name), getattr(whole, name)[members]), name
+
+
 def test_the_targets_have_the_same_bits():
     """Exact C and NumPy, where nothing beyond sqrt is called."""
     state = np.random.default_rng(4).normal(size=(6, 13))
@@ -200,6 +230,17 @@ def test_inputs_over_time_and_of_each_member(tmp_path, method, kind):
         assert np.array_equal(one.state, own.state[:, member])
         assert np.array_equal(own["energy"][member], one["energy"])
         assert own.member(member)["u"].tolist() == one["u"].tolist()
+
+
+def test_a_member_that_stops_has_the_inputs_of_that_time():
+    """Between two samples, where a straight line has neither of their values."""
+    whole = drive_members(samples=4)
+    assert whole.status.tolist() == ["OK", "OK", "NONFINITE"]
+    stopped = whole.member(2)
+    end = stopped.time[-1]
+    assert end not in whole.time
+    assert stopped["f"].tolist() == np.interp(stopped.time, [0, 0.5, 1], [1, 3, 2]).tolist()
+    assert stopped["f"].shape == stopped.time.shape
 
 
 def test_elementary_functions_agree_but_for_roundings(tmp_path):

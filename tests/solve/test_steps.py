@@ -11,7 +11,8 @@ from coadjoint.lower.tableau import END, FIFTH, STAGES, THIRD, dop853
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.steps import rough_log2, rough_power
 from tests.kernels import COMPILER, STRICT
-from tests.programs import HEAVY_TOP, PENDULUM
+from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM
+from tests.solve.systems import EMPTYING
 
 
 def test_rough_logarithms_are_within_a_hundredth():
@@ -73,7 +74,20 @@ def test_estimates_of_the_error_see_orders_five_and_three():
 
 MAIN = """#include "solver.h"
 #include <stdio.h>
+#include <pthread.h>
 #include <stdlib.h>
+enum { WIDTH = 5 + %(state)d * (%(degree)d + 1), ROOM = 11 };
+/* Advance members in short calls, which record their steps. */
+static void *advance(void *given)
+{
+    %(name)s_run *run = given;
+    run->record = calloc(WIDTH * ROOM, 8), run->record_room = ROOM;
+    do
+        run->recorded = 0;
+    while (%(name)s_advance(run));
+    free(run->record);
+    return 0;
+}
 int main(void)
 {
     enum { STATE = %(state)d, PARAMETERS = %(parameters)d, SAMPLES = 5 };
@@ -83,7 +97,7 @@ int main(void)
         size_t *next = calloc(members, 8), *steps = calloc(members, 8);
         size_t *rejected = calloc(members, 8);
         int8_t *status = calloc(members, 1);
-        double parameters[PARAMETERS], knot[1] = {0.0};
+        double parameters[PARAMETERS + 1], knot[1] = {0.0};
         double samples[SAMPLES] = {0.1, 0.11, 0.5, 0.7, 1.0};
         for (size_t i = 0; i < STATE * members; ++i)
             state[i] = 0.5 + 0.01 * (double)i;
@@ -95,10 +109,15 @@ int main(void)
             .parameters = parameters, .knots = knot, .inputs = knot, .slopes = knot, .pieces = 1,
             .samples = samples, .sample_count = SAMPLES, .out = out, .rtol = 1e-8, .atol = 1e-8,
             .size = %(size)s, .max_steps = 1000, .work = 3};
-        while (%(name)s_advance(&run))
-            ;
+        %(name)s_run rest = run;
+        rest.first = run.last = members / 2;
+        pthread_t thread;
+        if (pthread_create(&thread, 0, advance, &rest))
+            return 2;
+        advance(&run);
+        pthread_join(thread, 0);
         for (size_t n = 0; n < members; ++n)
-            if (status[n] != 1 || next[n] != SAMPLES)
+            if (status[n] != %(status)d || (status[n] == 1) != (next[n] == SAMPLES))
                 return 1;
         free(state), free(time), free(step), free(out), free(next), free(steps), free(rejected);
         free(status);
@@ -106,25 +125,62 @@ int main(void)
     return 0;
 }
 """
-RUNS = {"taylor": (HEAVY_TOP, "ORDER=9", "0.0"), "dop853": (PENDULUM, "DOP853", "0.0")}
-RUNS["rk4"] = (HEAVY_TOP, "RK4", "0.03")
+#: System, method, degree of its polynomials, fixed step, and the status of all members.
+RUNS = {
+    "taylor": (HEAVY_TOP, "ORDER=9", 9, "0.0", 1),
+    "dop853": (PENDULUM, "DOP853", 7, "0.0", 1),
+    "rk4": (HEAVY_TOP, "RK4", 3, "0.03", 1),
+    "limits": (BOUNDED, "ORDER=6", 6, "0.0", 5),
+    "branches": (EMPTYING, "ORDER=6", 6, "0.0", 1),
+}
+
+
+SANITIZERS = ("address,undefined", "thread")
 
 
 @pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
-@pytest.mark.parametrize("method", RUNS)
-def test_the_sanitizers_find_nothing(method, tmp_path):
-    """Solvers run under the address and undefined-behaviour sanitizers with odd numbers."""
-    context, define, size = RUNS[method]
+@pytest.mark.parametrize(
+    ("name", "sanitizers"),
+    [
+        pytest.param(name, each, marks=[pytest.mark.campaign] * (name != "limits"))
+        for name in RUNS
+        for each in SANITIZERS
+    ],
+)
+def test_the_sanitizers_find_nothing(name, sanitizers, tmp_path):
+    """Solvers run in two threads under sanitizers with odd numbers of members, and record steps."""
+    assert run_under(sanitizers, name, MAIN, tmp_path) == 0
+
+
+@pytest.mark.campaign
+@pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+@pytest.mark.parametrize(
+    ("sanitizers", "good", "bad"),
+    [
+        ("address,undefined", "calloc(WIDTH * ROOM, 8)", "calloc(WIDTH * 2, 8)"),
+        ("thread", "rest.first = run.last", "rest.last = run.last"),
+    ],
+)
+def test_the_sanitizers_see_what_is_wrong(sanitizers, good, bad, tmp_path):
+    """A record with room for a number too few, and two threads with the same members."""
+    assert good in MAIN
+    assert run_under(sanitizers, "limits", MAIN.replace(good, bad), tmp_path) != 0
+
+
+def run_under(sanitizers, name, main, folder):
+    """The exit status of a driver of some solver that is compiled with sanitizers."""
+    context, define, degree, size, status = RUNS[name]
     texts = render_system(context)
     rhs = next(each for each in context.programs if each.name == "rhs")
     sizes = {"state": len(rhs.state), "parameters": len(rhs.parameters)}
-    main = MAIN % {**sizes, "name": context.name, "size": size}
-    for file, text in {"main.c": main, **texts}.items():
-        if file in ("main.c", "solver.c", "solver.h"):
-            (tmp_path / file).write_text(text)
-    flags = ["-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+    sizes |= {"degree": degree, "status": status}
+    texts |= {"main.c": main % {**sizes, "name": context.name, "size": size}}
+    for file in ("main.c", "solver.c", "solver.h"):
+        (folder / file).write_text(texts[file])
+    flags = ["-g", "-O1", f"-fsanitize={sanitizers}", "-fno-sanitize-recover=all", "-pthread"]
     command = [shutil.which("gcc") or COMPILER, *STRICT, *flags, f"-D{define}"]
     command += ["main.c", "solver.c", "-o", "main", "-lm"]
-    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    subprocess.run(command, cwd=folder, check=True, capture_output=True)
     environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # leaks need ptrace
-    subprocess.run([str(tmp_path / "main")], check=True, env=environment)
+    done = subprocess.run([str(folder / "main")], check=False, env=environment, capture_output=True)
+    return done.returncode

@@ -66,6 +66,8 @@ def test_a_table_of_members_has_one_row_for_each_and_time(tmp_path):
         ("3.141592653589793,", "three,", "could not convert string to float: 'three'"),
         ("3.141592653589793,", "", "inhomogeneous"),
         ("# batch: []", "# batch: [", "Expecting value"),
+        ("# course: {}", '# course: {"start": {}}', "its course is damaged"),
+        ("# course: {", "# other: {", "does not say its course"),
     ],
 )
 def test_a_spoiled_table_is_refused(old, new, message, tmp_path):

@@ -28,7 +28,7 @@ from coadjoint.exact.dense import (
 )
 from coadjoint.exact.dense import product as matmul
 from coadjoint.groups.complex_numbers import Complex, I, adjoint
-from coadjoint.groups.quaternions import Coquaternion, Quaternion, euler_rodrigues
+from coadjoint.groups.quaternions import Quaternion, euler_rodrigues
 from coadjoint.groups.vector_fields import VectorField
 from coadjoint.theory.central_forces import (
     alignment,
@@ -45,6 +45,7 @@ from coadjoint.theory.central_forces import (
     point_motion,
 )
 from coadjoint.theory.charts import north_point
+from coadjoint.theory.coquaternions import Coquaternion, pauli
 from coadjoint.theory.hopf import (
     amplitudes,
     canonical_bracket,
@@ -133,7 +134,7 @@ def test_3_1_the_table_of_quaternions():
     assert J[0] * J[2] * J[1] == one
     for a, sigma in zip(J, PAULI, strict=True):
         assert a * a == -one
-        assert a.pauli() == scaled_matrix(-I, sigma)
+        assert pauli(a) == scaled_matrix(-I, sigma)
     for a, b in product(range(3), repeat=2):
         expected = [epsilon(a, b, c) for c in range(3)]
         assert (J[a] * J[b]).components == (-int(a == b), *expected)
@@ -150,9 +151,9 @@ def test_3_1_1_pauli_isomorphism(field):
     by_hand = scaled_matrix(q.w, identity(2))
     for component, sigma in zip(q.vector, PAULI, strict=True):
         by_hand = add(by_hand, scale(-I * component, sigma))
-    assert q.pauli() == by_hand
-    assert (q * r).pauli() == matmul(q.pauli(), r.pauli())
-    mirrored = [x.conjugate.pauli() for x in (q, r, q * r)]
+    assert pauli(q) == by_hand
+    assert pauli(q * r) == matmul(pauli(q), pauli(r))
+    mirrored = [pauli(x.conjugate) for x in (q, r, q * r)]
     assert mirrored[2] != matmul(mirrored[0], mirrored[1])
 
 
@@ -337,7 +338,7 @@ def test_3_2_1_cayley_klein_parameters(field):
     """``q`` = [cos theta/2, sin theta/2 n] is exp(-i theta n.sigma/2), a turn by theta about n."""
     theta, n, v = field["theta"], unit_vector(field), vector(field, "v")
     q = cayley_klein(field, theta, n)
-    U = q.pauli()
+    U = pauli(q)
 
     def by_theta(z):
         return Complex(*(field.derivative(part, "theta") for part in (z.re, z.im)))
@@ -375,7 +376,7 @@ def test_3_2_1_rotation_against_expm(theta):
 def test_3_2_2_3_tilde_map(field):
     """p~ q~ = -p.q + (p x q)~, [p~, q~] = 2 (p x q)~, and -(i/2) sigma is an isomorphism."""
     p, q = vector(field, "q"), vector(field, "r")
-    assert tilde(p) == Quaternion.pure(p).pauli()
+    assert tilde(p) == pauli(Quaternion.pure(p))
     by_hand = combine((1, tilde(cross(p, q))), (-dot(p, q), identity(2)))
     assert matmul(tilde(p), tilde(q)) == by_hand
     bracket = commutator(tilde(p), tilde(q))
@@ -458,7 +459,7 @@ def test_3_2_6_hopf_map_is_equivariant(plane):
     """``a`` -> U a turns n by the rotation of U in SU(2), not by its inverse."""
     q = Quaternion(*(plane[f"c{k}"] for k in range(4)))
     n0, *n = hopf_map(amplitudes(plane))
-    turned = hopf_map(apply(q.pauli(), amplitudes(plane)))
+    turned = hopf_map(apply(pauli(q), amplitudes(plane)))
     assert turned[0] == q.norm * n0
     assert turned[1:] == scale(q.norm, apply(euler_rodrigues(q), n))
     assert turned[1:] != scale(q.norm, apply(transpose(euler_rodrigues(q)), n))

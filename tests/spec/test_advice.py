@@ -44,6 +44,7 @@ v = { role = "velocity", of = "q" }
 h = "v^2/2 + q^2/2"
 [claims]
 """
+CANONICAL_ROUTE = 'routes = ["canonical"]'
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
 ONE = 'routes = ["euler-poincare"]'
@@ -190,21 +191,33 @@ ADVICE = [
     ),
     *(
         (
-            PARTICLE,
-            [('"w == y*u"', '"2*w == y*u"'), ("[claims]", f"[claims]\n{asked}")],
-            "Solve the constraints for velocities, as w == y*u, or name what is conserved in",
+            MASSLESS,
+            [
+                ('routes = ["poisson"]\n[poisson]\ncanonical = [["q", "v"]]', CANONICAL_ROUTE),
+                (END, '[double_bracket]\nG = "1"\n[claims]'),
+            ],
+            "Declare [lagrangian] and a route that takes it, or [poisson].",
             done,
         )
-        for asked in ('casimirs = ["m"]', 'brackets = { "{x, u}" = "m" }')
-        for done in ([('"2*w == y*u"', '"w == y*u/2"')], [(asked, "")])
+        for done in (
+            [
+                (CANONICAL_ROUTE, 'routes = ["euler-lagrange"]'),
+                ('[hamiltonian]\nh = "v^2/2 + q^2/2"', '[lagrangian]\nl = "v^2/2 - q^2/2"'),
+            ],
+            write(CANONICAL_ROUTE, f'{CANONICAL_ROUTE}\n[poisson]\ncanonical = [["q", "v"]]'),
+        )
     ),
-    (
-        PARTICLE,
-        before_claims(
-            '[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\ngenerators = { x = "s" }\ntime = "s"'
-        ),
-        "Remove time: the balance of the energy is proved of every motion.",
-        write('\ntime = "s"', ""),
+    *(
+        (
+            PARTICLE,
+            before_claims(table),
+            f"Remove {name}, and write dissipation of velocities in [dissipation].",
+            write(table, '[dissipation]\nR = "k*(u^2 + v^2)/2"'),
+        )
+        for name, table in (
+            ("[double_bracket]", '[double_bracket]\nG = "m"'),
+            ("[metriplectic]", '[metriplectic]\nG = "m"\nS = "m"'),
+        )
     ),
     (
         MASSLESS,
@@ -513,6 +526,15 @@ ADVICE = [
         'Without one, declare an angle: theta = "omega".',
         write('q = { attitude = "quaternion" }', 'theta = "omega"'),
     ),
+    (
+        MOMENTA_ONLY,
+        write("[hamiltonian]", '[reconstruction]\nq = { attitude = "quaternion" }\n[hamiltonian]'),
+        'Write Omega = { role = "velocity", block = ["J1", "J2", "J3"] } in [variables].',
+        write(
+            "[reconstruction]",
+            'Omega = { role = "velocity", block = ["J1", "J2", "J3"] }\n[reconstruction]',
+        ),
+    ),
     # -- form of the file
     (
         RIGID_BODY,
@@ -624,6 +646,7 @@ ELSEWHERE = {
     "Write diag(m) for a mass of each row.": "test_newton.py",
     "Write vector(": "tests/derive/test_external.py",
     "Remove the momentum ": "below",
+    "Declare an angle, as theta = ": "test_followed.py",
     "The first is in line ": "names the place",
     "Blocks of ": "names what there is",
     "Declared are ": "names what there is",

@@ -195,24 +195,6 @@ def test_a_route_in_variables_of_its_own_is_not_emitted(route):
     assert list_names(["euler-poincare", "lie-poisson"]) in str(caught.value)
 
 
-KEPT = ('"w == y*u"', '"2*w == y*u"')
-
-
-@pytest.mark.parametrize(
-    ("text", "changes", "table", "found"),
-    [
-        (PARTICLE, (KEPT,), 'casimirs = ["k*m"]', "claims of Casimirs"),
-        (PARTICLE, (KEPT,), 'brackets = { "{u, v}" = "k" }', "claims of brackets"),
-    ],
-)
-def test_what_rests_on_a_bracket_is_refused(text, changes, table, found):
-    """Casimirs and brackets where constraints give no velocity; what would do is named."""
-    with pytest.raises(SpecError, match="with \\[constraints\\]") as caught:
-        spec(text + table, *changes)
-    assert f"there are {found} with [constraints]" in str(caught.value)
-    assert "Solve the constraints for velocities" in str(caught.value)
-
-
 @pytest.mark.parametrize("table", ["[claims]\ngalilean = true", '[lax]\nL = "v"\nM = "v"'])
 def test_what_rests_on_other_routes_is_refused(table):
     """Neither Galilean relativity nor a Lax pair is spoken of beside constraints."""

@@ -101,9 +101,10 @@ h = "x^2 + u*y + t"
 def test_brackets_and_constants_stay(text, constant, problem):
     """Structure constants and brackets know neither time nor inputs."""
     constant = constant if text == ALGEBRA else constant.replace("e3", "x")
-    with pytest.raises(SpecError, match=problem):
+    with pytest.raises(SpecError, match=rf"{problem}.*\. Put a parameter in its place\."):
         spec(text, ("CONSTANT", constant))
-    spec(text, ("CONSTANT", "e3" if text == ALGEBRA else "x"))
+    parameter = ("[inputs]", "[parameters]\nk = { default = 1 }\n[inputs]")
+    assert spec(text, ("CONSTANT", f"k{constant[1:]}"), parameter)
 
 
 def test_definitions_do_not_hide_time():

@@ -4,7 +4,9 @@ from fractions import Fraction
 
 import pytest
 
+from coadjoint.derive import derive
 from coadjoint.errors import SpecError
+from tests.prove.test_reductions import ABOUT_AN_AXIS, IN_STEP
 from tests.rolling import BALL, FOLLOWED_SLEIGH
 from tests.specs import RIGID_BODY, spec
 
@@ -90,10 +92,21 @@ def test_an_attitude_needs_rotations_of_space():
     assert 'theta = "omega"' in str(caught.value)
 
 
-def test_a_restricted_motion_has_nothing_followed():
-    """With [reduction] it is refused, since the algebra is gone."""
-    text = RIGID_BODY.replace('casimirs = ["dot(Pi, Pi)"]', "")
-    text += '[reconstruction]\nz = "Pi1"\n[reduction]\nsection = { Pi = "I" }\n'
-    with pytest.raises(SpecError) as caught:
-        spec(text)
-    assert caught.value.parts["found"] == "reconstruction"
+def test_what_follows_from_a_restricted_motion_may_name_its_section():
+    """q2 is q1 there, so that z = p1 q2 is followed at the rate p1 q1."""
+    text = IN_STEP.replace("[reduction]", '[reconstruction]\nz = "p1*q2"\n[reduction]')
+    equations = derive(spec(text))
+    ((name, rate),) = equations.followed
+    field = equations.setting.field
+    assert name == "z"
+    assert equations.close(rate) == field["p1"] * field["q1"]
+
+
+def test_an_attitude_belongs_to_the_whole_system():
+    """The restricted motion has no algebra; an angle about the axis is followed."""
+    attitude = ("[reduction]", '[reconstruction]\nq = { attitude = "quaternion" }\n[reduction]')
+    with pytest.raises(SpecError, match='Declare an angle, as theta = "omega"') as caught:
+        spec(ABOUT_AN_AXIS, attitude)
+    assert caught.value.parts["found"] == "q"
+    angle = ("[reduction]", '[reconstruction]\nq = "along/I3"\n[reduction]')
+    assert derive(spec(ABOUT_AN_AXIS, angle)).followed

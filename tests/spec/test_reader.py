@@ -152,7 +152,7 @@ SHIPPED = {
         "I1 I2 I3 alpha",
         ("euler-poincare", "lie-poisson", "nambu", "newton-euler"),
     ),
-    "landau_lifshitz_gilbert": ("m1 m2 m3", "gamma alpha B1 B2 B3 K", ("lie-poisson",)),
+    "landau_lifshitz_gilbert": ("m1 m2 m3", "gamma alpha B1 B2 B3 K", ("lie-poisson", "nambu")),
     "quadrotor": (
         " ".join(STATES["quadrotor"]),
         "J1 J2 J3 m g",
@@ -173,7 +173,7 @@ SHIPPED = {
         "I1 I2 I3 m g chi1 chi2 chi3 a w",
         (*ROTATING, "newton-euler"),
     ),
-    "bloch": ("M1 M2 M3", "omega1 omega2 omega3 T1 T2 M0", ("lie-poisson",)),
+    "bloch": ("M1 M2 M3", "omega1 omega2 omega3 T1 T2 M0", ("lie-poisson", "nambu")),
     "lorenz_gyrostat": ("x y z", "sigma r b", ("nambu", "poisson")),
     "bloch_iserles_2": ("X11 X12 X22", "N12", ("lax", *TWO)),
     "bloch_iserles_3": ("X11 X12 X13 X22 X23 X33", "N12 N13 N23", ("lax", *TWO)),

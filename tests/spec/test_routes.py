@@ -160,21 +160,31 @@ def test_slip_in_what_a_route_starts_from_is_refused(text, change, key, found, s
     assert said in str(caught.value)
 
 
-def test_momenta_that_are_no_state_are_never_emitted():
-    """Where the state has velocities, the route canonical is proved equal to another route only."""
-    particle = """
+POINT = """
 title = "x"
-routes = ["canonical", "euler-lagrange"]
+routes = ["FIRST", "OTHER"]
 [variables]
 q = { role = "coordinate" }
 v = { role = "velocity", of = "q" }
 [lagrangian]
 l = "v^2/2"
 """
-    with pytest.raises(SpecError, match="the state has velocities") as caught:
-        spec(particle)
-    assert (caught.value.key, caught.value.found) == ("routes[1]", "canonical")
-    assert spec(particle, ('"canonical", "euler-lagrange"', '"euler-lagrange", "canonical"'))
+
+
+@pytest.mark.parametrize(
+    ("first", "other", "said"),
+    [
+        ("canonical", "euler-lagrange", "the state has velocities"),
+        ("euler-lagrange", "nonholonomic", "here it is there to be proved equal"),
+    ],
+)
+def test_a_route_in_other_variables_is_not_the_first(first, other, said):
+    """Where another route gives the state; put behind that one it is proved equal to it."""
+    with pytest.raises(SpecError, match=said) as caught:
+        spec(POINT, ("FIRST", first), ("OTHER", other))
+    assert (caught.value.key, caught.value.found) == ("routes[1]", first)
+    assert f'Put "{other}" first.' in str(caught.value)
+    assert prove_claims(spec(POINT, ("FIRST", other), ("OTHER", first))).holds
 
 
 @pytest.mark.parametrize("other", ["euler-poincare", "lie-poisson", "clebsch", "newton-euler"])
@@ -190,21 +200,3 @@ def test_routes_of_momenta_are_refused_beside_velocities_in_the_state(other, pla
     assert (caught.value.key, caught.value.found) == (f"routes[{place + 1}]", other)
     assert f'Remove "{other}"' in str(caught.value)
     assert spec(RIGID_BODY, *body, (given[0], '["nonholonomic"]'))
-
-
-def test_a_route_of_coordinates_is_not_the_first_beside_one_in_a_frame():
-    """The advice, to put the other first, is followed and leads on."""
-    particle = """
-title = "x"
-routes = ["euler-lagrange", "nonholonomic"]
-[variables]
-q = { role = "coordinate" }
-v = { role = "velocity", of = "q" }
-[lagrangian]
-l = "v^2/2"
-"""
-    with pytest.raises(SpecError, match="here it is there to be proved equal") as caught:
-        spec(particle)
-    assert 'Put "nonholonomic" first.' in str(caught.value)
-    order = ('"euler-lagrange", "nonholonomic"', '"nonholonomic", "euler-lagrange"')
-    assert prove_claims(spec(particle, order)).holds

@@ -4,7 +4,8 @@ import pytest
 
 from coadjoint.exact import Field
 from coadjoint.exact.dense import cross, dot, identity, product, transpose
-from coadjoint.groups.quaternions import Coquaternion, Quaternion, euler_rodrigues
+from coadjoint.groups.quaternions import Quaternion, euler_rodrigues
+from coadjoint.theory.coquaternions import Coquaternion
 from coadjoint.theory.rotations import AD, Ad_star, ad, unit_quaternion
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import combinations, combinations_with_replacement, permutations, product
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, from_matrices
@@ -56,11 +57,13 @@ def _columns(letter: str, n: int, column: int) -> Generators:
     return ((f"{letter}{i + 1}", unit(i, column)) for i in range(n))
 
 
+@cache
 def so(n: int) -> LieAlgebra:
     """Rotations of R^n; in space ``[J_i, J_j] = epsilon_ijk J_k``."""
     return _algebra(f"so({n})", _rotations(n), {"rotation": _run(0, n * (n - 1) // 2)})
 
 
+@cache
 def so_indefinite(p: int, q: int) -> LieAlgebra:
     """``X^T K + K X = 0`` for K = diag(1, ..., 1, -1, ..., -1) with p and q entries."""
     planes = combinations(range(p + q), 2)

@@ -24,6 +24,7 @@ from coadjoint.algebra.matrices import (
     entries_text,
 )
 from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.exact.dense import total
 from coadjoint.exact.linear import Span, exact
 from coadjoint.limits import GENERATORS
 
@@ -118,22 +119,15 @@ class LieAlgebra(Invariants):
             result[k] = result[k] + multiply_constant(xi[i] * eta[j], c)
         return tuple(result)
 
-    def ad(self, xi: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
-        """Matrix of ``eta -> [xi, eta]``: entry ``[k][j] = c_ij^k xi^i``."""
-        matrix: list[list[Any]] = [[0] * self.dimension for _ in self.basis]
-        for i, j, k, c in self.structure():
-            matrix[k][j] = matrix[k][j] + multiply_constant(xi[i], c)
-        return tuple(map(tuple, matrix))
-
     def ad_star(self, xi: Sequence[Any], mu: Sequence[Any]) -> tuple[Any, ...]:
         """``<ad*_xi mu, eta> = <mu, [xi, eta]>``, so ``(ad*_xi mu)_j = c_ij^k xi^i mu_k``.
 
         On so(3) this is ``mu x xi`` (Holm 2011, section 5.1.3).
         """
-        result: list[Any] = [0] * self.dimension
+        addends: list[list[Any]] = [[0] for _ in self.basis]
         for i, j, k, c in self.structure():
-            result[j] = result[j] + multiply_constant(xi[i] * mu[k], c)
-        return tuple(result)
+            addends[j].append(multiply_constant(xi[i] * mu[k], c))
+        return tuple(map(total, addends))
 
     # -- checks ---------------------------------------------------------------------------
 
@@ -297,10 +291,13 @@ def from_matrices(
         AlgebraError: The matrices are linearly dependent, or a commutator leaves their span.
     """
     span = _independent(name, basis, matrices)
+    rows = [{row for row, _ in matrix} for matrix in matrices]
+    columns = [{column for _, column in matrix} for matrix in matrices]
     brackets = {}
     for i, j in combinations(range(len(basis)), 2):
-        product = commutator(matrices[i], matrices[j])
-        brackets[i, j] = _coordinates(name, span, (basis[i], basis[j]), product)
+        if columns[i] & rows[j] or columns[j] & rows[i]:  # else both products are zero
+            product = commutator(matrices[i], matrices[j])
+            brackets[i, j] = _coordinates(name, span, (basis[i], basis[j]), product)
     return from_brackets(name, basis, brackets, blocks, tuple(dict(m) for m in matrices))
 
 

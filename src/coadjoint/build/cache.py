@@ -188,9 +188,9 @@ def fetch(key: str) -> Path | None:
     """
     with suppress(OSError, OutputError, UnicodeDecodeError):
         folder = cache_folder() / KERNELS
-        digest = _read(folder / key).decode("ascii").strip()
+        digest = read_own(folder / key).decode("ascii").strip()
         path = folder / f"{digest}.so"
-        if digest.isalnum() and hashlib.sha256(_read(path)).hexdigest() == digest:
+        if digest.isalnum() and hashlib.sha256(read_own(path)).hexdigest() == digest:
             note_use(folder / key)
             note_use(path)
             return path
@@ -227,8 +227,12 @@ def store(key: str, content: bytes) -> Path:
     return folder / f"{digest}.so"
 
 
-def _read(path: Path) -> bytes:
-    """The bytes of a regular file of this user; links are not followed."""
+def read_own(path: Path) -> bytes:
+    """The bytes of a regular file of this user; links are not followed.
+
+    Raises:
+        OSError: It is not such a file, or cannot be read.
+    """
     handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(handle, "rb") as file:
         status = os.fstat(handle)

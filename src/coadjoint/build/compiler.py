@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import os
+import platform
 import re
 import resource
 import shutil
@@ -26,6 +27,8 @@ from pathlib import Path
 from threading import Lock
 
 from coadjoint.build import warden
+from coadjoint.build.calling import SUPPORT
+from coadjoint.build.versions import keep_version, recall_version
 from coadjoint.errors import CompilerError, errno_of, remedy_for
 from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
 
@@ -39,7 +42,12 @@ _PLAIN_PROGRAM = re.compile(r"[A-Za-z0-9_./+][A-Za-z0-9_./+-]*")
 #: every operation rounds as NumPy's does. -fno-math-errno lets sqrt be vectorised, same value.
 BUILDS: Mapping[str, str] = {"exact": "-ffp-contract=off", "fast": "-ffp-contract=fast"}
 _FLAGS = ("-std=c11", "-O3", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedantic")
-_NATIVE = "-march=native"
+#: What suits this processor, tried in this order. GCC and clang know registers of 512 bits and
+#: prefer 256 on many processors that have them; without such registers the option says nothing
+#: (docs/decisions/vector-width.md has the figures). Compilers of other processors refuse it.
+_NATIVE, _WIDE = "-march=native", "-mprefer-vector-width=512"
+_IS_X86 = platform.machine().lower() in ("x86_64", "amd64")
+MACHINES = (*(((_NATIVE, _WIDE),) if _IS_X86 else ()), (_NATIVE,), ())
 #: Passes of GCC that take more than half of its time on long straight loops and gain nothing there
 #: (docs/decisions/compiler.md has the figures). The last leaves the members that fill no vector to
 #: scalar code, in the place of a second and third copy of the loop with shorter vectors.
@@ -51,55 +59,6 @@ _GNU = (
 )
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
-#: Names in the second file of every object: of its build, and of the two ways to call a kernel.
-LABEL, CALL, CALL_AT = "coadjoint_build", "coadjoint_call", "coadjoint_call_at"
-#: That file. Converting one argument takes ctypes less time than converting seven or more, so that
-#: arguments are packed: function, number of arrays, members, then place and stride of each array,
-#: the state first and the result last (docs/decisions/loading.md has the figures).
-SUPPORT = """#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-typedef const double *in;
-typedef void kernel3(size_t, in, size_t, in, size_t, double *, size_t);
-typedef void kernel4(size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
-typedef void kernel5(size_t, in, size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
-
-extern const char coadjoint_build[];
-const char coadjoint_build[] = "BUILD";
-
-void coadjoint_call(const uintptr_t *);
-void coadjoint_call_at(const uintptr_t *, size_t, in, double *);
-
-void coadjoint_call(const uintptr_t *c)
-{
-    const uintptr_t *a = c + 3;
-    switch (c[1]) {
-    case 3:
-        ((kernel3 *)c[0])(c[2], (in)a[0], a[1], (in)a[2], a[3], (double *)a[4], a[5]);
-        break;
-    case 4:
-        ((kernel4 *)c[0])(
-            c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (double *)a[6], a[7]);
-        break;
-    default:
-        ((kernel5 *)c[0])(
-            c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (in)a[6], a[7],
-            (double *)a[8], a[9]);
-    }
-}
-
-/* The same at another state of so many members, with another result. */
-void coadjoint_call_at(const uintptr_t *c, size_t members, in state, double *out)
-{
-    uintptr_t own[13], last = 2 * c[1] + 1;
-    memcpy(own, c, (last + 2) * sizeof *own);
-    own[2] = own[4] = own[last + 1] = members;
-    own[3] = (uintptr_t)state;
-    own[last] = (uintptr_t)out;
-    coadjoint_call(own);
-}
-"""
 #: What a driver says of a program that ran out of processor time.
 _OUT_OF_TIME = "CPU time limit exceeded"
 #: Seconds in which a compiler tells its version.
@@ -131,10 +90,15 @@ class Source:
 
     def label(self, name: str) -> str:
         """The symbol of the id that its object carries, for the name of a system."""
-        return f"{name}_id" if self == KERNEL else f"{name}_{self.stem}_id"
+        return f"{name}_id" if self.stem == KERNEL.stem else f"{name}_{self.stem}_id"
 
 
 KERNEL = Source()
+
+
+def one_function(name: str) -> Source:
+    """One function of a kernel, which is compiled sooner than all of them."""
+    return Source(defines=("-DCOADJOINT_ONLY", f"-DCOADJOINT_ONLY_{name.upper()}"))
 
 
 @dataclass(frozen=True)
@@ -151,10 +115,11 @@ class Compiler:
     version: str
     is_gnu: bool = False
 
-    def flags(self, build: str, source: Source = KERNEL, *, native: bool = True) -> tuple[str, ...]:
-        """Options for one build of a source, ``exact`` or ``fast``."""
+    def flags(
+        self, build: str, source: Source = KERNEL, *, machine: tuple[str, ...] = MACHINES[0]
+    ) -> tuple[str, ...]:
+        """Options for one build of a source, ``exact`` or ``fast``, on one of `MACHINES`."""
         own = _GNU if self.is_gnu and source.is_loops else ()
-        machine = [_NATIVE] if native else []
         return (*_FLAGS, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
 
 
@@ -234,6 +199,9 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     Raises:
         CompilerError: It does not answer.
     """
+    known = recall_version(command)
+    if known is not None:
+        return Compiler(command, *known)
     status, output = _run((*command, "--version"), Path("/"), VERSION_SECONDS, VERSION_SECONDS)
     if status != 0 or not output.strip():
         said = _with_signal(output, status)
@@ -243,7 +211,9 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
             found=command[0],
             status=status,
         )
-    return Compiler(command, output.strip().splitlines()[0], "Free Software Foundation" in output)
+    found = output.strip().splitlines()[0], "Free Software Foundation" in output
+    keep_version(command, found)
+    return Compiler(command, *found)
 
 
 def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source = KERNEL) -> Path:
@@ -260,17 +230,14 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source 
     """
     result = folder / f"{source.stem}.so"
     (folder / "build.c").write_text(SUPPORT.replace("BUILD", build), encoding="ascii")
-    status, output = _attempt(compiler, folder, build, source, native=True)
+    status, output = _attempt(compiler, folder, build, source, MACHINES[0])
     said = _with_signal(output, status)
-    failed_itself = status != 0 and not errno_of(said)  # and met no limit
-    if failed_itself and _attempt(compiler, folder, build, source, native=False)[0] == 0:
-        status = 0  # some compilers and machines do not know -march=native
-        warnings.warn(
-            f"{compiler.command[0]} refuses {_NATIVE}; kernels are compiled without it, which may "
-            "be slower.",
-            CompilerWarning,
-            stacklevel=2,
-        )
+    if status != 0 and not errno_of(said):  # it failed itself, and met no limit
+        for machine in MACHINES[1:]:
+            if _attempt(compiler, folder, build, source, machine)[0] == 0:
+                status = 0
+                _tell_refused(compiler, machine)
+                break
     if status != 0:
         raise CompilerError(
             f"{compiler.command[0]} failed on {source.files[0]} with status {status}: "
@@ -287,15 +254,26 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source 
     return result
 
 
+def _tell_refused(compiler: Compiler, machine: tuple[str, ...]) -> None:
+    """Warn that kernels are compiled with fewer options for this processor."""
+    refused = [option for option in MACHINES[0] if option not in machine]
+    warnings.warn(
+        f"{compiler.command[0]} refuses {' '.join(refused)}; kernels are compiled without it, "
+        "which may be slower.",
+        CompilerWarning,
+        stacklevel=3,
+    )
+
+
 #: First bytes of shared objects: ELF, and Mach-O in its 64-bit and universal forms.
 _MAGIC = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
 
 
 def _attempt(
-    compiler: Compiler, folder: Path, build: str, source: Source, *, native: bool
+    compiler: Compiler, folder: Path, build: str, source: Source, machine: tuple[str, ...]
 ) -> tuple[int, str]:
     """One run of the compiler; status and what it said."""
-    flags, result = compiler.flags(build, source, native=native), f"{source.stem}.so"
+    flags, result = compiler.flags(build, source, machine=machine), f"{source.stem}.so"
     files = (source.files[0], "build.c")
     return _run((*compiler.command, *flags, *files, "-o", result, "-lm"), folder)
 

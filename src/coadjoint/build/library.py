@@ -14,19 +14,16 @@ import platform
 import shutil
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
+from coadjoint.build.calling import CALL, CALL_AT, LABEL, SUPPORT
 from coadjoint.build.compiler import (
     ANOTHER,
-    CALL,
-    CALL_AT,
     KERNEL,
-    LABEL,
-    SUPPORT,
     Compiler,
     Source,
     compile_kernel,
@@ -47,6 +44,7 @@ class Library:
         build: The build that it must say it is, ``exact`` or ``fast``.
         source: SHA-256 of the C file that it was compiled from.
         kind: What that file is.
+        key: Hash of all that the object depends on.
 
     Raises:
         CompilerError: It cannot be loaded, carries another id, or is another build.
@@ -60,8 +58,9 @@ class Library:
         build: str,
         source: str = "",
         kind: Source = KERNEL,
+        key: str = "",
     ) -> None:
-        self.name, self.source = name, source
+        self.name, self.source, self.key = name, source, key
         self._places: dict[str, int] = {}
         try:
             # CDLL, not PyDLL: calls release the interpreter lock.
@@ -84,7 +83,7 @@ class Library:
                     expected=expected,
                 )
         self._call.restype = self._call_at.restype = None
-        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS]
+        self._call_at.argtypes = [_ADDRESS, _SIZE, _ADDRESS, _ADDRESS, _ADDRESS]
 
     def _text(self, symbol: str, expected: str) -> str:
         """A string of the object, no further than one character beyond what is expected."""
@@ -101,10 +100,11 @@ class Library:
         """
         return partial(self._call, self._pack(function, arguments))
 
-    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any], None]:
-        """The same for other members: their number, state and result are given at each call.
+    def bind_at(self, function: str, *arguments: int) -> Callable[[int, Any, Any, Any], None]:
+        """The same for other members: number, state, parameters and result are given at each call.
 
-        State and result are passed as `ctypes.byref` makes them, without gaps between the rows.
+        They are passed as `ctypes.byref` makes them, without gaps between the rows; parameters
+        that are None are those of the arguments, others are shared in the same way.
         """
         return partial(self._call_at, self._pack(function, arguments))
 
@@ -166,13 +166,11 @@ def load_library(
             where it could work.
         OutputError: The folder has no such source.
     """
-    compiler = find_compiler()
-    sources = _sources(folder, kind)
+    kept = find_library(folder, name, identity, build, kind)
+    if kept is not None:
+        return kept
+    compiler, sources = find_compiler(), _sources(folder, kind)
     key, source = _key(compiler, sources, build, kind), _hash(sources[kind.files[0]])
-    cached = fetch(key)
-    if cached is not None:
-        with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
-            return Library(cached, name, identity, build, source, kind)
     with ExitStack() as stack:
         try:
             work = stack.enter_context(working_folder())
@@ -184,11 +182,30 @@ def load_library(
             raise CompilerError(
                 f"the {kind.stem} of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error
-        library = Library(fresh, name, identity, build, source, kind)
+        library = Library(fresh, name, identity, build, source, kind, key)
         verify(library)
         with suppress(OSError, OutputError):  # it is good; the next process compiles again
             store(key, fresh.read_bytes())
         return library
+
+
+def find_library(
+    folder: Path, name: str, identity: str, build: str, kind: Source = KERNEL
+) -> Library | None:
+    """Load C of a generated folder if the cache has it compiled; arguments as in `load_library`.
+
+    Raises:
+        CompilerError: There is no compiler.
+        OutputError: The folder has no such source.
+    """
+    sources = _sources(folder, kind)
+    key = _key(find_compiler(), sources, build, kind)
+    cached = fetch(key)
+    if cached is not None:
+        with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
+            source = _hash(sources[kind.files[0]])
+            return Library(cached, name, identity, build, source, kind, key)
+    return None
 
 
 def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
@@ -216,7 +233,7 @@ def _key(compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source
         "flags": compiler.flags(build, kind),
         "support": SUPPORT,
         "engine": __version__,
-        "machine": [platform.system(), platform.machine(), _processor()],
+        "machine": [platform.system(), platform.machine(), tell_processor()],
     }
     return _hash(json.dumps(content, sort_keys=True).encode())
 
@@ -225,7 +242,8 @@ def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _processor() -> str:
+@cache
+def tell_processor() -> str:
     """What tells processors apart that share a home folder."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()

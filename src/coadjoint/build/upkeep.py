@@ -17,13 +17,16 @@ from pathlib import Path
 from coadjoint.build.workplace import list_abandoned, remove
 from coadjoint.limits import CACHE_BYTES
 
-#: Folders of the cache: objects by key, what was verified, systems of users, work in progress.
-FOLDERS = KERNELS, VERIFIED, SYSTEMS, WORK = "kernels", "verified", "systems", "work"
+#: Folders of the cache: objects by key, what was verified, systems of users, versions of compilers,
+#: work in progress.
+KERNELS, VERIFIED, SYSTEMS, COMPILERS, WORK = "kernels", "verified", "systems", "compilers", "work"
+FOLDERS = (KERNELS, VERIFIED, SYSTEMS, COMPILERS, WORK)
 #: Names of what runs keep in each; anything else is somebody's, and is never removed.
 _OURS = {
     KERNELS: re.compile(r"[0-9a-f]{64}(\.so)?"),
     VERIFIED: re.compile(r"[0-9a-f]{64}\.json"),
     SYSTEMS: re.compile(r"[0-9a-f]{16}"),
+    COMPILERS: re.compile(r"[0-9a-f]{64}\.json"),
 }
 #: Seconds for which a system of a user stays, whatever the bound: a program may be reading it.
 IN_USE = 24 * 3600
@@ -100,7 +103,7 @@ def find_problems(folder: Path) -> list[str]:
         folder: The cache, which need not exist.
     """
     problems = [f"{path} was left behind by a killed run" for path in list_abandoned(folder / WORK)]
-    for name in (KERNELS, VERIFIED):
+    for name in (KERNELS, VERIFIED, COMPILERS):
         for path in list_kept(folder / name):
             problems += _problem(path)
     total = sum(entry.size for entry in _entries(folder))

@@ -160,7 +160,7 @@ def _algebra_of_spec(word: str, most: int, degree: int) -> LieAlgebra:
 
 
 def _too_large(name: str, dimension: int, most: int, degree: int) -> CoadjointError:
-    """The refusal of an algebra, with what it would cost and how to have it all the same."""
+    """The refusal of an algebra, with what it would cost and how to examine it anyway."""
     from coadjoint.errors import LimitError
 
     pairs, monomials = comb(dimension, 2), comb(dimension + degree, degree) - 1

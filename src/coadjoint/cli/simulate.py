@@ -1,14 +1,14 @@
-"""Command ``simulate``: a trajectory, the drift of its invariants, and a picture.
+"""Command ``simulate``: a trajectory or many, the drift of their invariants, and a picture.
 
 Comes in: a system, or a spec that is built first, with parameters and an initial state from the
 command line. Goes out: tables or JSON, and files that were asked for. Read next:
-`coadjoint.solve.simulate`.
+`coadjoint.cli.members` for many, and `coadjoint.solve.simulate`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coadjoint.cli.arguments import load_system, seconds_option, system_argument
+from coadjoint.cli.events import describe_events, events_options, print_events, take_events
+from coadjoint.cli.members import (
+    describe_members,
+    find_members,
+    members_option,
+    print_members,
+    seed_option,
+)
 from coadjoint.cli.output import json_option, print_json, print_table, say
 from coadjoint.files import check_writable
 
@@ -67,19 +75,29 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 @click.option(
     "--time", type=float, default=10.0, show_default=True, help="Length of the simulation."
 )
+@members_option
+@seed_option
 @click.option(
     "--method",
     default="auto",
     show_default=True,
-    help="taylor or dop853, which are generated, or scipy:NAME; auto is taylor where it applies.",
+    help="taylor, dop853 or rk4, which are generated, or scipy:NAME; auto is taylor where it "
+    "applies.",
 )
-@click.option("--rtol", type=float, default=1e-10, show_default=True, help="Relative tolerance.")
+@click.option("--rtol", type=float, help="Relative tolerance. Default: 1e-10.")
+@click.option("--atol", type=float, help="Absolute tolerance. Default: 1e-12.")
+@click.option(
+    "--step", type=float, help="A fixed step for a generated method, in the place of tolerances."
+)
+@click.option(
+    "--threads",
+    type=click.IntRange(1),
+    help="How many threads share the members, at the most. Default: one for each processor.",
+)
 @click.option(
     "--samples",
-    type=click.IntRange(2, 10_000_000),
-    default=1001,
-    show_default=True,
-    help="Number of evenly spaced samples.",
+    type=click.IntRange(1, 10_000_000),
+    help="Number of evenly spaced samples; 1 for the end alone. Default: 1001, with --members 101.",
 )
 @click.option(
     "--max-steps",
@@ -87,6 +105,11 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     default=1_000_000,
     show_default=True,
     help="Largest number of steps.",
+)
+@click.option(
+    "--checkpoint",
+    type=click.Path(path_type=Path),
+    help="File that a generated solver keeps on its way. The same command goes on from it.",
 )
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option(
@@ -100,6 +123,7 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     type=click.Path(path_type=Path),
     help="Table of the trajectory to write, e.g. top.csv.",
 )
+@events_options
 @seconds_option
 @json_option
 def command(
@@ -107,46 +131,47 @@ def command(
     parameters: list[Assignment],
     inputs: list[Assignment],
     state: list[Assignment],
-    time: float,
-    method: str,
-    rtol: float,
-    samples: int,
-    max_steps: int,
+    members: str | None,
+    seed: int,
     plot: Path | None,
     trace: Path | None,
     table: Path | None,
     seconds: int | None,
     as_json: bool,
+    time: float,
+    **options: Any,
 ) -> int:
-    """Integrate a trajectory; show the drift of invariants."""
+    """Integrate a trajectory, or many; show the drift of invariants."""
     _check_outputs(table, *filter(None, (plot, trace)))
+    asked = take_events(options)
+    asked.check()
+    if members is not None and (plot or trace):
+        raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
     loaded = load_system(system, seconds)
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy
 
         check_traced(loaded)
-    given = chosen_parameters(loaded.PARAMETERS, parameters)
-    driven = chosen_parameters(loaded.INPUTS, inputs) or None
+    given: Mapping[str, Any] = chosen_parameters(loaded.PARAMETERS, parameters)
+    driven: Mapping[str, Any] | None = chosen_parameters(loaded.INPUTS, inputs) or None
     start = find_start(loaded, state, given, driven)
-    solution = loaded.simulate(
-        start,
-        (0.0, time),
-        given,
-        driven,
-        method=method,
-        rtol=rtol,
-        samples=samples,
-        max_steps=max_steps,
-        reconstruct=bool(loaded.RECONSTRUCTED),
-    )
-    (print_json(_record(loaded, solution)) if as_json else _print(loaded, solution))
+    origin, span = "", (0.0, time)
+    options["samples"] = options["samples"] or (1001 if members is None else 101)
+    if members is None:
+        options["reconstruct"] = bool(loaded.RECONSTRUCTED)
+    else:
+        many = find_members(loaded, members, seed, start, given, driven)
+        start, given, driven, origin = many.state, many.parameters, many.inputs, many.origin
+    solution = loaded.simulate(start, span, given, driven, events=asked.events, **options)
+    _show(loaded, solution, origin, as_json=as_json)
     if table is not None:
         solution.to_csv(table)
     if plot is not None:
         solution.plot(plot)
     if trace is not None:
         solution.trace(trace)
-    return 0 if solution.status == "OK" else 1
+    asked.write(solution)
+    return 0 if asked.has_arrived(solution) else 1
 
 
 def _check_outputs(table: Path | None, *pictures: Path) -> None:
@@ -229,6 +254,17 @@ def _shown_names(system: System) -> tuple[str, ...]:
     return tuple(name for quantities in tables for name in quantities.components)
 
 
+def _show(system: System, solution: Solution, origin: str, *, as_json: bool) -> None:
+    """Tables or JSON, of one trajectory or of members, and of their events."""
+    if as_json:
+        record = describe_members(solution, origin) if origin else _record(system, solution)
+        events = {"events": describe_events(solution)} if solution.events else {}
+        print_json(record | events)
+        return
+    print_events(solution)
+    (print_members(solution, origin) if origin else _print(system, solution))
+
+
 def _print(system: System, solution: Solution) -> None:
     """First and last values, and the drift of the invariants."""
     _print_ends(solution, "state", system.STATE.components, f"{system.title} ({system.name})")
@@ -256,7 +292,7 @@ def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str 
 
 def _ends(solution: Solution, names: Iterable[str]) -> list[tuple[str, float, float]]:
     """First and last value of several components."""
-    return [(name, float(solution[name][0]), float(solution[name][-1])) for name in names]
+    return [(name, float(solution.first(name)[0]), float(solution[name][-1])) for name in names]
 
 
 def _record(system: System, solution: Solution) -> dict[str, Any]:

@@ -34,7 +34,7 @@ LARGEST_CONDITION: Final = Decimal(2**40)
 LARGEST_EXPONENT: Final = Decimal(700)
 
 # `decimal` is written in C and 10 times as fast as `mpmath`, which is asked for sin and cos alone.
-# Contexts of our own: nobody's precision is changed by a check.
+# Contexts of our own: a check changes the precision of no other code.
 CONTEXT: Final = Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)
 _DIGITS: Final = MPContext()
 _DIGITS.dps = DIGITS

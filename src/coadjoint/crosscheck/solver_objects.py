@@ -19,11 +19,12 @@ from typing import Any, Final, Protocol
 import numpy as np
 
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import _run, find_compiler
+from coadjoint.build.compiler import MACHINES, _run, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import CompilerError, OutputError
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
+from coadjoint.solve.solvers import call
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
@@ -40,29 +41,6 @@ class Advance(Protocol):
     def __call__(self, ensemble: Ensemble, work: int, record: Record | None = None) -> int:
         """Accepted steps are added to a record; the call ends when it is full."""
         ...
-
-
-_SIZE, _DOUBLE, _PLACE = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
-_PLACES: Final = ("state", "time", "step", "next", "steps", "rejected", "status")
-
-
-class Run(ctypes.Structure):
-    """The structure of ``solver.h``, field by field."""
-
-    _fields_ = (
-        *((name, _SIZE) for name in ("members", "first", "last")),
-        *((name, _PLACE) for name in (*_PLACES, "parameters")),
-        ("parameters_stride", _SIZE),
-        *((name, _PLACE) for name in ("knots", "inputs", "slopes")),
-        *((name, _SIZE) for name in ("pieces", "inputs_stride")),
-        ("samples", _PLACE),
-        ("sample_count", _SIZE),
-        ("out", _PLACE),
-        *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
-        *((name, _SIZE) for name in ("max_steps", "work")),
-        ("record", _PLACE),
-        *((name, _SIZE) for name in ("record_room", "recorded")),
-    )
 
 
 def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: str) -> Path:
@@ -87,8 +65,8 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
     for file, content in sources.items():
         (work / file).write_bytes(content)
     said, status = "", 1
-    for native in (True, False):  # some compilers do not know -march=native
-        flags = (*compiler.flags(build, native=native), FLAGS[method])
+    for machine in MACHINES:  # some compilers do not know all of these options
+        flags = (*compiler.flags(build, machine=machine), FLAGS[method])
         command = (*compiler.command, *flags, "solver.c", "-o", "solver.so", "-lm")
         status, said = _run(command, work)
         if status == 0:
@@ -106,34 +84,11 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
 def load_solver(path: Path, system: str) -> Advance:
     """The function of an object."""
     function = ctypes.CDLL(str(path))[f"{system}_advance"]
-    function.restype, function.argtypes = _SIZE, [_PLACE]
+    function.restype, function.argtypes = ctypes.c_size_t, [ctypes.c_void_p]
 
     def advance(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
-        members, given, inputs = ensemble.state.shape[1], ensemble.parameters, ensemble.inputs
-        arrays = {name: getattr(ensemble, name) for name in (*_PLACES, "samples", "out")}
-        arrays |= {"parameters": given, "knots": inputs.knots}
-        arrays |= {"inputs": inputs.values, "slopes": inputs.slopes}
-        run = Run(
-            **{name: array.ctypes.data for name, array in arrays.items()},
-            members=members,
-            last=members,
-            parameters_stride=members if given.ndim > 1 else 0,
-            pieces=inputs.pieces,
-            inputs_stride=members if inputs.own else 0,
-            sample_count=len(ensemble.samples),
-            rtol=ensemble.rtol,
-            atol=ensemble.atol,
-            size=ensemble.size,
-            max_steps=ensemble.max_steps,
-            work=work,
-        )
-        if record is not None:
-            run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
-            run.recorded = record.count
-        on = int(function(ctypes.byref(run)))
-        if record is not None:
-            record.count = run.recorded
-        return on
+        members = slice(0, ensemble.state.shape[1])
+        return int(call(function, ensemble, members, work, record))
 
     return advance
 

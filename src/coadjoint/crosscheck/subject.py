@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Final
 
 import numpy as np
@@ -21,6 +21,7 @@ from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.points import Array, Batch, Points, safe_exponent
 from coadjoint.derive.reference import Reference as Derived
 from coadjoint.errors import CoadjointError, CrossCheckError
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import LEVELS, Program, run
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
@@ -151,7 +152,10 @@ class Subject:
         given, named = batch.arguments(len(program.state))
         values = np.full((*program.shape, members), UNTOUCHED)
         try:
-            getattr(self.system, function)(*given, **named, target=target, out=values)
+            method = getattr(self.system, function)
+            if KERNEL_FUNCTIONS[function].below == "vector":  # which stands below the state already
+                method = partial(self.system.evaluate, function)
+            method(*given, **named, target=target, out=values)
         except CoadjointError:
             raise
         except Exception as error:

@@ -17,12 +17,12 @@ from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value
-from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
+from coadjoint.derive.mechanics.configuration import inverse_in_blocks
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.solver import Definition
 from coadjoint.derive.records import Chart, Exact, Relation, write_rates, write_step
-from coadjoint.derive.setting import Setting, shape
-from coadjoint.derive.symmetries import moved_components
+from coadjoint.derive.setting import Setting, fault, shape
+from coadjoint.derive.symmetries import evaluate_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
@@ -103,7 +103,7 @@ def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
         }
     else:
         rates = _motion(setting, chart, setting.formula(chart.motion[chart.kind], known))
-    image = moved_components(setting, chart.map, known)
+    image = evaluate_components(setting, chart.map, known)
     through = ", ".join(f"{name} = {formula.in_one_line}" for name, formula in chart.map.items())
     relations = [
         Relation(f"{each.in_one_line} = 0", setting.formula(each, known)) for each in chart.where

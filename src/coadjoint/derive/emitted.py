@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 
 from coadjoint.derive import units
 from coadjoint.derive.integrals import lax_integrals
+from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.parts import in_parts
 from coadjoint.derive.mechanics.reconstruction import spatial_momentum
 from coadjoint.derive.mechanics.sections import section_momenta
@@ -20,7 +21,7 @@ from coadjoint.derive.records import Emitted, Kept
 from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import in_formulas, momentum_maps
 from coadjoint.exact import Element
-from coadjoint.spec.model import component_names
+from coadjoint.spec.core.components import Argument, Named
 from coadjoint.spec.spatial import spatial_momenta
 
 
@@ -49,80 +50,70 @@ def emitted_energy(setting: Setting, energy: Element) -> Emitted:
     return _emit_number("energy", units.of_energy(setting), energy, Kept.AS_ENERGY)
 
 
+def _emit(
+    each: Named,
+    unit: str,
+    values: Sequence[Element],
+    kept: Kept = Kept.UNKNOWN,
+    form: Value | None = None,
+) -> Emitted:
+    """The quantity that something with a name, a shape and components is."""
+    return Emitted(
+        name=each.name,
+        shape=each.shape,
+        components=each.components,
+        unit=unit,
+        values=tuple(values),
+        kept=kept,
+        form=form,
+    )
+
+
 def _emit_number(name: str, unit: str, value: Element, kept: Kept) -> Emitted:
     """A quantity of one component, which has its name."""
-    return Emitted(name=name, shape=(), components=(name,), unit=unit, values=(value,), kept=kept)
+    return _emit(Argument(name=name, shape=()), unit, (value,), kept)
 
 
 @once
 def _list_first(setting: Setting) -> tuple[Emitted, ...]:
     """Casimirs, velocities that the state gives, and reactions."""
     spec, elements = setting.spec, setting.elements
-    emitted = []
-    for n, casimir in enumerate(spec.casimirs, 1):
-        name, unit = f"casimir{n}", units.of_formula(setting, casimir)
-        names, values = component_names(name, casimir.shape), setting.components(casimir)
-        emitted.append(
-            Emitted(
-                name=name,
-                shape=casimir.shape,
-                components=names,
-                unit=unit,
-                values=values,
-                kept=Kept.UNLESS_WORKED_ON,
-            )
-        )
-    for v in spec.defined:
-        values, form = elements(v.components), setting.values[v.name]
-        emitted.append(
-            Emitted(
-                name=v.name,
-                shape=v.shape,
-                components=v.components,
-                unit=v.unit,
-                values=values,
-                form=form,
-            )
-        )
-    for each in spec.constraints:
-        name, unit = each.reaction, units.of_reaction(setting, each)
-        names, values = each.reactions, elements(each.reactions)
-        emitted.append(
-            Emitted(name=name, shape=each.shape, components=names, unit=unit, values=values)
-        )
-    return tuple(emitted)
+    casimirs = [
+        (Argument(name=f"casimir{n}", shape=c.shape), c) for n, c in enumerate(spec.casimirs, 1)
+    ]
+    reactions = [(Argument(name=c.reaction, shape=c.shape), c) for c in spec.constraints]
+    return (
+        *(
+            _emit(each, units.of_formula(setting, c), setting.components(c), Kept.UNLESS_WORKED_ON)
+            for each, c in casimirs
+        ),
+        *(
+            _emit(v, v.unit, elements(v.components), form=setting.values[v.name])
+            for v in spec.defined
+        ),
+        *(
+            _emit(each, units.of_reaction(setting, c), elements(each.components))
+            for each, c in reactions
+        ),
+    )
 
 
 def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterator[Emitted]:
     """Momenta of the independent velocities, then of sections."""
     for each in setting.spec.reduced_momenta:
-        unit = units.of_momentum(setting, each.velocity)
-        parts = tuple(values[name] for name in each.components)
-        yield Emitted(
-            name=each.name,
-            shape=each.velocity.shape,
-            components=each.components,
-            unit=unit,
-            values=parts,
-        )
+        unit = units.of_momentum(setting, each.of)
+        yield _emit(each, unit, [values[name] for name in each.components])
     values |= section_momenta(setting)
     for section in setting.spec.sections:
-        name, kept = section.name, _find_claim(setting, section.name)
-        yield _emit_number(name, section.unit, values[name], kept)
+        kept = _find_claim(setting, section.name)
+        yield _emit(section, section.unit, [values[section.name]], kept)
 
 
 @once
 def _declared_observables(setting: Setting) -> tuple[Emitted, ...]:
     """The observables of the spec."""
     return tuple(
-        Emitted(
-            name=each.name,
-            shape=each.shape,
-            components=each.components,
-            unit=each.unit,
-            values=in_parts(setting, each.formula),
-            kept=_find_claim(setting, each.name),
-        )
+        _emit(each, each.unit, in_parts(setting, each.formula), _find_claim(setting, each.name))
         for each in setting.spec.observables
     )
 
@@ -132,16 +123,7 @@ def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted
     values = momentum_maps(setting, energy)
     for each in setting.spec.symmetries:
         parts, kept = values[each.name], _find_claim(setting, each.name)
-        whole = in_formulas(each, parts)
-        yield Emitted(
-            name=each.name,
-            shape=each.shape,
-            components=each.components,
-            unit=each.unit,
-            values=parts,
-            kept=kept,
-            form=whole,
-        )
+        yield _emit(each, each.unit, parts, kept, in_formulas(each, parts))
 
 
 @once
@@ -152,19 +134,9 @@ def _list_last(setting: Setting) -> tuple[Emitted, ...]:
         unit = units.of_value(setting, value)
         emitted.append(_emit_number(name, unit, value, Kept.ALWAYS))
     for each in spatial_momenta(setting.spec):
-        inner, kept = each.momentum, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
+        inner, kept = each.of, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
         seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
-        parts = tuple(seen[name] for name in inner.components)
-        emitted.append(
-            Emitted(
-                name=each.name,
-                shape=inner.shape,
-                components=each.components,
-                unit=inner.unit,
-                values=parts,
-                kept=kept,
-            )
-        )
+        emitted.append(_emit(each, inner.unit, [seen[n] for n in inner.components], kept))
     return tuple(emitted)
 
 

@@ -28,6 +28,7 @@ class Rows:
         shape: Of the result.
         state: What the rows of its first argument are.
         by: Of a derivative, the names that it is by; else none.
+        along: Of a derivative along a vector, the components of it, which follow the state.
         may_hide_zeros: Whether a row may vanish everywhere that is not written as zero.
     """
 
@@ -36,6 +37,7 @@ class Rows:
     shape: tuple[int, ...]
     state: tuple[str, ...]
     by: tuple[str, ...] = ()
+    along: tuple[str, ...] = ()
     may_hide_zeros: bool = False
 
     @property
@@ -59,6 +61,14 @@ def rhs(equations: Equations) -> Rows:
 def jacobian(equations: Equations) -> Rows:
     """Derivatives of the rates by the state."""
     return _slopes(equations, equations.setting.state)
+
+
+def jacobian_vector(equations: Equations) -> Rows:
+    """The derivative of the rates along a vector, which follows the state in the first argument."""
+    state = equations.setting.state
+    vector = tuple(f"_h{n + 1}" for n in range(len(state)))
+    rates = _rows(equations, _rates(equations), state=(*state, *vector))
+    return replace(rates, by=state, along=vector)
 
 
 def input_jacobian(equations: Equations) -> Rows | None:

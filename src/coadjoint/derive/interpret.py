@@ -51,7 +51,9 @@ def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Val
         DerivationError: Division by zero or the inverse of a singular matrix.
     """
     known: dict[int, Value] = {}
-    for part in tree.walk_up(node):  # definitions put into each other may be 1000 levels deep
+    parts = list(tree.walk_up(node))  # definitions put into each other may be 1000 levels deep
+    traced = _find_traced(parts)
+    for part in parts:
         below = [known[id(child)] for child in tree.children(part)]
         match part:
             case tree.Binary(operator="/", right=tree.Power(base=base, exponent=n)) if n > 0:
@@ -60,10 +62,28 @@ def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Val
                 check_divisor(divisor, field)
                 for _ in range(n):
                     value = scale(1 / divisor, value)
+            case tree.Binary(operator="*") if id(part) in traced and _are_matrices(below):
+                value = dot(entries(below[0]), entries(transpose(below[1])))
+            case tree.Call(function="trace") if not isinstance(below[0], tuple):
+                value = below[0]
             case _:
                 value = _value(part, below, values, field)
         known[id(part)] = value
     return known[id(node)]
+
+
+def _find_traced(parts: Iterable[tree.Node]) -> set[int]:
+    """Products of which nothing but traces is asked for, by id: only their diagonals are needed."""
+    traced, others = set[int](), set[int]()
+    for part in parts:
+        is_trace = isinstance(part, tree.Call) and part.function == "trace"
+        (traced if is_trace else others).update(map(id, tree.children(part)))
+    return traced - others
+
+
+def _are_matrices(values: Iterable[Value]) -> bool:
+    """Whether all values are matrices."""
+    return all(isinstance(each, tuple) and isinstance(each[0], tuple) for each in values)
 
 
 def _value(node: tree.Node, below: list[Value], values: Mapping[str, Value], field: Field) -> Value:

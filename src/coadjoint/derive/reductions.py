@@ -17,11 +17,10 @@ from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics import external
-from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.records import Exact, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, fault
 from coadjoint.exact import Element
 
 

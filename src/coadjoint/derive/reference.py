@@ -105,12 +105,12 @@ class Reference:
     def _slopes(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
     ) -> list[Value]:
-        """``d rate_i / d x_j``, row by row, by state, inputs or parameters x."""
-        names = self._functions[function][0].by
+        """``d rate_i / d x_j``, row by row, by state, inputs or parameters x; or along a vector."""
+        names, along = self._functions[function][0].by, self._functions[function][0].along
         one, zero = number(Fraction(1)), number(Fraction(0))
         known = {name: Sloped(value, {}) for name, value in inputs.items()}
         for j, name in enumerate(names):
-            known[name] = Sloped(inputs[name], {j: one})
+            known[name] = Sloped(inputs[name], {0: inputs[along[j]]} if along else {j: one})
 
         def constant(value: Fraction) -> Sloped[Value]:
             return Sloped(number(value), {})
@@ -119,7 +119,8 @@ class Reference:
             return _apply(function, argument, number, call)
 
         rates = self._values(function, known, constant, apply)
-        return [rate.slopes.get(j, zero) for rate in rates for j in range(len(names))]
+        columns = 1 if along else len(names)
+        return [rate.slopes.get(j, zero) for rate in rates for j in range(columns)]
 
 
 def _apply(

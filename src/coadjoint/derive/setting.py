@@ -244,13 +244,7 @@ class Setting:
         try:
             return interpret(formula.tree, {**self.values, **observables}, self.field)
         except DerivationError as error:
-            raise DerivationError(
-                f"{self.spec.path}:{formula.line}: {formula.key}: {error}",
-                path=str(self.spec.path),
-                line=formula.line,
-                key=formula.key,
-                found=formula.text,
-            ) from error
+            raise fault(self, formula, str(error), formula.text) from error
 
     def in_state_order(
         self, momentum: Sequence[Element], advected: Mapping[str, Sequence[Element]]
@@ -260,6 +254,20 @@ class Setting:
         for variable in self.advected:
             by_name |= dict(zip(variable.components, advected[variable.name], strict=True))
         return self.field.vector(by_name[name] for name in self.state)
+
+
+def fault(
+    setting: Setting, formula: Formula, message: str, found: str, **parts: str
+) -> DerivationError:
+    """An error that points at a formula."""
+    return DerivationError(
+        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
+        path=str(setting.spec.path),
+        line=formula.line,
+        key=formula.key,
+        found=found,
+        **parts,
+    )
 
 
 def list_components(quantities: Iterable[Declared]) -> tuple[str, ...]:
@@ -401,7 +409,7 @@ def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:
         return weigh(parts, quantity.elements)
-    form = quantity.form if isinstance(quantity, Variable | Parameter) else ""
+    form = "" if isinstance(quantity, Time) else quantity.form
     return unpack(parts, form) if form in FORMS else shape(parts, quantity.shape)
 
 

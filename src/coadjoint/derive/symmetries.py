@@ -15,8 +15,8 @@ from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value, entries
-from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.setting import Setting, once, shape
+from coadjoint.derive.mechanics.configuration import kept_entries, mechanics
+from coadjoint.derive.setting import Setting, fault, once, shape
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
@@ -26,7 +26,7 @@ from coadjoint.poisson.momentum_maps import MomentumMap, Pair, generating_functi
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.spec import Formula
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.model import Symmetry, matrix_size, unpack
+from coadjoint.spec.model import Symmetry, unpack
 
 #: Components that move, by name.
 Moves = Mapping[str, Element]
@@ -58,9 +58,7 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     """
     setting, structure = equations.setting, structure_of(equations)
     values = tuple(map(equations.close, _values(setting, symmetry, equations.exact.energy)))
-    motion = VectorField(
-        setting.field, setting.state, tuple(map(equations.close, equations.exact.rates))
-    )
+    motion = _flow_of_energy(equations)
     generators = []
     for element, value in _maps_at_rest(setting)[symmetry.name]:
         resting = equations.close(value)
@@ -81,9 +79,25 @@ def momentum_map(equations: Equations, symmetry: Symmetry) -> MomentumMap:
     )
 
 
+def _flow_of_energy(equations: Equations) -> VectorField:
+    """The motion without what forces add."""
+    setting, exact = equations.setting, equations.exact
+    forces = exact.forces or (setting.field.zero,) * len(exact.rates)
+    free = (x - force for x, force in zip(exact.rates, forces, strict=True))
+    return VectorField(setting.field, setting.state, tuple(map(equations.close, free)))
+
+
 def moves_of(setting: Setting, symmetry: Symmetry) -> list[Moves]:
     """The components that each basis vector of the algebra moves, as declared."""
     return [_moves(setting, symmetry, element) for element in _elements(setting, symmetry)]
+
+
+def shifts_of(setting: Setting, symmetry: Symmetry) -> list[Element]:
+    """The shift of time along each basis vector: zero unless it is declared."""
+    if symmetry.time is None:
+        return [setting.field.zero] * symmetry.algebra.dimension
+    elements = _elements(setting, symmetry)
+    return [_evaluate_at(setting, symmetry.time, symmetry, each) for each in elements]
 
 
 def structure_of(equations: Equations) -> PoissonStructure:
@@ -150,10 +164,10 @@ def _moves(setting: Setting, symmetry: Symmetry, element: Value) -> Moves:
             name: setting.field.sum(a * x for a, x in zip(row, symbols, strict=True) if a)
             for name, row in zip(names, element, strict=True)
         }
-    return moved_components(setting, symmetry.generators, _name_element(symmetry, element))
+    return evaluate_components(setting, symmetry.generators, _name_element(symmetry, element))
 
 
-def moved_components(
+def evaluate_components(
     setting: Setting, formulas: Mapping[str, Formula], known: Mapping[str, Value] = _NOTHING
 ) -> dict[str, Element]:
     """Values of formulas for variables of the state, by the components of these.
@@ -167,25 +181,9 @@ def moved_components(
         if formula is not None:
             parts = entries(setting.value(formula, known))
             if variable.form in FORMS:
-                parts = _kept_entries(setting, parts, variable.form, formula)
+                parts = kept_entries(setting, parts, variable.form, formula)
             components |= zip(variable.components, parts, strict=True)
     return components
-
-
-def _kept_entries(
-    setting: Setting, parts: Sequence[Element], form: str, formula: Formula
-) -> tuple[Element, ...]:
-    """The entries that a form keeps, if the matrix is of the form."""
-    size = matrix_size(len(parts), "matrix")
-    assert size is not None, len(parts)
-    rows = [parts[n * size : (n + 1) * size] for n in range(size)]
-    kept = {
-        "antisymmetric": [rows[i][j] for i in range(size) for j in range(i + 1, size)],
-        "symmetric": [rows[i][j] for i in range(size) for j in range(i, size)],
-    }.get(form, list(parts))
-    if any(x != y for x, y in zip(entries(unpack(kept, form)), parts, strict=True)):
-        raise _fault(setting, formula, f"the value is not {form}", "Correct the formula.")
-    return tuple(kept)
 
 
 # -- the map and the vector field -----------------------------------------------------------------
@@ -223,7 +221,7 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())
     formula = next(iter(symmetry.generators.values()), None)
     if setting.spec.constraints or not has_structure(setting):
-        problem = "the motion has no bracket in which something could generate it"
+        problem = "only a Poisson bracket says what generates it, and none is declared here"
         raise _fault(setting, formula, problem, "Declare the momentum map as map.", symmetry)
     try:
         structure = poisson_structure(setting)
@@ -307,10 +305,8 @@ def _fault(
     symmetry: Symmetry | None = None,
 ) -> DerivationError:
     """An error at a formula, or at a symmetry without one."""
-    path = str(setting.spec.path)
-    line = f":{formula.line}" if formula is not None else ""
-    key = formula.key if formula is not None else f"symmetries.{symmetry.name if symmetry else ''}"
-    text = formula.text if formula is not None else ""
-    return DerivationError(
-        f"{path}{line}: {key}: {problem}. {hint}".rstrip(), path=path, key=key, found=text
-    )
+    message = f"{problem}. {hint}".rstrip()
+    if formula is not None:
+        return fault(setting, formula, message, formula.text)
+    path, key = str(setting.spec.path), f"symmetries.{symmetry.name if symmetry else ''}"
+    return DerivationError(f"{path}: {key}: {message}", path=path, key=key, found="")

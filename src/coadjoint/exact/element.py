@@ -42,6 +42,7 @@ class Factors:
         self._functions = frozenset(ring.gens[ring.ngens - functions :])
         self.known: list[PolyElement] = []
         self.monomial: list[bool] = []
+        self._occurring: list[frozenset[int]] = []
         #: Whether an element that is not the polynomial 0 is zero all the same; a field says.
         self.is_hidden_zero: Callable[[Element], bool] = lambda _: False
         self._numbers: dict[PolyElement, int] = {}
@@ -90,10 +91,18 @@ class Factors:
             if count:
                 powers[self._number(generator)] = count
         p = p.quo_term((least, self.ring.domain.one))
+        whole = self._numbers.get(p.monic())
+        if whole is not None:  # none of the factors before it divides it
+            powers[whole] = powers.get(whole, 0) + 1
+            return p.LC, powers
+        occurring = _generators_in(p)
         for number, factor in enumerate(self.known):
+            if not self._occurring[number] <= occurring:
+                continue
             count, p = remove_factor(p, factor)
             if count:
                 powers[number] = powers.get(number, 0) + count
+                occurring = _generators_in(p)
         constant = p.LC
         if not p.is_ground:
             powers[self._number(p.monic())] = 1
@@ -113,8 +122,14 @@ class Factors:
         if factor not in self._numbers:
             self._numbers[factor] = len(self.known)
             self.known.append(factor)
+            self._occurring.append(_generators_in(factor))
             self.monomial.append(len(factor) == 1 and factor not in self._functions)
         return self._numbers[factor]
+
+
+def _generators_in(p: PolyElement) -> frozenset[int]:
+    """Places of the generators that occur in a nonzero polynomial."""
+    return frozenset(place for place, degree in enumerate(p.degrees()) if degree > 0)
 
 
 def remove_factor(

@@ -255,7 +255,8 @@ class Field(Rationals):
 
     def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
         """Partial derivatives by several symbols."""
-        return tuple(self.derivative(element, name) for name in names)
+        within = self.reach(element)
+        return tuple(self.derivative(element, n) if n in within else self.zero for n in names)
 
     # -- evaluation ---------------------------------------------------------------------
 

@@ -1,11 +1,11 @@
-"""Group actions: quaternions and coquaternions, and the matrices that they are the same as.
+"""Group actions: quaternions, and the rotations that they are.
 
-Comes in: four components of anything that adds and multiplies. Goes out: `Quaternion` and
-`Coquaternion`, one multiplication table with one sign between them:
+Comes in: four components of anything that adds and multiplies. Goes out: `Quaternion`, whose
+multiplication table is that of coquaternions (`coadjoint.theory.coquaternions`) up to a sign:
 
     ``i^2 = -1,  j^2 = k^2 = s,  i j = k,  j k = -s i,  k i = j``;  s = -1 or +1.
 
-Read next: `coadjoint.theory.rotations`.
+Read next: `coadjoint.groups.vector_fields`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from coadjoint.errors import AlgebraError
-from coadjoint.exact.dense import Matrix, Vector, add, hat, identity, product, scale, transpose
-from coadjoint.groups.complex_numbers import Complex, allow_division
+from coadjoint.exact.dense import Matrix, Vector, add, hat, identity, product, scale
+from coadjoint.groups.complex_numbers import allow_division
 
 
 @dataclass(frozen=True)
@@ -119,14 +119,6 @@ class Hypercomplex:
         """The product with a real number."""
         return type(self)(*(factor * component for component in self.components))
 
-    def left_matrix(self) -> Matrix:
-        """The 4 x 4 matrix of ``r -> q r`` in the basis 1, i, j, k."""
-        return transpose(tuple((self * unit).components for unit in self.units()))
-
-    def right_matrix(self) -> Matrix:
-        """The 4 x 4 matrix of ``r -> r q`` in the basis 1, i, j, k."""
-        return transpose(tuple((unit * self).components for unit in self.units()))
-
     @classmethod
     def units(cls) -> tuple[Self, ...]:
         """1, i, j and k."""
@@ -148,35 +140,6 @@ class Quaternion(Hypercomplex):
     """
 
     square = -1
-
-    def pauli(self) -> Matrix:
-        """The 2 x 2 complex matrix ``q0 - i q . sigma`` (section 3.1.1); unit ones make SU(2)."""
-        w, x, y, z = self.components
-        return ((Complex(w, -z), Complex(-y, -x)), (Complex(y, -x), Complex(w, z)))
-
-
-class Coquaternion(Hypercomplex):
-    """A split quaternion ``w + x i + y j + z k`` with ``-i^2 = j^2 = k^2 = 1``.
-
-    Source:
-        Holm (2011), Geometric Mechanics II, section 3.2.7.
-
-    >>> one, i, j, k = Coquaternion.units()
-    >>> i * j == k, j * k == -i, k * i == j
-    (True, True, True)
-    """
-
-    square = 1
-
-    def real_matrix(self) -> Matrix:
-        """The real 2 x 2 matrix whose determinant is the norm; norm 1 makes SL(2, R)."""
-        w, x, y, z = self.components
-        return ((w - z, y - x), (x + y, w + z))
-
-    def complex_matrix(self) -> Matrix:
-        """``[[u, v], [v*, u*]]`` with u = w + x i and v = y + z i; norm 1 makes SU(1, 1)."""
-        u, v = Complex(self.w, self.x), Complex(self.y, self.z)
-        return ((u, v), (v.conjugate, u.conjugate))
 
 
 def euler_rodrigues(q: Quaternion) -> Matrix:

@@ -10,24 +10,36 @@ Read next: `coadjoint.lower.check`, which undoes all this exactly.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import groupby
 from typing import Any
 
 from coadjoint.derive import Equations
-from coadjoint.derive.formulas import Rows, rows_of
-from coadjoint.derive.mechanics.solver import forward_name, scaled_name
+from coadjoint.derive.formulas import Rows, rhs, rows_of
 from coadjoint.exact import Element, Field
 from coadjoint.exact.rationals import Written
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.definitions import inline_single_uses, shorten
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
+from coadjoint.lower.scales import Scales, cost, find_scales
+from coadjoint.lower.tables import (
+    UNROLLED_PRODUCTS,
+    differentiate_along,
+    find_products,
+    loop_over,
+)
 from coadjoint.lower.vanishing import find_hidden_zeros
+
+#: Rates that cost more are left with the definitions that they have: each try takes as long as
+#: lowering them does.
+TRIED_COST = 1000
 
 
 @dataclass(frozen=True)
@@ -50,8 +62,6 @@ class Ratio:
 _FIXED, _DRIVEN, _MEMBER = range(3)
 #: An element as a sum of quotients, one for each denominator that moves with the member.
 Form = tuple[Ratio, ...]
-#: Names with their values: definitions or outputs.
-_Lines = list[tuple[str, Element]]
 #: What to compute before it is shared: coefficients by product, for each such denominator.
 _Sums = dict[Any, tuple[list[tuple[Element, int]], dict[Product, Element]]]
 
@@ -62,10 +72,17 @@ class Lowering:
     Args:
         equations: Where the elements come from.
         elements: Everything that the Program will compute, definitions included.
+        scales: Of components of the state; none to leave their products as they are.
     """
 
-    def __init__(self, equations: Equations, elements: Iterable[Element]) -> None:
+    def __init__(
+        self,
+        equations: Equations,
+        elements: Iterable[Element],
+        scales: Mapping[str, Element] | None = None,
+    ) -> None:
         self.field: Field = equations.setting.field
+        self._scales = Scales(scales or {})
         self.graph = Graph()
         self._members = equations.moving
         setting = equations.setting
@@ -121,6 +138,8 @@ class Lowering:
         level: int,
     ) -> Ratio:
         """One quotient, equal coefficients factored out."""
+        if level == _MEMBER:
+            coefficients = self._scales.rewrite(coefficients, _mark) or coefficients
         groups: dict[Any, list[tuple[int, Product]]] = {}
         by_mark: dict[Any, Element] = {}
         for product, part in coefficients.items():
@@ -168,6 +187,8 @@ class Lowering:
     def _note_functions(self, product: Product) -> None:
         """Collect the arguments of the elementary functions in a product, too."""
         for name in product:
+            if name in self._scales:
+                self._coefficient(self._scales.take(name)[0])
             if name in self.field.adjoined:
                 argument = self.field.adjoined[name].argument
                 self._form(argument, self._level(argument))
@@ -232,11 +253,7 @@ class Lowering:
         """The addends of a numerator."""
         graph, terms = self.graph, list[int]()
         for coefficient, members in ratio.groups:
-            factor = (
-                graph.number(coefficient)
-                if isinstance(coefficient, Fraction)
-                else graph.sum(self._build(addend, inner) for inner, addend in coefficient)
-            )
+            factor = self._build_coefficient(coefficient)
             products = [(sign, self._shared[level][product]) for sign, product in members]
             if len(products) == 1 or coefficient == 1:
                 terms += [self._apply_sign(sign, [factor], product) for sign, product in products]
@@ -244,6 +261,12 @@ class Lowering:
                 inner = graph.sum(self._apply_sign(sign, [], product) for sign, product in products)
                 terms.append(graph.multiply(factor, inner))
         return terms
+
+    def _build_coefficient(self, coefficient: Fraction | tuple[tuple[int, Form], ...]) -> int:
+        """The node of a coefficient: a number, or its addends added up."""
+        if isinstance(coefficient, Fraction):
+            return self.graph.number(coefficient)
+        return self.graph.sum(self._build(addend, inner) for inner, addend in coefficient)
 
     def _apply_sign(self, sign: int, lead: list[int], product: Product) -> int:
         node = self.graph.product([*lead, *map(self._factor, product)])
@@ -253,6 +276,10 @@ class Lowering:
         """The node of a factor: a shared pair, an elementary function, or a symbol."""
         if name in self._pairs:
             return self.graph.product(map(self._factor, self._pairs[name]))
+        if name in self._scales:
+            scale, component = self._scales.take(name)
+            lead = self._build_coefficient(self._coefficient(scale))
+            return self.graph.multiply(lead, self._factor(component))
         known = self.field.adjoined.get(name)
         if known is None:
             return self.graph.node_of_name(name, self._numbers)
@@ -273,15 +300,73 @@ def lower(equations: Equations) -> dict[str, Program]:
     definitions and are as cheap as these make them.
     """
     programs: dict[str, Program] = {}
-    for name in KERNEL_FUNCTIONS:
+    looped = _loop(equations)
+    for name, function in KERNEL_FUNCTIONS.items():
+        if function.looped == ("only" if looped is None else "never"):
+            continue
         rows = rows_of(equations, name)
-        if rows is not None:
-            programs[name] = (
-                _jacobian(name, rows, programs["rhs"])
-                if rows.by
-                else _clear_hidden_zeros(equations, name, rows)
-            )
+        if rows is None:
+            continue
+        if looped is not None and name == "rhs":
+            programs[name] = looped
+        elif looped is not None and rows.along:
+            programs[name] = differentiate_along(looped, rows)
+        elif rows.by:
+            programs[name] = _jacobian(name, rows, programs["rhs"])
+        else:
+            programs[name] = _clear_hidden_zeros(equations, name, rows)
+    if looped is None:
+        programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
     return programs
+
+
+def _loop(equations: Equations) -> Program | None:
+    """The rates as loops over a table of coefficients, where they are many products."""
+    products = find_products(equations)
+    if sum(map(len, products)) <= UNROLLED_PRODUCTS:
+        return None
+    rows = rhs(equations)
+    definitions = equations.definitions_of(rows.elements)
+    lowering = Lowering(equations, [element for _, element in definitions])
+    named = [(name, lowering.node(element)) for name, element in definitions]
+    needed = [(name, lowering.graph.symbol(name)) for name, _ in definitions]
+    program = _name(equations, "rhs", lowering, (named, needed), rows.shape, rows.state)
+    return loop_over(program, rows, products)
+
+
+def _choose(equations: Equations, plain: Program) -> Program:
+    """The rates without the definitions that cancel one another, found by trying each of them.
+
+    A name is tried with those of the same letters, ``Y1, Y2, Y3``, as vectors have them. What a
+    solve names stays.
+    """
+    rows, best = rhs(equations), plain
+    names = [name for name, _ in equations.definitions_of(rows.elements)]
+    closed: frozenset[str] = frozenset()
+    if cost(plain) > TRIED_COST:
+        return plain
+    for _, group in groupby(names, key=lambda name: name.rstrip("0123456789_")):
+        tried = closed.union(group)
+        if tried & equations.intermediates:
+            continue
+        with suppress(OverflowError):  # functions of other arguments
+            program = _program(equations, "rhs", rows.lines, rows.shape, rows.state, closed=tried)
+            if cost(program) < cost(best):
+                closed, best = tried, program
+    return best
+
+
+def _scale(equations: Equations, plain: Program) -> Program:
+    """The rates over products of velocities, where that takes fewer operations.
+
+    Jacobians are made of the rates as they were: each product of momenta has one factor to
+    differentiate, and a product of velocities has two.
+    """
+    scales, rows = find_scales(equations), rhs(equations)
+    if not scales or plain.statements_at("member"):
+        return plain  # velocities are named already
+    scaled = _program(equations, "rhs", rows.lines, rows.shape, rows.state, scales)
+    return min(plain, scaled, key=cost)
 
 
 def _clear_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
@@ -320,86 +405,29 @@ def _program(
     outputs: Sequence[tuple[str, Element]],
     shape: tuple[int, ...],
     state: tuple[str, ...],
+    scales: Mapping[str, Element] | None = None,
+    closed: frozenset[str] = frozenset(),
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
-    setting = equations.setting
-    shorter = [(label, _shorten(equations, element)) for label, element in outputs]
-    definitions, outputs = _inline_single_uses(equations, shorter)
-    lowering = Lowering(equations, [element for _, element in (*definitions, *outputs)])
+    shorter = [(label, shorten(equations, element)) for label, element in outputs]
+    definitions, outputs = inline_single_uses(equations, shorter, closed)
+    elements = [element for _, element in (*definitions, *outputs)]
+    lowering = Lowering(equations, elements, scales)
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in outputs]
-    naming = Naming(lowering.graph, named, results, setting.parameters)
+    return _name(equations, name, lowering, (named, results), shape, state)
+
+
+def _name(
+    equations: Equations,
+    name: str,
+    lowering: Lowering,
+    nodes: tuple[Sequence[tuple[str, int]], Sequence[tuple[str, int]]],
+    shape: tuple[int, ...],
+    state: tuple[str, ...],
+) -> Program:
+    """One Program from the nodes of definitions and outputs."""
+    setting = equations.setting
+    naming = Naming(lowering.graph, *nodes, setting.parameters)
     driving = {"inputs": setting.inputs, "time": setting.time}
     return naming.program(name, shape, state=state, parameters=setting.parameters, **driving)
-
-
-def _inline_single_uses(equations: Equations, outputs: _Lines) -> tuple[_Lines, _Lines]:
-    """Definitions and outputs, intermediate products that are used once being substituted.
-
-    ``_b1 = r*cos(phi)`` goes into ``vx = vtheta*_b1``, where ``r*vtheta`` may be shared. What the
-    equations of a solve name stays, since the Jacobian asks for its derivative; so do factors.
-    """
-    field, solves = equations.setting.field, equations.exact.solves
-    rows = [entry for solve in solves for row in (*solve.matrix, solve.known) for entry in row]
-    columns = (make(i) for make in (forward_name, scaled_name) for s in solves for i in s.block)
-    stays = equations.intermediates.difference(columns).union(*map(field.reach, rows))
-    definitions = equations.definitions_of([element for _, element in outputs])
-    uses = Counter[str]()
-    for _, element in (*definitions, *outputs):
-        uses.update(_uses(field, element))
-    put: dict[str, Element] = {}
-    kept: _Lines = []
-    for name, element in definitions:
-        value = field.substitute(element, put)
-        single = uses[name] == 1 and name.startswith("_") and name not in stays
-        if single and len(field.terms(value)) == 1 and not _has_sum_below(field, value):
-            put[name] = value
-        else:
-            kept.append((name, value))
-    return kept, [(label, field.substitute(element, put)) for label, element in outputs]
-
-
-def _has_sum_below(field: Field, element: Element) -> bool:
-    """Whether a denominator of an element has several terms."""
-    divisors = (divisor for each in field.quotients(element) for divisor, _ in each.divisors)
-    return any(len(field.terms(divisor)) > 1 for divisor in divisors)
-
-
-def _uses(field: Field, element: Element) -> Counter[str]:
-    """How often names are factors; what stands in a sum below or in a function counts twice."""
-    uses = Counter[str]()
-    for written in field.quotients(element):
-        for monomial in written.monomials:
-            uses.update(dict(monomial.powers))
-        for divisor, power in written.divisors:
-            in_sum = len(field.terms(divisor)) > 1
-            uses.update(dict.fromkeys(field.reach(divisor), power + in_sum))
-    for generator in field.functions_in(element):
-        argument = field.adjoined[generator].argument
-        uses.update(dict.fromkeys(field.reach(argument), 2))
-    return uses
-
-
-def _shorten(equations: Equations, element: Element) -> Element:
-    """An element with its definitions multiplied out where that leaves fewer terms in the state.
-
-    ``Pi2*Omega3 - Pi3*Omega2`` becomes ``(1/I3 - 1/I2)*Pi2*Pi3``, whose coefficient depends on
-    parameters alone: half the operations, and again what the book writes.
-    """
-    field, members = equations.setting.field, equations.moving
-    try:
-        closed = equations.close(element)
-    except OverflowError:  # functions of other arguments, for which the field has no room
-        return element
-
-    def terms(of: Element) -> int:
-        products = {
-            tuple(p for p in monomial.powers if p[0] in members)
-            for written in field.quotients(of)
-            for monomial in written.monomials
-        }
-        return len(products)
-
-    divisors = (divisor for written in field.quotients(closed) for divisor, _ in written.divisors)
-    moving = any(field.reach(divisor) & members for divisor in divisors)
-    return closed if terms(closed) < terms(element) and not moving else element

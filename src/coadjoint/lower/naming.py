@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.program import (
@@ -62,8 +63,9 @@ class Naming:
         outputs = tuple(
             Output(label, self._inline(node, fixed=False)) for label, node in self.outputs
         )
+        rows: dict[str, Any] = dict(arrays)
         order = sorted(self.statements, key=lambda statement: statement.level == "member")
-        return Program(name=name, statements=tuple(order), outputs=outputs, shape=shape, **arrays)
+        return Program(name=name, statements=tuple(order), outputs=outputs, shape=shape, **rows)
 
     # -- what depends on what -----------------------------------------------------------
 

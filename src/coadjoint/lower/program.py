@@ -117,6 +117,53 @@ class Output:
 
 
 @dataclass(frozen=True)
+class Table:
+    """Sums of products of two values, with one table of coefficients.
+
+    Row i is the sum of ``c * left[j] * right[k]`` over the entries ``(i, j, k, c)``, from left to
+    right: over all entries with the first pair of vectors, then with the next pair.
+
+    Attributes:
+        entries: i, j, k and c, by rows, of which each has at least one entry.
+        vectors: Names of the values, and of what else products are of, in the same order: those of
+            rows of the first argument, then those of member statements ``scale * row``.
+        scaled: Of each of these statements, the place of its row in a vector.
+        scales: The numbers or names of parameters and their statements that stand before these.
+        passes: Left and right vector of each pass over the entries.
+    """
+
+    entries: tuple[tuple[int, int, int, Fraction], ...]
+    vectors: tuple[tuple[str, ...], ...]
+    scaled: tuple[int, ...]
+    scales: tuple[Number | Symbol, ...]
+    passes: tuple[tuple[int, int], ...]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of all factors."""
+        return frozenset(name for names in self.vectors for name in names)
+
+    def sums(self) -> list[Node]:
+        """The rows, written out."""
+        rows: dict[int, Node] = {}
+        for left, right in self.passes:
+            a, b = (tuple(map(Symbol, self.vectors[place])) for place in (left, right))
+            for i, j, k, c in self.entries:
+                term = Multiply(Multiply(Number(c), a[j]), b[k])
+                rows[i] = Add(rows[i], term) if i in rows else term
+        return list(rows.values())
+
+    def products(self) -> list[tuple[str, Node]]:
+        """The statements ``scale * row`` by name, vector by vector."""
+        count = len(self.scaled)
+        return [
+            (name, Multiply(scale, Symbol(names[place])))
+            for names in self.vectors
+            for name, place, scale in zip(names[-count:], self.scaled, self.scales, strict=True)
+        ]
+
+
+@dataclass(frozen=True)
 class Program:
     """One function of a kernel.
 
@@ -129,6 +176,7 @@ class Program:
         shape: Shape of the result for one member, e.g. ``(6,)``, ``(6, 6)``, ``()``.
         inputs: Component names of the inputs, in order; empty where the spec declares none.
         time: The name of the time; empty where the spec declares none.
+        table: What the outputs are the sums of, where targets print loops in their place.
     """
 
     name: str
@@ -139,6 +187,7 @@ class Program:
     shape: tuple[int, ...]
     inputs: tuple[str, ...] = ()
     time: tuple[str, ...] = ()
+    table: Table | None = None
 
     @property
     def arrays(self) -> dict[str, tuple[str, ...]]:
@@ -160,15 +209,16 @@ class Program:
         return tuple(statement for statement in self.statements if statement.level == level)
 
     def values(self) -> Iterator[Node]:
-        """The values of all statements and outputs, in order."""
+        """The values of all statements and outputs, in order; the sums of a table are left out."""
         yield from (statement.value for statement in self.statements)
-        yield from (output.value for output in self.outputs)
+        if self.table is None:
+            yield from (output.value for output in self.outputs)
 
     def names_used(self) -> frozenset[str]:
         """Names that some statement or output reads."""
-        return frozenset(
-            node.name for value in self.values() for node in walk(value) if isinstance(node, Symbol)
-        )
+        nodes = (node for value in self.values() for node in walk(value))
+        names = frozenset(node.name for node in nodes if isinstance(node, Symbol))
+        return names if self.table is None else names | self.table.names
 
     def operation_counts(self, level: str = "member") -> dict[str, int]:
         """Floating-point operations by kind; outputs count as ``member``.
@@ -177,8 +227,11 @@ class Program:
         """
         counts = dict.fromkeys((*OPERATIONS, *FUNCTIONS), 0)
         values = [statement.value for statement in self.statements_at(level)]
-        if level == "member":
+        if level == "member" and self.table is None:
             values += [output.value for output in self.outputs]
+        elif level == "member" and self.table is not None:
+            products = len(self.table.entries) * len(self.table.passes)
+            counts |= {"add": products - len(self.outputs), "multiply": 2 * products}
         for value in values:
             for node in walk(value):
                 kind = operation(node)

@@ -9,7 +9,6 @@ Read next: `coadjoint.poisson.structure`, then `coadjoint.poisson.brackets` and
 from coadjoint.poisson.brackets import (
     canonical,
     declare_bracket,
-    freeze_bracket,
     lie_poisson,
     magnetic,
     nambu,
@@ -21,7 +20,6 @@ __all__ = [
     "canonical",
     "compatible_sum",
     "declare_bracket",
-    "freeze_bracket",
     "lie_poisson",
     "magnetic",
     "nambu",

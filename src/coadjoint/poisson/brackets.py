@@ -42,42 +42,13 @@ def lie_poisson(
     -z
     """
     _check_count(f"{algebra.name}*", names, algebra.dimension)
-    return _from_constants(algebra, field, names, field.vector(field[x] for x in names), sign)
-
-
-def freeze_bracket(
-    algebra: LieAlgebra,
-    field: Field,
-    names: Sequence[str],
-    point: Sequence[Number],
-    sign: int = -1,
-    cocycle: Mapping[tuple[int, int], Number] | None = None,
-) -> PoissonStructure:
-    """``{mu_i, mu_j} = -+ c_ij^k p_k + w_ij`` with a fixed point p: the frozen-argument bracket.
-
-    It is compatible with the Lie-Poisson bracket of the same sign, where w is a 2-cocycle or left
-    out; `compatible_sum` proves it.
-    """
-    _check_count(f"frozen bracket of {algebra.name}", names, algebra.dimension)
-    _check_count(f"frozen bracket of {algebra.name}", point, algebra.dimension)
-    structure = _from_constants(algebra, field, names, field.vector(point), sign)
-    extra = {pair: field.zero + value for pair, value in (cocycle or {}).items()}
-    entries = {pair: structure.tensor[pair[0]][pair[1]] + value for pair, value in extra.items()}
-    kept = {(i, j): structure.tensor[i][j] for i, j in combinations(range(len(names)), 2)}
-    tensor = antisymmetric(field, len(names), kept | entries)
-    return PoissonStructure(field, tuple(names), tensor, f"frozen bracket of {algebra.name}")
-
-
-def _from_constants(
-    algebra: LieAlgebra, field: Field, names: Sequence[str], mu: Sequence[Element], sign: int
-) -> PoissonStructure:
-    """The tensor ``sign c_ij^k mu_k``."""
     if sign not in (-1, 1):
         raise AlgebraError(
             f"{algebra.name}*: the sign of the Lie-Poisson bracket is {sign!r}; expected -1 (left) "
             "or 1 (right).",
             found=sign,
         )
+    mu = field.vector(field[x] for x in names)
     opposite = [-x for x in mu]
     entries = {}
     for pair, row in algebra.constants.items():

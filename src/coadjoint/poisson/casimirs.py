@@ -8,7 +8,7 @@ Read next: `coadjoint.poisson.summands`, `coadjoint.poisson.search`, `coadjoint.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
@@ -193,10 +193,11 @@ def search_summands(
     return CasimirSearch(structure, tuple(result))
 
 
-def select_independent(structure: PoissonStructure, functions: Sequence[Element]) -> list[Element]:
+def select_independent(structure: PoissonStructure, functions: Iterable[Element]) -> list[Element]:
     """Those functions whose gradients are independent of all before them at a generic point."""
-    slopes = [structure.gradient(function) for function in functions]
-    return [functions[place] for place in independent_rows(structure.field, slopes)]
+    whole = list(functions)
+    slopes = [structure.gradient(function) for function in whole]
+    return [whole[place] for place in independent_rows(structure.field, slopes)]
 
 
 def lie_poisson_dual(algebra: LieAlgebra) -> PoissonStructure:

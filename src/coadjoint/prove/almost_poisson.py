@@ -1,7 +1,16 @@
 r"""The almost-Poisson bracket of a constrained motion: that it is one, and how far from Poisson.
 
 In momenta :math:`M_k = \langle p, D_k \rangle` along the distribution the motion is
-:math:`J \nabla H` (`coadjoint.derive.mechanics.almost_poisson`). Whether J satisfies the Jacobi
+:math:`J \nabla H` (`coadjoint.derive.mechanics.almost_poisson`). Affine constraints
+:math:`\xi = B \eta + \beta` add the drift of the canonical flow of :math:`\langle p, \beta\rangle`,
+
+.. math::
+    \dot z = J \nabla H + \beta z, \qquad
+    \dot M_k = J \nabla H + \langle p, [\beta, D_k] \rangle, \qquad
+    H = E - \langle p, \beta \rangle.
+
+Constraints that are kept are solved for a velocity here, where they have one. Whether J satisfies
+the Jacobi
 identity is a finding: it does if the constraints are integrable, and for rolling bodies it does
 not. The defects are :math:`\{\{a, b\}, c\}` and its cyclic images for a, b, c among momenta and
 positions; derivatives by momenta are those by velocities, through the mass matrix,
@@ -31,6 +40,7 @@ from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.exact import Element
 from coadjoint.exact.dense import dot, inverse
 from coadjoint.exact.witness import is_entire
@@ -62,7 +72,7 @@ class ReducedBracket:
     """The bracket of the momenta along a basis of the distribution, and of the positions.
 
     Args:
-        equations: By a route with linear constraints.
+        equations: By a route with a distribution.
     """
 
     def __init__(self, equations: Equations) -> None:
@@ -100,7 +110,8 @@ class ReducedBracket:
         """``dH`` by velocities and positions, minus what the chain rule makes of `slopes`."""
         energy = self.equations.exact.energy
         assert energy is not None, "a Lagrangian has an energy"
-        closed = self.basis.close(energy)
+        drift = momenta_along(self.distribution.setting, [self.basis.drift])[0]
+        closed = self.basis.close(energy - drift)
         return [
             self.field.derivative(closed, by)
             - self.field.sum(
@@ -110,25 +121,46 @@ class ReducedBracket:
             for by in self.names
         ]
 
-    def motion_defects(self, motion: ConstrainedRates) -> list[Element]:
-        """Rates of momenta and positions minus ``J grad H`` and the forces along the fields.
+    @cached_property
+    def added(self) -> Row:
+        """What is added to ``J grad H``: by a symmetric bracket, and `forces`."""
+        along = relaxed(self.distribution.setting)
+        if along is None:
+            return self.forces
+        return tuple(x + along.closed[n] for n, x in zip(self.names, self.forces, strict=True))
 
-        Fields that move themselves, ``dD/dt``, add ``<p, dD/dt>``.
+    @cached_property
+    def forces(self) -> Row:
+        """What forces, time and affine terms add, in all velocities and reactions.
+
+        To the momenta the forces along the fields, ``<p, dD/dt>`` where fields depend on time, and
+        ``<p, [beta, D]>``; to positions ``beta z``.
         """
-        setting, velocities = self.distribution.setting, self.distribution.frame.velocities
-        forces, momenta = external_forces(setting, velocities), mechanics(setting).momenta
+        setting, frame = self.distribution.setting, self.distribution.frame
+        forces, momenta = external_forces(setting, frame.velocities), mechanics(setting).momenta
+        drift, carried = self.basis.drift, frame.rates(self.basis.drift)
+        added = []
+        for name in self.names:
+            if name not in self.basis.fields:
+                added.append(carried[name])
+                continue
+            along = self.basis.fields[name]
+            turned = frame.bracket(drift, along) if any(drift) else (self.field.zero,) * len(along)
+            moved = [explicit(setting, a) + x for a, x in zip(along, turned, strict=True)]
+            pairs = [*zip(along, forces, strict=True), *zip(moved, momenta, strict=True)]
+            added.append(self.field.sum(a * b for a, b in pairs if a and b))
+        return tuple(added)
+
+    def motion_defects(self, motion: ConstrainedRates) -> list[Element]:
+        """Rates of momenta and positions minus ``J grad H`` and what is added to it."""
         defects = []
-        for name, row in zip(self.names, self.tensor, strict=True):
+        for name, row, added in zip(self.names, self.tensor, self.added, strict=True):
             along = self.basis.fields.get(name, ())  # none of a position
-            driven = [
-                *(a * f for a, f in zip(along, forces, strict=False) if a and f),
-                *(explicit(setting, a) * x for a, x in zip(along, momenta, strict=False)),
-            ]
             moved = self.field[name]
             if along:
-                (moved,) = momenta_along(setting, [along])
+                (moved,) = momenta_along(self.distribution.setting, [along])
             turned = self.field.sum(a * b for a, b in zip(row, self.slopes, strict=True) if a and b)
-            defects.append(motion.balance(moved, self.field.sum(driven), along) - turned)
+            defects.append(motion.balance(moved, added, along) - turned)
         return defects
 
     # -- the Jacobi identity ------------------------------------------------------------
@@ -210,19 +242,20 @@ class ReducedBracket:
 
 def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
     """The bracket in momenta, which is emitted: it gives the motion and is antisymmetric."""
-    first, distribution = motion.equations, motion.distribution
-    if not distribution.is_linear:  # then H is not the energy, and the motion not J grad H
-        return
+    first, affine = motion.equations, not motion.distribution.is_linear
     bracket = ReducedBracket(first)
     momenta = ", ".join(map(bracket.label, range(len(bracket.names))))
-    forced = " and the forces" if first.spec.is_forced else ""
+    relaxation = first.spec.relaxation
+    added = "" if relaxation is None else f" and {relaxation.added}"
+    added += " and the forces" * first.spec.is_forced + " and the drift along beta" * affine
+    energy = " and H = E - <p, beta>" * affine
     yield (
-        "dH/dM = eta and dH/dz = -dl_c/dz, with M = dl_c/deta along the distribution",
+        f"dH/dM = eta and dH/dz = -dl_c/dz, with M = dl_c/deta along the distribution{energy}",
         "bracket",
         bracket.gradient_defects,
     )
     yield (
-        f"the motion of ({momenta}) is the bracket with H{forced}",
+        f"the motion of ({momenta}) is the bracket with H{added}",
         "bracket",
         lambda: decide_zero(bracket.motion_defects(motion), motion.field, motion.where),
     )
@@ -230,9 +263,7 @@ def about_reduced_bracket(motion: ConstrainedRates) -> Iterator[Examined]:
 
 
 def about_reduced_jacobi(motion: ConstrainedRates) -> Iterator[Examined]:
-    """Whether the bracket in momenta satisfies the Jacobi identity, which nobody claims."""
-    if not motion.distribution.is_linear:
-        return
+    """Whether the bracket in momenta satisfies the Jacobi identity, which is not claimed."""
     bracket = ReducedBracket(motion.equations)
     defect = bracket.defect_somewhere()
     if defect is None:

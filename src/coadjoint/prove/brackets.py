@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cache, partial
+from itertools import zip_longest
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations
@@ -118,42 +119,54 @@ def about_casimirs(motion: Motion) -> Iterator[Examined]:
     first, spec, field = motion.equations, motion.spec, motion.field
     proved = list[Element]()
     for place, casimir in enumerate(spec.casimirs):
-        decide = cache(partial(_casimir, first, casimir))
+        decide = cache(partial(_casimir, motion, casimir))
         examined = [(f"{casimir.in_one_line} is a Casimir", "casimir", decide)]
         yield from mark_accepted(spec, ("claims", "casimirs", place), examined, field)
         if decide().verdict is Verdict.PROVED:
             proved += first.setting.components(casimir)
             yield from _about_survival(motion, casimir)
-    searched = _about_completeness(first, proved)
+    searched = _about_completeness(motion, proved)
     yield from within_budget(field, "casimir", "Casimirs", searched)
 
 
-def _casimir(first: Equations, casimir: Formula) -> Decision:
+def _casimir(motion: Motion, casimir: Formula) -> Decision:
     """Whether all components of a claimed Casimir commute with the state."""
-    parts = first.setting.components(casimir)
+    first, parts = motion.equations, motion.setting.components(casimir)
     defects = [defect for part in parts for defect in casimir_defects(first, part)]
-    return decide_zero(defects, first.setting.field, None, in_velocities(first, parts))
+    return decide_zero(defects, motion.field, motion.where, in_velocities(first, parts))
 
 
 def _about_survival(motion: Motion, casimir: Formula) -> Iterator[Examined]:
-    """What becomes of a Casimir where forces act: no bracket keeps it then."""
+    """What becomes of a Casimir where something acts in addition to the bracket."""
     first = motion.equations
     if not first.exact.forces:
         return
+    *others, last = motion.acting
+    acting = ", ".join(others) + " and " * bool(others) + last
     parts = first.setting.components(casimir)
     if all(first.setting.field.is_zero(first.work(part)) for part in parts):
-        statement = f"{casimir.in_one_line} is conserved: forces and dissipation do not change it"
-        yield statement, "conserved", lambda: [motion.rate(part) for part in parts]
+        verb = "do" if others else "does"
+        statement = f"{casimir.in_one_line} is conserved: {acting} {verb} not change it"
+        yield statement, "conserved", lambda: _decide_rates(motion, parts)
         return
     gained = in_velocities(first, map(first.work, parts))
-    pairs = zip(parts, gained, strict=True)
-    statement = f"{casimir.in_one_line} changes only by forces and dissipation"
-    yield statement, "conserved", lambda: [motion.rate(part) - gain for part, gain in pairs]
+    statement = f"{casimir.in_one_line} changes only by {acting}"
+    yield statement, "conserved", lambda: _decide_rates(motion, parts, gained)
 
 
-def _about_completeness(first: Equations, proved: Sequence[Element]) -> Iterator[Examined]:
+def _decide_rates(
+    motion: Motion, parts: Sequence[Element], gained: Sequence[Element] = ()
+) -> Decision:
+    """Whether functions have given rates, or none."""
+    rates = map(motion.rate, parts)
+    rest = [a - b for a, b in zip_longest(rates, gained, fillvalue=motion.field.zero)]
+    return decide_zero(rest, motion.field, motion.where)
+
+
+def _about_completeness(motion: Motion, proved: Sequence[Element]) -> Iterator[Examined]:
     """Casimirs other than those claimed and proved, and whether these are all."""
-    known = completeness(first, proved=proved)
+    first = motion.equations
+    known = completeness(first, proved=proved, reach=motion.reach)
     for casimir in known.found:
         yield (
             f"{describe(first.setting.field, casimir)} is a Casimir",

@@ -170,7 +170,7 @@ class CandidateSearch(PolynomialFamily):
         return self.drift(part).verdict is Verdict.PROVED
 
     def independent(self, solutions: Sequence[Solution[Exponents]]) -> list[int]:
-        """Places of the integrals that are no functions of those before them and of known ones.
+        """Places of the integrals that are not functions of those before them and of known ones.
 
         Slopes at a random point tell, together with those of the relations that hold there.
         """
@@ -181,7 +181,7 @@ class CandidateSearch(PolynomialFamily):
         return span.add_independent(self.gradient(each) for each in solutions)
 
     def find_new(self, degrees: Degrees) -> Iterator[Element]:
-        """Integrals that are no functions of known ones, low degrees first, by numbers, proved.
+        """Integrals that are not functions of known ones, low degrees first, by numbers, proved.
 
         They are known from then on. Coefficients modulo the prime that are those of no small
         fractions give functions that no proof holds for, and these are passed over.

@@ -1,7 +1,7 @@
 """The Certificate: claims with their verdicts, and findings with their scope.
 
 A claim is asserted by the spec or by the engine, and is proved, refuted or numerically supported. A
-finding is what a search, a rank or a count gave: nobody asserted it, so that it decides nothing.
+finding is what a search, a rank or a count gave: it was not claimed, so that it decides nothing.
 Comes in: what the proofs found. Goes out: a frozen record, as a table for people and as JSON for
 programs; times are shown and never stored, since generated files are the same bytes everywhere.
 """
@@ -30,6 +30,14 @@ class Verdict(StrEnum):
     SUPPORTED = "numerically supported"
 
 
+class Shown(StrEnum):
+    """What the number is that a counterexample shows."""
+
+    DIFFERENCE = "the difference"
+    RATE_OF_RELATION = "the rate of a relation"
+    EIGENVALUE = "the smallest eigenvalue"
+
+
 @dataclass(frozen=True)
 class Claim:
     """One statement with its verdict.
@@ -44,10 +52,11 @@ class Claim:
         method: How it was decided.
         seconds: How long that took.
         counterexample: Point at which a refuted claim fails, exact values as text; else empty.
-        defect: What should have been zero, at that point; else empty.
+        defect: What should have been zero, or not negative, at that point; else empty.
         accepted: Whether the spec that makes this claim accepts numerical support; None for a
             claim of the engine, which never does.
-        leaves: Whether not the claimed function has a rate there, but the relations of its set.
+        shown: What the defect is of: of a function on a set that the motion leaves, not the rate
+            of the function but that of a relation of the set.
     """
 
     statement: str
@@ -58,7 +67,7 @@ class Claim:
     counterexample: Mapping[str, str] = field(default_factory=dict)
     defect: str = ""
     accepted: bool | None = None
-    leaves: bool = False
+    shown: Shown = Shown.DIFFERENCE
 
     @property
     def holds(self) -> bool:
@@ -72,7 +81,7 @@ class Claim:
             "statement": self.statement,
             "kind": self.kind,
             "verdict": str(self.verdict),
-            "method": f"{self.method}: {LEAVES}" if self.leaves else self.method,
+            "method": f"{self.method}{LEAVES if self.shown is Shown.RATE_OF_RELATION else ''}",
         }
         if self.verdict is Verdict.REFUTED:
             record |= {"counterexample": dict(self.counterexample), "defect": self.defect}
@@ -185,9 +194,10 @@ class Certificate:
 
 #: What to do where a claim of a spec is not proved.
 _ACCEPT = (
-    "Write the formulas without functions that hide the identity; or accept what the numbers show: "
-    '{ claim = "...", accept = "numerical" } in the place of the claim in [claims], '
-    'accept = "numerical" in the table of a symmetry or transformation.'
+    "Write the formulas without functions that hide the identity. Or accept what the numbers show: "
+    'write { claim = "...", accept = "numerical" } for a claim in [claims], and accept = '
+    '"numerical" in the table of a symmetry or transformation, in [double_bracket] or '
+    "[metriplectic]."
 )
 #: What to do where a claim of the engine is not proved.
 _REWRITE = (
@@ -204,8 +214,8 @@ _FIXES = MappingProxyType(
 )
 
 
-#: What is said where not the claimed function but the relations of its set have a rate.
-LEAVES = "the motion leaves this set"
+#: What the method adds where not the claimed function but the relations of its set have a rate.
+LEAVES = ": the motion leaves this set"
 
 
 def failure_text(claim: Claim) -> str:
@@ -216,10 +226,10 @@ def failure_text(claim: Claim) -> str:
             f"a proof. {_REWRITE if claim.accepted is None else _ACCEPT}"
         )
     point = ", ".join(f"{name} = {value}" for name, value in claim.counterexample.items())
-    place = f"At {point} the difference" if point else f"By {claim.method} what is left"
-    if claim.leaves:
-        place = f"At {point} {LEAVES}: the rate of a relation"
+    place = f"At {point}" if point else f"By {claim.method}"
+    place += LEAVES[1:] + ":" if claim.shown is Shown.RATE_OF_RELATION else ""
+    expected = "none below 0" if claim.shown is Shown.EIGENVALUE else "0"
     return (
-        f"refuted: {claim.statement}. {place} is {claim.defect}; expected 0. "
-        f"{_FIXES.get(claim.kind, _FIX)}"
+        f"refuted: {claim.statement}. {place} {claim.shown} is {claim.defect}; expected "
+        f"{expected}. {_FIXES.get(claim.kind, _FIX)}"
     )

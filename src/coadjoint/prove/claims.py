@@ -19,7 +19,7 @@ from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
-from coadjoint.prove.bound_symmetries import about_constrained_symmetries
+from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from coadjoint.prove.brackets import (
     about_algebra,
     about_bracket,
@@ -90,12 +90,6 @@ def has_fixed_constraints(motion: Motion) -> bool:
     return not frozenset[str]().union(*reached) & {*motion.setting.driving}
 
 
-def has_linear_constraints(motion: Motion) -> bool:
-    """Whether the distribution has no affine term, so that the motion has a bracket."""
-    distribution = motion.equations.distribution
-    return distribution is not None and distribution.is_linear
-
-
 def is_free(motion: Motion) -> bool:
     """Whether momenta or velocities of coordinates are the state, or a bracket is declared."""
     return not has_frame(motion)
@@ -116,9 +110,20 @@ def names_bracket(motion: Motion) -> bool:
     return has_frame(motion) and bool(spec.casimirs or spec.brackets or symmetric)
 
 
-def has_constraints(motion: Motion) -> bool:
-    """Whether constraints bind the motion."""
-    return bool(motion.spec.constraints)
+def relaxes_along_frame(motion: Motion) -> bool:
+    """Whether a symmetric bracket acts where velocities along a frame are the state."""
+    return has_frame(motion) and motion.spec.relaxation is not None
+
+
+def _about_relaxation_along(motion: Motion) -> Iterator[Examined]:
+    """The same conditions by the bracket that is carried over to velocities."""
+    whole = carry_over(motion)
+    yield from about_relaxation(whole.equations, whole.others)
+
+
+def lacks_bracket(motion: Motion) -> bool:
+    """Whether symmetries are claimed of the motion alone: no Poisson bracket is there."""
+    return bool(motion.spec.constraints) or not (has_frame(motion) or has_bracket(motion))
 
 
 def has_energy(motion: Motion) -> bool:
@@ -145,15 +150,16 @@ EXAMINATIONS = (
     Examination(about=lambda motion: about_projection(motion.equations), applies=has_frame),
     Examination(about=about_rolling, applies=has_frame),
     Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
+    Examination(about=_about_relaxation_along, applies=relaxes_along_frame),
     Examination(about=about_casimirs, applies=has_bracket),
     Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
     Examination(about=about_integrals),
     Examination(about=about_galilean),
     Examination(about=about_momenta),
-    Examination(about=about_reduced_bracket, applies=has_linear_constraints),
+    Examination(about=about_reduced_bracket, applies=has_frame),
     Examination(about=about_symmetries, applies=has_bracket),
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
-    Examination(about=about_constrained_symmetries, applies=has_constraints),
+    Examination(about=about_motion_symmetries, applies=lacks_bracket),
     Examination(about=about_transformations),
     Examination(about=about_spatial),
     Examination(about=about_pairs, of_routes=True),
@@ -165,7 +171,7 @@ EXAMINATIONS = (
     ),
     Examination(
         about=about_reduced_jacobi,
-        applies=has_linear_constraints,
+        applies=has_frame,
         kind="jacobi",
         subject="the Jacobi identity of the reduced bracket",
     ),

@@ -8,7 +8,7 @@ Read next: `coadjoint.poisson.casimirs`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -31,13 +31,34 @@ from coadjoint.prove.zero import Decision, Discovery, decide_zero
 DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
-#: What decides the number of independent Casimirs.
-RANKS = "ranks of the gradients and of the bracket"
-MEET = f"{RANKS} that add up to the dimension,"
+#: What a Casimir does not change along, for a Poisson bracket and on constraints.
+BRACKET, FIELDS = "the bracket", "the Hamiltonian vector fields with their commutators"
 #: Where a count of independent functions holds.
 ALMOST = "near almost every point"
 #: Where it holds if roots or logarithms occur, which one analytic function is in such a part alone.
 IN_PART = f"{ALMOST} of a connected part of the domain"
+
+
+#: The entries of a row that are not zero, by place.
+SparseRow = Mapping[int, Element]
+
+
+def drop_zeros(row: Sequence[Element]) -> SparseRow:
+    """The entries that are not zero, by place."""
+    return {n: entry for n, entry in enumerate(row) if entry}
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What bounds the number of Casimirs of an almost-Poisson bracket.
+
+    Attributes:
+        rows: Independent rows of the fields and their commutators, beside so many known Casimirs.
+        is_poisson: Whether no point is known where the Jacobi identity fails.
+    """
+
+    rows: Callable[[int], Sequence[SparseRow]]
+    is_poisson: bool
 
 
 @dataclass(frozen=True)
@@ -47,7 +68,7 @@ class Completeness:
     Attributes:
         found: Casimirs beyond the claimed ones, independent of them.
         known: How many independent ones are known: proved or found.
-        expected: How many there are near almost every point: dimension - rank.
+        expected: How many there are near almost every point: dimension - rank of `directions`.
         missing: How many of these are not known, and what was searched; empty if none is missing.
         generating: Places of coordinates whose brackets give all others.
         source: How the ranks are known.
@@ -55,6 +76,7 @@ class Completeness:
         degree: Where some are missing: every polynomial Casimir up to this degree is a function of
             those known; 0 if this was not found out.
         scope: Where all of this holds.
+        directions: The rank of what bounds the number of Casimirs from above.
     """
 
     found: tuple[Element, ...]
@@ -66,6 +88,7 @@ class Completeness:
     error: str = ""
     degree: int = 0
     scope: str = ALMOST
+    directions: str = BRACKET
 
     @property
     def decision(self) -> Decision | Discovery:
@@ -75,9 +98,11 @@ class Completeness:
         the bracket bounds it from above: where the two meet, both are proved. Where Casimirs are
         missing, a rank may be larger than at the points where it was taken, so that it is found.
         """
+        ranks = f"ranks of the gradients and of {self.directions}"
         if self.error:
-            return Discovery(f"{RANKS} {self.source}", self.scope, self.error)
-        return Decision(verdict=Verdict.PROVED, method=f"{MEET} {self.source}")
+            return Discovery(f"{ranks} {self.source}", self.scope, self.error)
+        method = f"{ranks} that add up to the dimension, {self.source}"
+        return Decision(verdict=Verdict.PROVED, method=method)
 
     @property
     def statement(self) -> str:
@@ -100,11 +125,14 @@ def _all(known: int, noun: str) -> str:
 
 
 def bracket_of(equations: Equations) -> PoissonStructure:
-    """The emitted Poisson tensor as a structure."""
+    """The emitted Poisson tensor as a structure; on constraints, in what these leave free."""
     setting, emitted = equations.setting, equations.exact.poisson_tensor
     assert emitted is not None, f"the route {equations.route} knows no bracket"
-    tensor = tuple(tuple(map(equations.close, row)) for row in emitted)
-    return PoissonStructure(setting.field, setting.state, tensor, f"bracket of {setting.spec.name}")
+    given = dict(equations.exact.definitions)
+    places = [n for n, name in enumerate(setting.state) if name not in given]
+    tensor = tuple(tuple(equations.close(emitted[i][j]) for j in places) for i in places)
+    names = tuple(setting.state[n] for n in places)
+    return PoissonStructure(setting.field, names, tensor, f"bracket of {setting.spec.name}")
 
 
 def is_proved_casimir(equations: Equations, function: Element) -> bool:
@@ -114,7 +142,10 @@ def is_proved_casimir(equations: Equations, function: Element) -> bool:
 
 
 def completeness(
-    equations: Equations, degree: int = DEGREE, proved: Sequence[Element] | None = None
+    equations: Equations,
+    degree: int = DEGREE,
+    proved: Sequence[Element] | None = None,
+    reach: Reach | None = None,
 ) -> Completeness:
     """Count the proved Casimirs, and look for others where some are missing.
 
@@ -125,13 +156,15 @@ def completeness(
         equations: The motion with its bracket.
         degree: Up to which degree polynomials are searched.
         proved: Claimed Casimirs that are proved; by default they are proved here.
+        reach: Of an almost-Poisson bracket.
     """
     setting, structure = equations.setting, bracket_of(equations)
     if proved is None:
         claimed = [c for casimir in setting.spec.casimirs for c in setting.components(casimir)]
         proved = [c for c in claimed if is_proved_casimir(equations, c)]
-    known = select_independent(structure, proved)
-    expected = structure.dimension - structure.generic_rank()
+    known = select_independent(structure, map(equations.close, proved))
+    rows = [*map(drop_zeros, structure.tensor)] if reach is None else reach.rows(len(known))
+    expected = structure.dimension - generic_rank(setting.field, rows)
     declared = setting.spec.poisson.functions if setting.spec.poisson is not None else ()
     given = [setting.formula(function) for function in declared]
     given = [function for function in given if is_proved_casimir(equations, function)]
@@ -139,15 +172,18 @@ def completeness(
     missing, reached = "", 0
     generating: Sequence[int] = range(structure.dimension)
     if len(known) + len(further) < expected:
-        search = _search(equations, structure, degree, [*known, *further])
-        together = select_independent(structure, [*known, *further, *search.generators])
-        further = together[len(known) :]
-        missing, reached = search.missing, search.degree
-        generating = _generating(structure) if search.generators else generating
+        if reach is not None and not reach.is_poisson:
+            missing = f"{expected - len(known)} not searched for, since the Jacobi identity fails"
+        else:
+            search = _search(equations, structure, degree, [*known, *further])
+            together = select_independent(structure, [*known, *further, *search.generators])
+            further = together[len(known) :]
+            missing, reached = search.missing, search.degree
+            generating = _generating(structure) if search.generators else generating
     whole = len(known) + len(further)
     if whole == expected:
         missing, reached = "", 0
-    source, error = _source(structure, (*known, *further), expected)
+    source, error = _source(structure, (*known, *further), rows)
     scope = scope_of(structure, (*known, *further))
     return Completeness(
         found=tuple(further),
@@ -159,11 +195,12 @@ def completeness(
         error=error,
         degree=reached,
         scope=scope,
+        directions=BRACKET if reach is None else FIELDS,
     )
 
 
 def _source(
-    structure: PoissonStructure, known: Sequence[Element], expected: int
+    structure: PoissonStructure, known: Sequence[Element], rows: Sequence[SparseRow]
 ) -> tuple[str, str]:
     """How the ranks are known, and how likely one is larger.
 
@@ -172,10 +209,9 @@ def _source(
     """
     field, size = structure.field, structure.dimension
     gradients = [structure.gradient(casimir) for casimir in known]
-    tensor = [{size + n: entry for n, entry in enumerate(row)} for row in structure.tensor]
-    both = [*gradients, *tensor]
+    both = [*gradients, *({size + n: x for n, x in row.items()} for row in rows)]
     source = source_of_ranks(field, (both, size))
-    met = len(known) == expected
+    met = len(known) + generic_rank(field, rows) == size
     if met and source != MODULO:
         met = generic_rank(field, both) == size
     return source, "" if met else error_of_ranks(field, both)

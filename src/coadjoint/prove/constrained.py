@@ -34,6 +34,7 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.relaxation import lost
 from coadjoint.prove.zero import Decision, Examined
 
 #: No combination of the equations of motion.
@@ -258,12 +259,13 @@ class ConstrainedRates(Motion):
     def energy_balance(self) -> Element:
         """``dE/dt`` minus the power of declared forces and of constraints that move."""
         balance = Balance(self.equations)
-        return self.value(self._differentiate(self.close(balance.energy)) - balance.power)
+        power = balance.power + lost(self.equations, balance.energy)
+        return self.value(self._differentiate(self.close(balance.energy)) - power)
 
 
 @once
 def motion_of(equations: Equations) -> Motion:
-    """The motion of Equations, whatever binds it."""
+    """The motion of Equations, with constraints or without."""
     return Motion(equations) if equations.distribution is None else ConstrainedRates(equations)
 
 
@@ -378,7 +380,7 @@ def same_accelerations(first: Equations, other: Equations) -> list[Element]:
 def same_solves(first: Equations, other: Equations) -> list[Element]:
     """Differences of the linear equations of two routes, of the rates and of the reactions.
 
-    The equations are compared entry by entry, whatever blocks each route has found in them.
+    The equations are compared entry by entry, for any blocks that each route has found in them.
     Reactions, and rates of velocities that constraints give, rest on their solution; they are
     compared where both routes have them.
     """

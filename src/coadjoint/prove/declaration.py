@@ -9,6 +9,7 @@ Read next: `coadjoint.render.kernels`.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from coadjoint.declared import KernelContext, Quantity
 from coadjoint.derive import Equations
@@ -69,8 +70,8 @@ def _origin(spec: Spec) -> str:
     }[spec.poisson.kind]
 
 
-def _quantity(declared: Declared) -> Quantity:
-    """What is declared as the generated package declares it."""
+def _quantity(declared: Declared | Reconstructed | Emitted, **more: Any) -> Quantity:
+    """What is declared or emitted as the generated package declares it."""
     default = getattr(declared, "default", None)
     return Quantity(
         name=declared.name,
@@ -79,32 +80,18 @@ def _quantity(declared: Declared) -> Quantity:
         components=declared.components,
         default=None if default is None else tuple(map(float, default)),
         positive=getattr(declared, "positive", False),
+        **more,
     )
 
 
 def _declare_followed(spec: Spec, each: Reconstructed) -> Quantity:
     """What is reconstructed as the generated package declares it."""
     upright = spec.rolling.normal if spec.rolling and each.attitude and each.of_rolling else ""
-    default = None if each.default is None else tuple(map(float, each.default))
-    return Quantity(
-        name=each.name,
-        shape=each.shape,
-        unit=each.unit,
-        components=each.components,
-        default=default,
-        upright=upright,
-    )
+    return _quantity(each, upright=upright)
 
 
 def _observable(equations: Equations, each: Emitted) -> Quantity:
     """What is emitted as the generated package declares it."""
     conserved = is_conserved(equations, each)
     held = conserved and while_constant(equations, each.values)
-    return Quantity(
-        name=each.name,
-        shape=each.shape,
-        unit=each.unit,
-        components=each.components,
-        conserved=conserved,
-        while_constant=bool(held),
-    )
+    return _quantity(each, conserved=conserved, while_constant=bool(held))

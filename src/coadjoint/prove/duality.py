@@ -31,7 +31,7 @@ def about_duality(equations: Equations) -> Iterator[Examined]:
     if equations.route != "canonical" or spec.lagrangian is None or equations.kept:
         return
     if spec.poisson is not None and spec.poisson.entries:
-        return  # with magnetic terms velocities are no derivatives of l by definition
+        return  # with magnetic terms velocities are not derivatives of l by definition
     with suppress(DerivationError):
         momenta = _momenta(equations)
         examine = partial(_defects, equations, momenta)

@@ -17,6 +17,7 @@ from functools import cached_property
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.distribution import Distribution
+from coadjoint.derive.mechanics.external import force_components
 from coadjoint.exact import Element, Field
 from coadjoint.prove.driven import (
     OWN_CHANGE,
@@ -26,6 +27,7 @@ from coadjoint.prove.driven import (
     while_constant,
 )
 from coadjoint.prove.relaxation import is_dissipative
+from coadjoint.spec.model import Variable
 
 
 def keeps_energy(equations: Equations) -> bool:
@@ -103,13 +105,18 @@ class Balance:
         return self.field.sum(
             slopes[name] * part
             for variable in self.spec.state
-            if variable.name in self.spec.forces and variable.role != "velocity"
-            for name, part in zip(
-                variable.components,
-                self.setting.components(self.spec.forces[variable.name], self.setting.reactions),
-                strict=True,
-            )
+            if variable.role != "velocity"
+            for name, part in self._acting_along(variable)
         )
+
+    def _acting_along(self, variable: Variable) -> list[tuple[str, Element]]:
+        """The components of a variable that a force acts along, each with what acts."""
+        if variable.name not in self.spec.forces:
+            return []
+        formula = self.spec.forces[variable.name]
+        parts = self.setting.components(formula, self.setting.reactions)
+        values = force_components(self.setting, variable, parts)
+        return list(zip(variable.components, values, strict=True))
 
     @cached_property
     def _velocities(self) -> tuple[str, ...]:
@@ -148,11 +155,7 @@ class Balance:
         """``<f, xi> - <dR/dxi, xi>``, each force with the velocity that it is declared for."""
         terms = [-self._lost]
         for variable in self.spec.having_role("velocity"):
-            if variable.name in self.spec.forces:
-                force = self.spec.forces[variable.name]
-                parts = self.setting.components(force, self.setting.reactions)
-                moved = self.setting.elements(variable.components)
-                terms += [f * xi for f, xi in zip(parts, moved, strict=True)]
+            terms += [f * self.field[xi] for xi, f in self._acting_along(variable)]
         return terms
 
     def _work_of_constraints(self) -> list[Element]:

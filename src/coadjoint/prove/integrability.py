@@ -22,6 +22,7 @@ from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import minor
 from coadjoint.exact.ranks import independent_rows
+from coadjoint.exact.signs import sign
 from coadjoint.exact.witness import is_entire, is_nonzero
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import ALMOST, IN_PART
@@ -40,8 +41,7 @@ class Basis:
     """Fields that span a distribution at almost every point.
 
     Where no constraint is kept these are the columns of B. A constraint that is kept is solved for
-    the first velocity that it has, which is free of choice but has a pole: proofs divide by it,
-    kernels do not.
+    a velocity, which may have a pole: proofs divide by it, kernels do not.
 
     Attributes:
         distribution: Of the constraints.
@@ -54,22 +54,21 @@ class Basis:
         """The velocities for which kept constraints are solved, in terms of the others."""
         field, known = self.distribution.setting.field, dict[str, Element]()
         for _, residual in self.distribution.kept:
-            value = field.substitute(self._linear(residual), known)
-            name = next(
-                n
-                for n in self.distribution.independent
-                if is_nonzero(field, field.derivative(value, n))
-            )
+            value = field.substitute(residual, known)
+            name = self._choose(value)
             rest = field.substitute(value, {name: field.zero})
             root = -rest / field.derivative(value, name)
             known = {n: field.substitute(v, {name: root}) for n, v in known.items()}
             known[name] = root
         return known
 
-    def _linear(self, residual: Element) -> Element:
-        field = self.distribution.setting.field
-        rest = dict.fromkeys(self.distribution.independent, field.zero)
-        return residual - field.substitute(residual, rest)
+    def _choose(self, residual: Element) -> str:
+        """The velocity for which a constraint is solved: without a pole if there is such a one."""
+        field, names = self.distribution.setting.field, self.distribution.independent
+        slopes = dict(zip(names, field.gradient(residual, names), strict=True))
+        free = (name for name, slope in slopes.items() if sign(field, slope))
+        generic = (name for name, slope in slopes.items() if is_nonzero(field, slope))
+        return next(free, None) or next(generic)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -80,8 +79,19 @@ class Basis:
     def fields(self) -> dict[str, Row]:
         """The fields by their velocities, components along the frame."""
         field = self.distribution.setting.field
-        xi = [self._linear(self.close(value)) for value in self.distribution.xi]
-        return {name: tuple(field.derivative(x, name) for x in xi) for name in self.names}
+        return {name: tuple(field.derivative(x, name) for x in self._xi) for name in self.names}
+
+    @cached_property
+    def drift(self) -> Row:
+        """The velocities where those of the fields are zero: beta, zero without affine terms."""
+        field = self.distribution.setting.field
+        rest = dict.fromkeys(self.names, field.zero)
+        return tuple(field.substitute(x, rest) for x in self._xi)
+
+    @cached_property
+    def _xi(self) -> Row:
+        """All velocities of the frame by those of the fields."""
+        return tuple(map(self.close, self.distribution.xi))
 
     def close(self, element: Element) -> Element:
         """An element in the velocities of the fields and the positions alone."""

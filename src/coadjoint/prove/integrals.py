@@ -16,15 +16,15 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.reconstruction import fixed_row
 from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element
-from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
-from coadjoint.spec.model import Integral
-from coadjoint.spec.spatial import SpatialMomentum, spatial_momenta
+from coadjoint.spec.model import DerivedMomentum, Integral
+from coadjoint.spec.spatial import spatial_momenta
 
 
 def about_energy(motion: Motion) -> Iterator[Examined]:
@@ -82,7 +82,7 @@ def _conserved_on(
         with suppress(UndecidedError):  # of a branch without points
             left = decide_zero(kept, where.field, where, parts)
             if left.verdict is Verdict.REFUTED:
-                return replace(left, leaves=True)
+                return replace(left, shown=Shown.RATE_OF_RELATION)
     return decision
 
 
@@ -92,7 +92,7 @@ def is_conserved(equations: Equations, each: Emitted) -> bool:
         return keeps_energy(equations)
     if each.kept is Kept.UNLESS_WORKED_ON:
         motion = motion_of(equations)
-        return all(motion.field.is_zero(motion.rate(value)) for value in each.values)
+        return all(motion.where.contains(motion.rate(value)) for value in each.values)
     return each.kept is Kept.ALWAYS
 
 
@@ -103,7 +103,7 @@ def about_spatial(motion: Motion) -> Iterator[Examined]:
             yield f"{seen.name} is conserved", "conserved", partial(_seen_from_space, motion, seen)
 
 
-def _seen_from_space(motion: Motion, seen: SpatialMomentum) -> Decision:
+def _seen_from_space(motion: Motion, seen: DerivedMomentum) -> Decision:
     """The rates of a momentum as seen from space, at matrices of the group's form."""
     emitted, fixed = dict(motion.equations.exact.observables), fixed_row(motion.setting)
     text = ", ".join(relation.text for relation in fixed)

@@ -25,7 +25,9 @@ from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.frames import frame_of
+from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.derive.mechanics.sections import section_momenta, section_vector
+from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import dot
 from coadjoint.prove.findings import SHOWN
@@ -59,6 +61,7 @@ def law_along(equations: Equations, along: Row) -> Element:
     momenta = mechanics(setting).momenta
     forces = external_forces(setting, frame.velocities)
     reactions = setting.elements([each.reaction for each in bound])
+    gained = _gain(setting, along)
     worked = [dot(field.gradient(each.residual, frame.velocities), along) for each in bound]
     return field.sum(
         [
@@ -67,8 +70,23 @@ def law_along(equations: Equations, along: Row) -> Element:
             *(p * explicit(setting, x) for p, x in zip(momenta, along, strict=True)),
             *(f * x for f, x in zip(forces, along, strict=True)),
             *(r * w for r, w in zip(reactions, worked, strict=True) if w != 0),
+            gained,
         ]
     )
+
+
+def _gain(setting: Setting, along: Row) -> Element:
+    """What a symmetric bracket adds along a field, where velocities along the frame are the state.
+
+    It moves the momenta, and by the positions the field.
+    """
+    field, known, frame = setting.field, relaxed(setting), frame_of(setting)
+    if known is None:
+        return field.zero
+    moved = [known.closed[z] for z in frame.positions]
+    turned = (dot(field.gradient(x, frame.positions), moved) if moved else 0 for x in along)
+    parts = zip(frame.velocities, mechanics(setting).momenta, along, turned, strict=True)
+    return field.sum(known.closed[v] * x + p * y for v, p, x, y in parts)
 
 
 def _statement(motion: Motion, section: Section, law: Element) -> str:

@@ -19,6 +19,7 @@ from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Equation, Row
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
+from coadjoint.prove.completeness import Reach
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.equivalence import in_velocities, kept_velocities
 from coadjoint.prove.ideals import Ideal
@@ -138,6 +139,16 @@ class Motion:
     def in_state(self, function: Element) -> Element:
         """A function with a decidable zero: of the state alone, or of velocities in its place."""
         return self.put(in_velocities(self.equations, [function])[0])
+
+    @property
+    def acting(self) -> list[str]:
+        """What acts in addition to the bracket, as a statement has it."""
+        return ["forces", "dissipation"] if self.spec.is_driven else []
+
+    @property
+    def reach(self) -> Reach | None:
+        """What bounds the number of Casimirs where the bracket is almost-Poisson."""
+        return None
 
     def energy_balance(self) -> Element:
         """``dE/dt`` minus what the energy gains by all that acts, on a section where it is one."""

@@ -52,7 +52,7 @@ def on_section(restriction: Restriction, function: Element) -> Element:
 
 
 def _decide(whole: Equations, examine: Callable[[], Found]) -> Decision | Discovery:
-    """What becomes of a claim about the whole system, decided in its field."""
+    """A claim about the whole system, decided in its field."""
     result = examine()
     if isinstance(result, Decision | Discovery):
         return result

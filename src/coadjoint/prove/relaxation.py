@@ -16,31 +16,40 @@ these conditions as a claim. Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.domain import region
-from coadjoint.derive.mechanics.external import added_rates, metric
+from coadjoint.derive.mechanics.external import added_rates, metric, own_rates
+from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.derive.reductions import whole_equations
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, dot
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.driven import has_moving_momenta
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
 from coadjoint.prove.zero import Examined, UndecidedError, mark_accepted
 
 
-def about_relaxation(first: Equations) -> Iterator[Examined]:
-    """The conditions, and the balance of the entropy; that of the energy is told of all motions."""
+def about_relaxation(
+    first: Equations, others: Sequence[Element] | None = None
+) -> Iterator[Examined]:
+    """The conditions, and the balance of the entropy; that of the energy is told of all motions.
+
+    Args:
+        first: With their bracket in the state.
+        others: What is added to the rates besides; by default the forces and what time adds.
+    """
     spec, relaxation = first.spec, first.spec.relaxation
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if relaxation is None or energy is None or tensor is None:
         return
-    known = _Relaxed(first, energy, tensor)
-    grows = ": the entropy never falls" if known.has_sign else ""
+    known = _Relaxed(first, energy, tensor, others)
+    grows = ": the entropy never falls" if is_dissipative(first) else ""
     claims: list[Examined] = [
         ("G is symmetric", "dissipation", known.asymmetry),
         (
@@ -55,9 +64,10 @@ def about_relaxation(first: Equations) -> Iterator[Examined]:
             ("P dS = 0: S is a Casimir", "dissipation", partial(casimir_defects, first, entropy)),
             ("G dh = 0", "dissipation", known.on_energy),
         ]
-        if not spec.is_forced:
+        if not any(known.others):
             claims.append((f"dS/dt = <dS, G dS>{grows}", "conserved", known.entropy))
     terms = f"{{x, h}} + {relaxation.added}{' + the forces' * spec.is_forced}"
+    terms += " + dx/dt at fixed momenta" * has_moving_momenta(first)
     claims.append((f"the rates are {terms}", "dissipation", known.list_added))
     yield from mark_accepted(spec, (relaxation.table,), claims, first.setting.field)
 
@@ -73,37 +83,51 @@ def is_dissipative(first: Equations) -> bool:
     """Whether G is proved positive semidefinite, so that what it does has a sign."""
     if first.spec.reduction is not None:  # G acts on the whole system
         first = derive_whole(first)
-    energy, tensor = first.exact.energy, first.exact.poisson_tensor
-    if first.spec.relaxation is None or energy is None or tensor is None:
+    if first.spec.relaxation is None or first.exact.energy is None:
         return False
-    return _Relaxed(first, energy, tensor).has_sign
+    with suppress(UndecidedError):
+        G = metric(first.setting)
+        if first.distribution is None:  # else it is a function of the state alone
+            G = tuple(tuple(in_velocities(first, row)) for row in G)
+        return decide_semidefinite(G, first.setting.field).verdict is Verdict.PROVED
+    return False
 
 
 def lost(first: Equations, energy: Element) -> Element:
-    """What a double bracket adds to the rate of the energy: ``-<P dh, G P dh>``; 0 without one."""
+    """What a double bracket adds to the rate of the energy: ``-<P dh, G P dh>``; 0 without one.
+
+    Along a frame ``P dh`` is what the kernel computes, and the rest of the law checks it.
+    """
     relaxation, tensor = first.spec.relaxation, first.exact.poisson_tensor
     if relaxation is None or relaxation.S is not None or tensor is None:
         return first.setting.field.zero
+    along = relaxed(first.setting)
+    if along is not None:
+        rates = [value for _, value in along.definitions]
+        return -dot(rates, apply(metric(first.setting), rates))
     return _Relaxed(first, energy, tensor).power()
 
 
 class _Relaxed:
     """G and what it acts on, by the bracket and the derivatives of the energy."""
 
-    def __init__(self, first: Equations, energy: Element, tensor: Tensor) -> None:
+    def __init__(
+        self,
+        first: Equations,
+        energy: Element,
+        tensor: Tensor,
+        others: Sequence[Element] | None = None,
+    ) -> None:
         self.first, self.field = first, first.setting.field
+        if others is None:
+            pairs = zip(added_rates(first.setting), own_rates(first.setting), strict=True)
+            others = [force + own for force, own in pairs]
+        self.others = in_velocities(first, others)
         self.G = tuple(tuple(in_velocities(first, row)) for row in metric(first.setting))
         self._P = [in_velocities(first, row) for row in tensor]
         self._dh = gradient(first, energy)
         self._free = apply(self._P, self._dh)
         self._energy = energy
-
-    @property
-    def has_sign(self) -> bool:
-        """Whether it is proved, and not only supported, that no ``<v, G v>`` is negative."""
-        with suppress(UndecidedError):
-            return decide_semidefinite(self.G, self.field).verdict is Verdict.PROVED
-        return False
 
     def asymmetry(self) -> list[Element]:
         """``G_ij - G_ji``."""
@@ -134,8 +158,7 @@ class _Relaxed:
             S = self.first.setting.formula(relaxation.S)
             expected = apply(self.G, gradient(self.first, S))
         rates = in_velocities(self.first, self.first.exact.rates)
-        forces = in_velocities(self.first, added_rates(self.first.setting))
-        parts = zip(rates, self._free, forces, expected, strict=True)
+        parts = zip(rates, self._free, self.others, expected, strict=True)
         return [rate - free - force - own for rate, free, force, own in parts]
 
     def power(self) -> Element:

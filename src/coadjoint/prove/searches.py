@@ -1,6 +1,6 @@
 """Searches: what is found in addition to the claims, each with its own budget.
 
-Integrals, measures, Casimirs and growth vectors are searched for though nobody claimed them.
+Integrals, measures, Casimirs and growth vectors are searched for, though they are not claimed.
 Such a search may take very long, and must not keep a user from a proved kernel; so it ends after
 a given amount of work, and the certificate says that it did. Work is counted and not timed
 (`coadjoint.exact.element.Factors.budget`), so that a certificate is the same on every machine.

@@ -18,7 +18,7 @@ from coadjoint.derive.mechanics.configuration import coupled_blocks
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import minor
 from coadjoint.exact.signs import sign
-from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.points import DIGITS, Points, real
 from coadjoint.prove.zero import ADVICE, Decision, UndecidedError, show_point
 
@@ -57,13 +57,14 @@ def decide_semidefinite(matrix: Matrix, ring: Field) -> Decision:
             least = min(mpmath.eigsy(values / 2, eigvals_only=True))
             seen += 1
             if least < -ROUNDING * max(map(abs, values)):
-                method = f"an eigenvalue of {DIGITS} digits"
+                method = f"{DIGITS}-digit eigenvalues"
                 shown = show_point(points, point)
                 return Decision(
                     verdict=Verdict.REFUTED,
                     method=method,
                     point=shown,
                     defect=mpmath.nstr(least, 15),
+                    shown=Shown.EIGENVALUE,
                 )
         if seen == POINTS:
             break

@@ -17,7 +17,7 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.mechanics.driving import explicit, list_time_reversed
-from coadjoint.derive.symmetries import momentum_map, moved_components, positions, structure_of
+from coadjoint.derive.symmetries import evaluate_components, momentum_map, positions, structure_of
 from coadjoint.exact import Element, element_text
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.poisson.momentum_maps import MomentumMap
@@ -47,7 +47,8 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     for place, claim in enumerate(spec.brackets):
         text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
         statement = f"{text} = {claim.value.in_one_line}"
-        claimed = [(statement, "bracket", partial(_claimed_bracket, first, claim, known))]
+        defects = partial(_claimed_bracket, first, claim, known)
+        claimed = [(statement, "bracket", partial(_decide_on, motion, defects))]
         yield from mark_accepted(spec, ("claims", "brackets", place), claimed, field)
 
 
@@ -240,7 +241,8 @@ def _move_state(motion: Motion, transformation: Transformation) -> dict[str, Ele
     images = {name: field[name] for name in setting.state}
     if transformation.reverses_time:
         images |= {name: -field[name] for name in list_time_reversed(setting)}
-    return images | moved_components(setting, transformation.map)
+    moved = evaluate_components(setting, transformation.map)
+    return images | {name: motion.close(image) for name, image in moved.items()}
 
 
 def _motion_defects(motion: Motion, transformation: Transformation) -> list[Element]:

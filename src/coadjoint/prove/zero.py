@@ -21,7 +21,7 @@ import mpmath
 from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.witness import enclosure
-from coadjoint.prove.certificate import Claim, Finding, Verdict
+from coadjoint.prove.certificate import Claim, Finding, Shown, Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.points import (
     DIGITS,
@@ -62,7 +62,7 @@ class Decision:
         defect: Its value there.
         accepted: Whether the spec that makes this claim accepts numerical support; None for a
             claim of the engine, which never does.
-        leaves: Whether not the claimed function has a rate there, but the relations of its set.
+        shown: What the defect is of.
     """
 
     verdict: Verdict
@@ -70,12 +70,12 @@ class Decision:
     point: dict[str, str] = field(default_factory=dict)
     defect: str = ""
     accepted: bool | None = None
-    leaves: bool = False
+    shown: Shown = Shown.DIFFERENCE
 
 
 @dataclass(frozen=True)
 class Discovery:
-    """How something was found that nobody claims: a rank, the end of a search, a count.
+    """How something was found that is not claimed: a rank, the end of a search, a count.
 
     Attributes:
         method: How it was found.
@@ -114,7 +114,7 @@ def make_entry(
         counterexample=result.point,
         defect=result.defect,
         accepted=result.accepted,
-        leaves=result.leaves,
+        shown=result.shown,
     )
 
 

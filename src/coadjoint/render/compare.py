@@ -18,7 +18,7 @@ from typing import Final
 from coadjoint.files import read_regular
 from coadjoint.render.ownership import LOCK, read_manifest
 
-#: Files of the tree that are no output.
+#: Files of the tree that are not output.
 NOT_OURS: Final = frozenset({LOCK})
 
 

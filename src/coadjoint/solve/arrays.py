@@ -8,13 +8,14 @@ Read next: `coadjoint.render.targets.protocol`, which has the `Call`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, KernelTypeError
-from coadjoint.render.targets.protocol import FEW, Call, Evaluate
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
@@ -53,12 +54,7 @@ def check_call(
         KernelArgumentError: Something has a wrong shape, name, sign, or overlaps.
         KernelTypeError: Something is not numeric in a way that float64 can hold.
     """
-    if function not in system.functions:
-        raise KernelArgumentError(
-            f"{system.name} has no function {function!r}; expected one of "
-            f"{', '.join(system.functions)}.",
-            found=function,
-        )
+    check_function(system, function)
     rows = system.rows(function)
     packed = as_float64(state, "state") if bound else pack(state, rows, "state")
     if bound and packed is not state:
@@ -66,7 +62,7 @@ def check_call(
             "bind reads the state in place; expected a C-contiguous float64 array.",
             found=str(type(state).__name__),
         )
-    _check_rows(packed, rows, "state", system.name)
+    check_rows(packed, rows, "state", system.name)
     batch = packed.shape[1:]
     given = {
         "parameters": pack_parameters(system, parameters),
@@ -105,36 +101,57 @@ def check_call(
     return call, result
 
 
-def evaluate_ready(
-    shape: tuple[int, ...], rows: int, evaluate: Evaluate
-) -> Callable[[Any], Array | None]:
-    """A function of one or a few states for arrays that are ready, and None for all else.
+def check_function(system: System, function: str) -> None:
+    """A function that a system has.
 
-    It looks at what `check_call` looks at, and at nothing twice: what is not a writable,
-    C-contiguous array ``(n,)`` or ``(n, N)`` of float64 goes through the checks that explain.
-
-    Args:
-        shape: Of the result for one member.
-        rows: Of the state.
-        evaluate: The function with its defaults, by the kernel.
+    Raises:
+        KernelArgumentError: It has not; the message names those that it has.
     """
-    float64, single = np.dtype(np.float64), (rows,)
+    if function in system.functions:
+        return
+    known = KERNEL_FUNCTIONS.get(function)
+    large = known is not None and known.looped == "never" and "jacobian_vector" in system.functions
+    advice = (
+        " Its rates are loops over a table, and matrices of its size are not written out: take "
+        "jacobian_vector(state, vector), the Jacobian times a vector."
+    )
+    raise KernelArgumentError(
+        f"{system.name} has no function {function!r}; expected one of "
+        f"{', '.join(system.functions)}.{advice if large else ''}",
+        found=function,
+    )
 
-    def call(state: Any) -> Array | None:
-        if type(state) is not np.ndarray or state.dtype is not float64 or not state.flags.carray:
-            return None
-        given = state.shape
-        if given == single:
-            members, out = 1, np.empty(shape)
-        elif len(given) == 2 and given[0] == rows and 0 < given[1] <= FEW:
-            members = given[1]
-            out = np.empty((*shape, members))
-        else:
-            return None
-        evaluate(members, state, out)
-        return out
 
-    return call
+def stack_vector(system: Any, function: str, state: Values, vector: Values) -> Array:
+    """A state with a vector below it, ``(2*n, *batch)``.
+
+    Raises:
+        KernelArgumentError: The system has no such function, or the shapes differ.
+    """
+    check_function(system, function)
+    packed = [
+        pack(each, system.STATE, name) for each, name in ((state, "state"), (vector, "vector"))
+    ]
+    for each, name in zip(packed, ("state", "vector"), strict=True):
+        check_rows(each, system.STATE, name, system.name)
+    if packed[0].shape != packed[1].shape:
+        raise KernelArgumentError(
+            f"the state has the shape {packed[0].shape}, the vector {packed[1].shape}; expected "
+            "the same.",
+            found=list(packed[1].shape),
+            expected=list(packed[0].shape),
+        )
+    return np.concatenate(packed)
+
+
+def find_slopes(system: System, state: Array, *given: Any, **named: Any) -> Array:
+    """The Jacobian ``(n, n)`` of a system at one state, column by column where it has no matrix."""
+    if "jacobian" in system.functions:
+        return system.evaluate("jacobian", state, *given, **named)
+    columns = np.identity(len(state))
+    states = np.repeat(state[:, None], len(state), axis=1)
+    stacked = np.concatenate([states, columns])
+    return system.evaluate("jacobian_vector", stacked, *given, **named)
 
 
 def as_float64(value: Any, name: str) -> Array:
@@ -160,14 +177,17 @@ def as_float64(value: Any, name: str) -> Array:
             f"{name} is ragged: {error}. Expected rows of one length.", found=name
         ) from error
     if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        is_number = array.dtype.kind in "biufc"
+        shows_type = is_number or isinstance(value, np.ndarray)
+        found = f"has the type {array.dtype}" if shows_type else f"is {_short(value)}"
         raise KernelTypeError(
-            f"{name} has the type {array.dtype}; expected real numbers that float64 holds. "
-            "Convert it yourself if a loss is meant.",
+            f"{name} {found}; expected real numbers that float64 holds."
+            + " Convert it yourself if a loss is meant." * is_number,
             found=str(array.dtype),
             expected="float64",
         )
     converted = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
-    if array.dtype.kind in "iu" and not _same_integers(array, converted):
+    if array.dtype.kind in "iu" and not _are_doubles(array):
         raise KernelTypeError(
             f"{name} ({array.dtype}) contains integers beyond 2^53, which float64 would round. "
             "Convert it yourself if a loss is meant.",
@@ -188,9 +208,13 @@ def _is_ready(value: Any) -> bool:
     )
 
 
-def _same_integers(array: NDArray[Any], converted: Array) -> bool:
-    """Whether integers kept their value."""
-    return array.dtype.itemsize < 8 or bool((np.abs(converted) <= 2.0**53).all())
+def _are_doubles(array: NDArray[Any]) -> bool:
+    """Whether integers keep their value."""
+    if array.dtype.itemsize < 8:
+        return True
+    most = 2**53
+    inside = array <= most if array.dtype.kind == "u" else (-most <= array) & (array <= most)
+    return bool(inside.all())
 
 
 def pack(values: Any, quantities: Quantities, name: str) -> Array:
@@ -218,18 +242,29 @@ def pack_parameters(system: System, parameters: Any) -> Array:
         packed = _assemble(quantities.defaults, parameters or {}, quantities, "parameters")
     else:
         packed = as_float64(parameters, "parameters")
-        _check_rows(packed, quantities, "parameters", system.name)
+        check_rows(packed, quantities, "parameters", system.name)
     signed = packed[list(quantities.positive)]
     if not (signed > 0).all():  # a NaN is not positive either
         place = np.argwhere(~(signed > 0))[0]
         component = quantities.components[quantities.positive[place[0]]]
         value = float(signed[tuple(place)])
         raise KernelArgumentError(
-            f"parameter {component} of {system.name} is {value:g}; expected a positive value.",
+            f"parameter {component}{tell_member(place)} of {system.name} is {value:g}; expected a "
+            "positive value.",
             found=value,
             component=component,
         )
     return packed if parameters is not None else _keep(packed, quantities)
+
+
+def tell_member(place: NDArray[np.intp]) -> str:
+    """Where in a batch something is, given its row and member; "" without a batch.
+
+    >>> tell_member(np.array([0, 4])), tell_member(np.array([0, 4, 1])), tell_member(np.array([0]))
+    (' of member 4', ' of member (4, 1)', '')
+    """
+    member = tuple(place[1:].tolist())
+    return f" of member {member[0] if len(member) == 1 else member}" if member else ""
 
 
 def pack_inputs(system: System, inputs: Any) -> Array:
@@ -255,7 +290,7 @@ def pack_inputs(system: System, inputs: Any) -> Array:
     if isinstance(inputs, Mapping):
         return _assemble(quantities.defaults, inputs, quantities, "inputs")
     packed = as_float64(inputs, "inputs")
-    _check_rows(packed, quantities, "inputs", system.name)
+    check_rows(packed, quantities, "inputs", system.name)
     return packed
 
 
@@ -328,7 +363,7 @@ def _assemble(
         batch = np.broadcast_shapes(*(np.shape(part) for part in ordered))
     except ValueError as error:
         raise KernelArgumentError(
-            f"{name} have batch shapes that do not fit together: "
+            f"the batch shapes of {name} do not fit together: "
             f"{', '.join(str(np.shape(part)) for part in ordered)}.",
             found=name,
         ) from error
@@ -356,15 +391,32 @@ def _components(key: str, value: Any, quantities: Quantities, name: str) -> dict
     return dict(zip(quantity.components, flat, strict=True))
 
 
-def _check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
+def check_rows(array: Array, quantities: Quantities, name: str, system: str) -> None:
     """The first axis must have one row per component."""
     if array.ndim == 0 or array.shape[0] != quantities.size:
         raise KernelArgumentError(
-            f"{name} of {system} has the shape {array.shape}; expected ({quantities.size},) or "
-            f"({quantities.size}, ...), the rows being {', '.join(quantities.components)}.",
+            f"the shape of {name} of {system} is {array.shape}; expected ({quantities.size},) or "
+            f"({quantities.size}, *batch), the rows being {', '.join(quantities.components)}."
+            f"{suggest_axes(array.shape, quantities.size, name)}",
             found=list(array.shape),
             expected=quantities.size,
         )
+
+
+def suggest_axes(shape: tuple[int, ...], rows: int, name: str) -> str:
+    """What to do with an array whose components are not on the first axis; "" for other faults.
+
+    >>> suggest_axes((9, 6), 6, "state")
+    ' It looks transposed: pass state.T.'
+    >>> suggest_axes((2, 6, 9), 6, "state")
+    ' Components come first: pass np.moveaxis(state, 1, 0).'
+    """
+    if rows not in shape[1:]:
+        return ""
+    if len(shape) == 2:
+        return f" It looks transposed: pass {name}.T."
+    axis = len(shape) - 1 - shape[::-1].index(rows)
+    return f" Components come first: pass np.moveaxis({name}, {axis}, 0)."
 
 
 def _check_out(out: Any, shape: tuple[int, ...]) -> Array:

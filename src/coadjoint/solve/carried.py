@@ -8,6 +8,7 @@ Read next: `coadjoint.solve.tables` and `coadjoint.solve.datasets`, the two form
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module, metadata
 from pathlib import Path
@@ -16,8 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.course import Course
+from coadjoint.solve.course import Course, read_record
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.event_tables import describe_events, read_events_back
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -96,24 +99,30 @@ def describe_run(solution: Solution) -> dict[str, Any]:
         "message": np.asarray(solution.message).tolist(),
         **solution.settings,
         **versions,
+        "course": solution.course.as_record(),
+        **({"events": describe_events(solution.events)} if solution.events else {}),
     }
 
 
 #: What `describe_run` says besides the settings of a solution.
-_BESIDES = ("system", "title", "id", "status", "message")
+_BESIDES = ("system", "title", "id", "status", "message", "course")
 
 
 def rebuild(
-    system: System, said: Mapping[str, Any], rows: Callable[[str], Array], form: Mapping[str, Any]
+    system: System,
+    path: Path,
+    said: Mapping[str, Any],
+    rows: Callable[[str], Array],
+    form: Mapping[str, Any],
 ) -> Solution:
     """The Solution of what was read.
 
     Args:
         system: The System.
+        path: Where it was read.
         said: What `describe_run` said.
         rows: The values of a component by name, ``(*batch, T)``.
-        form: The ``time``, ``(T,)``, the packed ``parameters``, whether there are ``inputs``, as
-            ``"constant"``, ``"sampled"`` or ``""``, and whether it is ``reconstructed``.
+        form: The ``time``, ``(T,)``, the packed ``parameters``, and what `describe_form` says.
     """
     from coadjoint.solve.solution import Solution
 
@@ -121,8 +130,8 @@ def rebuild(
         return np.array([rows(name) for name in quantities.components], dtype=np.float64)
 
     inputs = stack(system.INPUTS) if form["inputs"] else None
-    if inputs is not None and form["inputs"] == "constant":
-        inputs = inputs[..., 0].copy()
+    if inputs is not None:
+        inputs = _take_inputs(inputs, form["inputs"])
     status = np.asarray(said["status"])
     codes = np.array([Status[name] for name in status.ravel()], np.int8) if status.ndim else None
     course = Course(
@@ -132,26 +141,67 @@ def rebuild(
         atol=said.get("atol"),
         step=said.get("step"),
         codes=None if codes is None else codes.reshape(status.shape),
+        **_read_course(said["course"], path),
     )
+    parameters = np.array(form["parameters"], dtype=np.float64)
     return Solution(
         system=system,
         time=np.array(form["time"], dtype=np.float64),
         state=stack(system.STATE),
-        parameters=np.array(form["parameters"], dtype=np.float64),
+        parameters=parameters,
         status="" if status.ndim else str(status),
         message=said["message"],
         reconstructed=stack(system.RECONSTRUCTED) if form["reconstructed"] else None,
         inputs=inputs,
         course=course,
+        events=_read_events(system, parameters, said.get("events", []), path),
     )
 
 
+def _read_events(system: System, parameters: Array, said: Any, path: Path) -> Events:
+    """What a file says of events, a list or its text.
+
+    Raises:
+        KernelArgumentError: It is no such list.
+    """
+    try:
+        records = json.loads(said) if isinstance(said, str) else said
+        return Events(read_events_back(system, parameters, records))
+    except (KeyError, TypeError, ValueError) as error:
+        raise explain_unread(path, f"its events are damaged: {error}") from error
+
+
+def _take_inputs(inputs: Array, form: str) -> Array:
+    """Inputs in the form that a Solution has them, from those of each member and sample."""
+    if form == "of each":
+        return inputs[..., :1].copy()
+    first: Any = (slice(None), *(0,) * (inputs.ndim - 2))
+    shared: Array = inputs[first]
+    return shared[:, 0].copy() if form == "constant" else shared.copy()
+
+
+def _read_course(said: Any, path: Path) -> dict[str, Any]:
+    """What a file says of the course, a table or its text.
+
+    Raises:
+        KernelArgumentError: It is no such table.
+    """
+    try:
+        return read_record(json.loads(said) if isinstance(said, str) else said)
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise explain_unread(path, f"its course is damaged: {error}") from error
+
+
 def describe_form(solution: Solution) -> dict[str, str]:
-    """What the arrays of a solution are, which their values do not show."""
-    inputs = solution.inputs
-    constant = inputs is not None and inputs.ndim < solution.state.ndim
+    """What the arrays of a solution are, which their values do not show.
+
+    Returns:
+        ``inputs``: ``"constant"``, ``"sampled"``, both for all members, ``"of each"`` for constants
+        of each member, or ``""``; ``reconstructed``: ``"yes"`` or ``""``.
+    """
+    axes = 0 if solution.inputs is None else solution.inputs.ndim
     return {
-        "inputs": "" if inputs is None else "constant" if constant else "sampled",
+        "inputs": ("", "constant", "sampled", "of each")[min(axes, 3)],
         "reconstructed": "" if solution.reconstructed is None else "yes",
     }
 

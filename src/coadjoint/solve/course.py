@@ -1,12 +1,12 @@
 """The course of a simulation: the method, its tolerances, and how each trajectory ended.
 
-Comes in: what a solver knows at its end. Goes out: a record that a `Solution` holds, and the drift
-of what is conserved. Read next: `coadjoint.solve.solution`.
+Comes in: what a solver knows at its end. Goes out: a record that a `Solution` holds.
+Read next: `coadjoint.solve.solution`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,12 +29,14 @@ class Start:
         state: Where, ``(n, *batch)``.
         inputs: Inputs then, as a Solution of one sample has them.
         varies: Whether inputs change later.
+        reconstructed: What is reconstructed, ``(k,)`` of one trajectory; None if nothing is.
     """
 
     time: float
     state: Array
     inputs: Array | None
     varies: bool
+    reconstructed: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ class Course:
         rejected: Steps that were tried in vain; likewise.
         reached: The time that each trajectory reached; likewise.
         last: The state there, ``(n, *batch)``; likewise.
+        driven: Inputs there, ``(m, *batch)``; None if they are constant.
         start: Where the trajectories began, if no sample has it.
     """
 
@@ -65,6 +68,7 @@ class Course:
     rejected: NDArray[np.uint64] | None = None
     reached: Array | None = None
     last: Array | None = None
+    driven: Array | None = None
     start: Start | None = None
 
     @property
@@ -87,27 +91,51 @@ class Course:
             for name in ("codes", "steps", "rejected", "reached")
             if (values := getattr(self, name)) is not None
         }
-        last = None if self.last is None else self.last[at]
-        return replace(self, **of_each, last=last, start=start)
+        of_each |= {
+            name: values[at]
+            for name in ("last", "driven")
+            if (values := getattr(self, name)) is not None
+        }
+        return replace(self, **of_each, start=start)
+
+    def as_record(self) -> dict[str, Any]:
+        """What no sample of a Solution shows, as JSON values."""
+        record: dict[str, Any] = {
+            name: values.tolist() for name in _ARRAYS if (values := getattr(self, name)) is not None
+        }
+        if self.start is not None:
+            start = asdict(self.start)
+            record["start"] = {
+                name: value.tolist() if isinstance(value, np.ndarray) else value
+                for name, value in start.items()
+            }
+        return record
+
+
+#: Arrays of a course that a file keeps, with their types.
+_ARRAYS = {
+    "steps": np.uint64,
+    "rejected": np.uint64,
+    "reached": np.float64,
+    "last": np.float64,
+    "driven": np.float64,
+}
+
+
+def read_record(record: dict[str, Any]) -> dict[str, Any]:
+    """What `Course.as_record` wrote, as arguments of a Course."""
+    found: dict[str, Any] = {
+        name: np.array(record[name], kind) for name, kind in _ARRAYS.items() if name in record
+    }
+    if "start" in record:
+        arrays = {
+            name: None if value is None else np.array(value, np.float64)
+            for name, value in record["start"].items()
+            if name in ("state", "inputs", "reconstructed")
+        }
+        found["start"] = Start(**(record["start"] | arrays))
+    return found
 
 
 #: Of a Solution that was put together by hand.
 UNTOLD = Course(method="", order=None, rtol=None, atol=None, step=None)
-
-
-def relative(change: Array, values: Array) -> float:
-    """Largest change over largest size."""
-    size = float(np.abs(values).max())
-    with np.errstate(invalid="ignore"):
-        return float(np.abs(change).max() / size) if size else 0.0
-
-
-def relative_of_each(change: Array, values: Array, axes: int) -> Array:
-    """Largest change over largest size, of each trajectory of a batch of so many axes.
-
-    NaN, where a trajectory did not come, is left out; the first sample of each is a number.
-    """
-    lead = tuple(range(values.ndim - axes - 1))
-    most = np.fmax.reduce(np.abs(change), axis=-1, initial=0.0).max(axis=lead)
-    size = np.fmax.reduce(np.abs(values), axis=-1, initial=0.0).max(axis=lead)
-    return np.asarray(np.divide(most, size, out=np.zeros(np.shape(most)), where=size > 0))

@@ -7,6 +7,7 @@ Read next: `coadjoint.solve.carried`.
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,10 +21,12 @@ from coadjoint.solve.carried import (
     explain_unread,
     import_extra,
     list_batch,
+    list_components,
     list_quantities,
     name_axes,
     rebuild,
 )
+from coadjoint.solve.event_tables import list_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,6 +39,8 @@ if TYPE_CHECKING:
 
 #: What stands before the name of a parameter, whose names a variable may have as well.
 PARAMETER = "parameter_"
+#: Before the columns of the table of events.
+EVENT = "event_"
 #: Before what `describe_form` says.
 FORM = "form_"
 
@@ -61,6 +66,10 @@ def to_xarray(solution: Solution) -> Any:
     for name in ("status", "message"):  # of members, each has its own
         if not isinstance(attributes[name], str | int):
             variables[name] = (axes, np.asarray(attributes.pop(name)))
+    for name in ("course", "events"):
+        if name in attributes:
+            attributes[name] = json.dumps(attributes[name])
+    _add_events(solution, variables)
     _add_parameters(solution, axes, coordinates, variables, attributes)
     return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
 
@@ -75,6 +84,18 @@ def _add_components(coordinates: dict[str, Any], name: str, quantity: Quantity) 
     if len(set(units)) > 1:
         coordinates[f"{name}_unit"] = (axis, units)
     return [axis]
+
+
+def _add_events(solution: Solution, variables: dict[str, Any]) -> None:
+    """The table of events for readers, along an axis of its own; read back is the attribute."""
+    if not solution.events:
+        return
+    units = {"time": "s"} | {name: solution.unit(name) for name in list_components(solution)}
+    for name, values in list_columns(solution.events).items():
+        kind = np.dtype(np.str_) if name == "event" else None
+        attributes = {"units": units[name]} if name in units else {}
+        title = EVENT + ("name" if name == "event" else name)
+        variables[title] = (EVENT + "number", np.asarray(values, kind), attributes)
 
 
 def _add_parameters(
@@ -119,7 +140,7 @@ def read_netcdf(system: System, path: Path) -> Solution:
     try:
         form |= {"time": dataset["time"].values, "parameters": _read_parameters(system, dataset)}
         shared = {name: value for name, value in said.items() if not name.startswith(PARAMETER)}
-        return rebuild(system, shared, _find_rows(system, dataset), form)
+        return rebuild(system, path, shared, _find_rows(system, dataset), form)
     except KeyError as error:
         raise explain_unread(path, f"it has no {error}") from error
 

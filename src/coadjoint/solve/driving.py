@@ -84,11 +84,13 @@ class Linear(Signal):
     def __init__(self, times: Array, values: Array) -> None:
         self.times, self.values = times, values
 
-    def at(self, time: float) -> Array:
-        """The values at one time."""
+    def at(self, time: float | Array) -> Array:
+        """The values at one time, or at many."""
         return np.array([np.interp(time, self.times, row) for row in self.values])
 
-    over = at  # type: ignore[assignment]  # np.interp takes both
+    def over(self, times: Array) -> Array:
+        """The values at many times."""
+        return self.at(times)
 
 
 class Function(Signal):
@@ -148,6 +150,11 @@ class Driving:
         jumps = self._signal.breaks if self._signal is not None else ()
         self.breaks = tuple(float(time) for time in jumps if start < time < end)
         self.enter(start)
+
+    @property
+    def signal(self) -> Signal | None:
+        """The inputs as a function of time; None where a system has none."""
+        return self._signal
 
     @property
     def is_constant(self) -> bool:

@@ -141,7 +141,8 @@ class Record:
     @property
     def path(self) -> Array:
         """Their polynomials, ``(count, n, degree + 1)``."""
-        return self.rows[: self.count, HEAD:].reshape(self.count, -1, self.degree + 1)
+        n = (self.rows.shape[1] - HEAD) // (self.degree + 1)
+        return self.rows[: self.count, HEAD:].reshape(self.count, n, self.degree + 1)
 
     def evaluate(self, steps: NDArray[np.intp], after: Array) -> Array:
         """States within some steps.

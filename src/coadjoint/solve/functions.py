@@ -44,6 +44,7 @@ Raises:
     KernelTypeError: A type that cannot become float64 without loss.
 """
 
+_VECTOR: Final = "    vector: In the forms of the state, and of its shape.\n"
 _Given = ParamSpec("_Given")
 _Result = TypeVar("_Result")
 
@@ -122,10 +123,29 @@ def make_method(function: KernelFunction) -> Callable[..., Array]:
             raise _refusal(name, ("state", "parameters", "inputs"), len(more))
         return self._evaluate(name, target, state, parameters, inputs, time, out)
 
-    method.__name__, method.__qualname__ = name, f"Functions.{name}"
-    method.__doc__ = _text(function)
-    method.__signature__ = signature(Method.__call__)  # type: ignore[attr-defined]
-    return method
+    def along(
+        self: Functions,
+        state: Values,
+        vector: Values,
+        parameters: Values | None = None,
+        inputs: Values | None = None,
+        *,
+        time: ArrayLike | None = None,
+        target: Target = "c",
+        out: Array | None = None,
+    ) -> Array:
+        from coadjoint.solve.arrays import stack_vector
+
+        stacked = stack_vector(self, name, state, vector)
+        return self._evaluate(name, target, stacked, parameters, inputs, time, out)
+
+    of_vector = function.below == "vector"
+    made: Callable[..., Array] = along if of_vector else method
+    like: Callable[..., Array] = along if of_vector else Method.__call__
+    made.__name__, made.__qualname__ = name, f"Functions.{name}"
+    made.__doc__ = _text(function)
+    made.__signature__ = signature(like)  # type: ignore[attr-defined]
+    return made
 
 
 def _text(function: KernelFunction) -> str:
@@ -136,11 +156,10 @@ def _text(function: KernelFunction) -> str:
         for build, known in target.builds.items()
     )
     head = f"{function.summary}; shape ``{function.shape}``.\n\n"
-    return (
-        head
-        + (f"{function.doc}\n\n" if function.doc else "")
-        + _ARGUMENTS.replace("{targets}", targets)
-    )
+    arguments = _ARGUMENTS.replace("{targets}", targets)
+    if function.below == "vector":
+        arguments = arguments.replace("    parameters:", f"{_VECTOR}    parameters:", 1)
+    return head + (f"{function.doc}\n\n" if function.doc else "") + arguments
 
 
 for each in KERNEL_FUNCTIONS.values():

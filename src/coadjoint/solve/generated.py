@@ -13,12 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.arrays import pack_inputs, pack_parameters
+from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
+from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.course import Course, Start
+from coadjoint.solve.dense_output import make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
+from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
@@ -26,7 +30,9 @@ from coadjoint.solve.starts import check_starts
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.request import Request
+    from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -41,6 +47,8 @@ def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) ->
         target: Likewise.
         reconstruct: Likewise.
     """
+    if "jacobian_vector" in system.functions:
+        return "its rates are loops over a table, for which no solvers are generated"
     if not all((system.folder / file).is_file() for file in FILES):
         return "its folder was generated without them: run `coadjoint regenerate`"
     if reconstruct is not False and reconstruct is not None:
@@ -63,14 +71,20 @@ def simulate(system: System, request: Request) -> Solution:
     run, driven = _gather(system, request)
     now = _drive(system, run, request.start)
     check_starts(system, request, run, now)
+    recording = _make_recording(system, request, run, driven)
     stepper = system._solvers.get(request.choice, request.target)
     run.begin(request.start)
     _end_undefined(system, run, now)
+    checkpoint = _resume(system, request, run, stepper)
     with ExitStack() as stack:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
             told = stack.enter_context(progress_bar())
-        march(stepper, run, request.threads or count_threads(), told)
+        threads = request.threads or count_threads()
+        watch = None if recording is None else recording.look
+        march(stepper, run, request.start, threads, told, checkpoint, watch)
+    if recording is not None:
+        recording.finish()
     course = Course(
         method=request.choice.name,
         order=request.choice.order,
@@ -82,9 +96,31 @@ def simulate(system: System, request: Request) -> Solution:
         rejected=run.rejected.reshape(batch),
         reached=run.time.reshape(batch),
         last=run.state.reshape(-1, *batch),
+        driven=_find_driven(driven, run, batch),
         start=_find_start(request, driven) if request.samples == 1 else None,
     )
-    return _make_solution(system, request, run, course, driven)
+    return _make_solution(system, request, run, course, driven, recording)
+
+
+def _make_recording(
+    system: System, request: Request, run: Ensemble, signal: Signal | Array | None
+) -> Recording | None:
+    """Who looks at the steps; None where nobody has to.
+
+    Raises:
+        KernelArgumentError: There is to be a checkpoint, which holds no steps and no events.
+    """
+    if not (request.events or request.dense):
+        return None
+    if request.checkpoint is not None:
+        asked = "events" if request.events else "dense"
+        raise KernelArgumentError(
+            f"checkpoint is given, and {asked} as well; a checkpoint keeps neither events nor "
+            "steps. Expected one or the other.",
+            found=str(request.checkpoint),
+        )
+    surroundings = Surroundings(system, run.parameters, make_driving(signal))
+    return Recording(run, request.events, surroundings, keeps=request.dense)
 
 
 # -- before the first step ----------------------------------------------------------------------
@@ -95,7 +131,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     n, batch = system.STATE.size, request.state.shape[1:]
     members = math.prod(batch)
     parameters = pack_parameters(system, request.parameters)
-    check_batch(parameters, batch, "parameters")
+    check_batch(parameters, batch, system.PARAMETERS, "parameters")
     if parameters.ndim > 1:
         parameters = parameters.reshape(-1, members)
     signal = _find_signal(system, request, batch)
@@ -115,7 +151,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     return run, signal
 
 
-def check_batch(array: Array, batch: tuple[int, ...], name: str) -> None:
+def check_batch(array: Array, batch: tuple[int, ...], quantities: Quantities, name: str) -> None:
     """What is given for each member has to be so for the members of the state.
 
     Raises:
@@ -132,7 +168,8 @@ def check_batch(array: Array, batch: tuple[int, ...], name: str) -> None:
     if not np.isfinite(array).all():
         place = np.argwhere(~np.isfinite(array))[0]
         raise KernelArgumentError(
-            f"{name} have {array[tuple(place)]} in row {place[0]}; expected finite numbers.",
+            f"{quantities.components[place[0]]}{tell_member(place)} of the {name} is "
+            f"{array[tuple(place)]}; expected a finite number.",
             found=str(array[tuple(place)]),
         )
 
@@ -143,7 +180,7 @@ def _find_signal(system: System, request: Request, batch: tuple[int, ...]) -> Si
     sampled = isinstance(given, tuple) and any(np.ndim(part) for part in given)
     if batch and system.INPUTS and not sampled:
         packed = pack_inputs(system, given)
-        check_batch(packed, batch, "inputs")
+        check_batch(packed, batch, system.INPUTS, "inputs")
         if packed.ndim > 1:
             return packed
     return make_signal(system, given, request.start, float(request.times[-1]))
@@ -186,6 +223,17 @@ def _end_undefined(system: System, run: Ensemble, now: dict[str, Any]) -> None:
     run.status[~np.isfinite(rates).all(axis=0)] = Status.NONFINITE
 
 
+def _resume(system: System, request: Request, run: Ensemble, stepper: Stepper) -> Checkpoint | None:
+    """The checkpoint of a run, which stands where it was broken off; None if none was asked for."""
+    if request.checkpoint is None:
+        return None
+    has_same_bits = request.target != "c-fast" and not system.elementary
+    build = "" if has_same_bits else stepper.key
+    checkpoint = Checkpoint(request.checkpoint, system, request, run, build)
+    checkpoint.resume(run)
+    return checkpoint
+
+
 # -- after the last step ------------------------------------------------------------------------
 
 
@@ -195,6 +243,7 @@ def _make_solution(
     run: Ensemble,
     course: Course,
     signal: Signal | Array | None,
+    recording: Recording | None,
 ) -> Solution:
     """The Solution of a run."""
     batch, times = request.state.shape[1:], request.times
@@ -210,10 +259,32 @@ def _make_solution(
     else:
         inputs = None if signal is None else signal.over(times)
     status = "" if batch else Status(int(run.status[0])).name
-    message = _explain_batch(run) if batch else _explain(system, request, run)
+    if recording is not None and status == "EVENT":
+        message = recording.explain_end()
+    else:
+        message = _explain_batch(run) if batch else _explain(system, request, run)
     return Solution(
-        system, times, states, parameters.copy(), status, message, None, inputs, course=course
+        system,
+        times,
+        states,
+        parameters.copy(),
+        status,
+        message,
+        None,
+        inputs,
+        course=course,
+        events=None if recording is None else recording.list_events(batch),
+        dense=None if recording is None else recording.make_dense(signal, request.start),
     )
+
+
+def _find_driven(
+    signal: Signal | Array | None, run: Ensemble, batch: tuple[int, ...]
+) -> Array | None:
+    """The inputs where each member came, if they change."""
+    if not isinstance(signal, Previous | Linear):
+        return None
+    return signal.over(run.time).reshape(-1, *batch)
 
 
 def _find_start(request: Request, signal: Signal | Array | None) -> Start:
@@ -223,7 +294,7 @@ def _find_start(request: Request, signal: Signal | Array | None) -> Start:
         inputs: Array | None = signal[..., np.newaxis]
     else:
         inputs = None if signal is None else signal.over(np.array([request.start]))
-    return Start(request.start, request.state.copy(), inputs, varies)
+    return Start(time=request.start, state=request.state.copy(), inputs=inputs, varies=varies)
 
 
 def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
@@ -252,7 +323,7 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
         return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
-        Status.NONFINITE: f"the rates are not finite {place}",
+        Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
         Status.STEP_UNDERFLOW: f"no step was small enough {place}"
         if request.step is None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",

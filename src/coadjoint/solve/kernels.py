@@ -19,7 +19,7 @@ import numpy as np
 from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning, compilers
 from coadjoint.errors import CompilerError, CrossCheckError, KernelArgumentError
 from coadjoint.render.targets import BUILDS
-from coadjoint.solve.arrays import evaluate_ready
+from coadjoint.solve.ready import make_ready
 
 if TYPE_CHECKING:
     from coadjoint.render.targets.protocol import Call, Kernel
@@ -35,34 +35,43 @@ class Kernels:
     def __init__(self, system: System) -> None:
         self.system = system
         self._loaded: dict[str, Kernel] = {}
-        #: Functions of a ready state alone, by name and target; those that were called so before.
-        self.ready: dict[tuple[str, str], Callable[[Any], Any]] = {}
+        #: Who computes a function for a target; NumPy, where a compiler failed.
+        self._chosen: dict[tuple[str, str], Kernel] = {}
+        #: The short way to functions, by name and target; of those that were called before.
+        self.ready: dict[tuple[str, str], Callable[..., Any]] = {}
 
     def run(self, function: str, call: Call, target: str) -> None:
         """Evaluate a call into its result."""
-        for piece in self._kernel(target).calls(function, call):
+        for piece in self._kernel(function, target).calls(function, call):
             piece()
 
     def make_ready(self, function: str, call: Call, target: str) -> None:
-        """Keep a function of a ready state alone; the rest is that of a call with defaults."""
-        if (function, target) not in self.ready:
-            shape, rows = self.system.functions[function], len(call.state)
-            like = replace(call, state=np.empty((rows, 1)), block=np.empty((*shape, 1)))
-            evaluate = self._kernel(target).evaluate_with(function, like)
-            self.ready[function, target] = evaluate_ready(shape, rows, evaluate)
+        """Keep the short way to a function, with the inputs of a call that has the defaults."""
+        if (function, target) in self.ready or "time" in call.driving:
+            return
+        quantities, rows = self.system.PARAMETERS, self.system.rows(function).size
+        parameters = np.array([quantities.defaults.get(c, np.nan) for c in quantities.components])
+        shape = self.system.functions[function]
+        like = replace(
+            call, state=np.empty((rows, 1)), parameters=parameters, block=np.empty((*shape, 1))
+        )
+        evaluate = self._kernel(function, target).evaluate_with(function, like)
+        self.ready[function, target] = make_ready(shape, rows, quantities, evaluate)
 
     def bind(self, function: str, call: Call, target: str) -> Callable[[], None]:
         """The call as a function without arguments."""
-        pieces = list(self._kernel(target).calls(function, call))
+        pieces = list(self._kernel(function, target).calls(function, call))
         return pieces[0] if len(pieces) == 1 else partial(_call_each, pieces)
 
     # -- loading ----------------------------------------------------------------------------------
 
     def prepare(self, targets: Sequence[str]) -> None:
         """Compile and load what targets need, side by side: compilers are programs of their own."""
+        for target in targets:
+            check_target(target)
         self._numpy()
         with compilers() as pool:
-            for done in [pool.submit(self._kernel, target) for target in targets]:
+            for done in [pool.submit(self._choose, target) for target in targets]:
                 done.result()
 
     def load(self, targets: Sequence[str]) -> dict[str, str]:
@@ -80,26 +89,40 @@ class Kernels:
             check_target(target)
         self._numpy()
         with compilers() as pool:
-            loading = {target: pool.submit(self._load, target) for target in targets}
+            loading = {target: pool.submit(self._prepare, target) for target in targets}
             kernels = {target: done.result() for target, done in loading.items()}
-        self._loaded |= kernels
+        for target, kernel in kernels.items():
+            self._chosen |= {(function, target): kernel for function in self.system.functions}
         self.ready.clear()
         return {target: kernel.source for target, kernel in kernels.items()}
 
-    def _kernel(self, target: str) -> Kernel:
-        """The kernel of a target, or that of NumPy, which is said, where a compiler cannot make it.
+    def _kernel(self, function: str, target: str) -> Kernel:
+        """Who computes a function for a target.
 
         Raises:
             KernelArgumentError: No such target.
         """
-        check_target(target)
+        if (function, target) not in self._chosen:
+            check_target(target)
+            self._choose(target, function)
+        return self._chosen[function, target]
+
+    def _choose(self, target: str, function: str = "") -> None:
+        """Choose who computes a function, or all: NumPy, which is said, where a compiler fails."""
+        try:
+            kernel = self._prepare(target, function)
+        except (CompilerError, CrossCheckError) as error:
+            kernel = self._numpy()
+            advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
+            say_once(f"{error} The NumPy kernels are used instead. {advice}".rstrip(), depth=7)
+        for name in [function] if function else self.system.functions:
+            self._chosen[name, target] = kernel
+
+    def _prepare(self, target: str, function: str = "") -> Kernel:
+        """The kernel of a target itself, with a function ready to be called, or all of them."""
         if target not in self._loaded:
-            try:
-                self._loaded[target] = self._load(target)
-            except (CompilerError, CrossCheckError) as error:
-                self._loaded[target] = self._numpy()
-                advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
-                say_once(f"{error} The NumPy kernels are used instead. {advice}".rstrip(), depth=6)
+            self._loaded[target] = self._load(target)
+        self._loaded[target].prepare(function)
         return self._loaded[target]
 
     def _load(self, target: str) -> Kernel:
@@ -131,11 +154,11 @@ def check_target(target: str) -> None:
     Raises:
         KernelArgumentError: No such target.
     """
-    if target not in BUILDS:
+    if not isinstance(target, str) or target not in BUILDS:
         *others, last = map(repr, BUILDS)
         raise KernelArgumentError(
             f"target is {target!r}; expected {', '.join(others)} or {last}.",
-            found=target,
+            found=str(target),
             expected=list(BUILDS),
         )
 

@@ -8,6 +8,7 @@ of a solver is short, so that Ctrl-C is heard and progress is told. Read next:
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -23,6 +24,7 @@ import numpy as np
 from coadjoint.solve.ensemble import Record, Status
 
 if TYPE_CHECKING:
+    from coadjoint.solve.checkpoints import Checkpoint
     from coadjoint.solve.ensemble import Ensemble
     from coadjoint.solve.solvers import Stepper
 
@@ -71,8 +73,10 @@ class _Going:
 def march(
     stepper: Stepper,
     run: Ensemble,
+    start: float,
     threads: int,
     progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
     watch: Watch | None = None,
 ) -> None:
     """Advance an ensemble to its end.
@@ -80,34 +84,58 @@ def march(
     Args:
         stepper: Who advances it.
         run: Its members, begun.
+        start: When they began.
         threads: How many threads share it, at the most.
         progress: Told how far it is; None for nobody.
+        checkpoint: Written now and then, and at the end; None for none.
         watch: Shown all steps that are made; None for nobody. It is called by several threads.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; members stand where they came.
+        OutputError: The checkpoint cannot be written.
     """
     slices = _cut(run.state.shape[1], threads)
-    begun = run.time.copy() if progress else run.time
-    going = _Going(stepper, run, watch, Event())
 
     def report() -> None:
         if progress is not None:
-            progress(_find_part(run, begun))
+            progress(_find_part(run, start))
 
-    if len(slices) == 1:
-        reported = time.monotonic()
-        for _ in _advance(going, *slices[0]):
-            if time.monotonic() - reported > REPORT_SECONDS:
-                report()
-                reported = time.monotonic()
-    else:
-        _share(going, slices, threads, report)
+    while (run.status == Status.GOES_ON).any():
+        seconds = math.inf if checkpoint is None else checkpoint.seconds
+        going = _Going(stepper, run, watch, Event())
+        _go_on(going, slices, threads, report, time.monotonic() + seconds)
+        if checkpoint is not None:
+            checkpoint.write(run)
     report()
 
 
+def _go_on(
+    going: _Going,
+    slices: list[tuple[int, int]],
+    threads: int,
+    report: Callable[[], None],
+    until: float,
+) -> None:
+    """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
+    if len(slices) > 1:
+        _share(going, slices, threads, report, until)
+        return
+    reported = time.monotonic()
+    for _ in _advance(going, *slices[0]):
+        now = time.monotonic()
+        if now > until:
+            return
+        if now - reported > REPORT_SECONDS:
+            report()
+            reported = now
+
+
 def _share(
-    going: _Going, slices: list[tuple[int, int]], threads: int, report: Callable[[], None]
+    going: _Going,
+    slices: list[tuple[int, int]],
+    threads: int,
+    report: Callable[[], None],
+    until: float,
 ) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
 
@@ -123,6 +151,8 @@ def _share(
                 for each in done:
                     each.result()
                 report()
+                if time.monotonic() > until:
+                    going.stop.set()
         except BaseException:  # Ctrl-C among them
             going.stop.set()
             pool.shutdown(cancel_futures=True)
@@ -160,11 +190,10 @@ def _cut(members: int, threads: int) -> list[tuple[int, int]]:
     return [(first, min(first + size, members)) for first in range(0, members, size)]
 
 
-def _find_part(run: Ensemble, begun: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+def _find_part(run: Ensemble, start: float) -> float:
     """The part of the way that is done, from 0 to 1."""
-    span = np.maximum(run.end - begun, np.finfo(float).tiny)
-    part = np.where(run.status == Status.GOES_ON, (run.time - begun) / span, 1.0)
-    return float(part.mean())
+    gone = (run.time - start) / (run.end - start)
+    return float(np.where(run.status == Status.GOES_ON, gone, 1.0).mean())
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.arrays import as_float64, pack_parameters
+from coadjoint.solve.arrays import as_float64, find_slopes, pack_parameters
 from coadjoint.solve.driving import Function, Linear, Previous, make_signal
 
 if TYPE_CHECKING:
@@ -63,9 +63,10 @@ class Ode:
         if self._signal is not None:
             driven["inputs"] = self._take_inputs(float(t))
         state = as_float64(y, "y")
-        values: Array = self.system.evaluate(
-            function, state, self.parameters, target=self._target, **driven
-        )
+        given, driven = (state, self.parameters), {"target": self._target, **driven}
+        if function == "jacobian" and function not in self.system.functions:
+            return find_slopes(self.system, *given, **driven)
+        values: Array = self.system.evaluate(function, *given, **driven)
         return values
 
     def _take_inputs(self, time: float) -> Array:

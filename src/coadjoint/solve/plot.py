@@ -20,6 +20,7 @@ from coadjoint.files import check_writable, write_whole
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.occurrences import Occurrences
     from coadjoint.solve.solution import Solution
 
     Array = NDArray[np.float64]
@@ -82,7 +83,7 @@ def new_figure(*, headless: bool) -> Any:
         ) from error
 
 
-def finish(figure: Any, solution: Solution, path: str | PathLike[str] | None) -> Any:
+def finish(figure: Any, solution: Solution | Occurrences, path: str | PathLike[str] | None) -> Any:
     """The figure under the title of the system; or None, once it is written to a path."""
     figure.suptitle(solution.system.title, fontsize=13)
     return figure if path is None else _save(figure, Path(fspath(path)))

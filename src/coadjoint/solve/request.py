@@ -7,20 +7,24 @@ next: `coadjoint.solve.generated`, and `coadjoint.solve.simulate` for the method
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from numbers import Integral, Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.arrays import as_float64, pack
+from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
 from coadjoint.solve.solvers import GENERATED, Choice, choose_order
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.events import Sought
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -54,6 +58,9 @@ class Request:
         reconstruct: As given.
         threads: How many threads, at the most; None for all processors.
         progress: Whether to show a bar, or whom to tell.
+        checkpoint: Where a run on its way is kept; None for nowhere.
+        events: What to look for.
+        dense: Whether the steps are kept.
     """
 
     state: Array
@@ -71,6 +78,9 @@ class Request:
     reconstruct: Any
     threads: int | None
     progress: bool | Callable[[float], object]
+    checkpoint: Path | None
+    events: tuple[Sought, ...]
+    dense: bool
 
     @property
     def choice(self) -> Choice:
@@ -84,16 +94,8 @@ def check_state(system: System, state: Any) -> Array:
     Raises:
         KernelArgumentError: Another shape, or a number that is not finite.
     """
-    packed, n = pack(state, system.STATE, "state"), system.STATE.size
-    if packed.ndim == 0 or packed.shape[0] != n:
-        turned = packed.ndim > 1 and packed.shape[-1] == n
-        advice = " It looks transposed: pass state.T." if turned else ""
-        raise KernelArgumentError(
-            f"the state of {system.name} has the shape {packed.shape}; expected ({n},) or "
-            f"({n}, *batch), the rows being {', '.join(system.STATE.components)}.{advice}",
-            found=list(packed.shape),
-            expected=[n],
-        )
+    packed = pack(state, system.STATE, "state")
+    check_rows(packed, system.STATE, "state", system.name)
     if not packed.size:
         raise KernelArgumentError(
             f"the state has the shape {packed.shape}, which holds no member; expected one or more.",
@@ -101,65 +103,147 @@ def check_state(system: System, state: Any) -> Array:
         )
     finite = np.isfinite(packed)
     if not finite.all():
-        row, *member = (int(each) for each in np.argwhere(~finite)[0])
-        where = f" of member {member[0] if len(member) == 1 else tuple(member)}" if member else ""
+        place = np.argwhere(~finite)[0]
+        component = system.STATE.components[place[0]]
         raise KernelArgumentError(
-            f"the initial {system.STATE.components[row]}{where} is {packed[(row, *member)]}; "
-            "expected a finite number.",
-            found=system.STATE.components[row],
+            f"the initial {component}{tell_member(place)} is {packed[tuple(place)]}; expected a "
+            "finite number.",
+            found=component,
         )
     return packed
 
 
-def list_times(t: Any, samples: Any) -> tuple[float, Array]:
+def list_times(t: Any, samples: Any, size: int) -> tuple[float, Array]:
     """The start and the sample times from a pair or a sequence.
 
+    Args:
+        t: As given.
+        samples: As given.
+        size: Numbers in the states of all members.
+
     Raises:
-        KernelArgumentError: They do not increase, or there are to be too few samples.
+        KernelArgumentError: They do not increase, there are to be too few samples, or so many that
+            memory does not hold them.
     """
     times = as_float64(t, "t")
-    increasing = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) > 0).all())
-    if not increasing or not np.isfinite(times).all():
-        raise KernelArgumentError(
-            f"t is {str(t)[:80]}; expected (start, end) or increasing finite times.",
-            found=str(t)[:80],
-        )
+    _check_increasing(times, t)
     start = float(times[0])
     if times.size > 2:
+        _check_memory(size, times.size)
         return start, times.copy()
     check_count(samples=samples)
     if samples == 1:
         return start, times[1:].copy()
-    return start, np.linspace(times[0], times[1], int(samples))
+    _check_memory(size, int(samples))
+    spread = np.linspace(times[0], times[1], int(samples))
+    if not (np.diff(spread) > 0).all():
+        raise KernelArgumentError(
+            f"samples is {samples}, and there are not so many different numbers from {start!r} to "
+            f"{float(times[1])!r}; expected fewer samples, or a longer time.",
+            found=int(samples),
+        )
+    return start, spread
+
+
+def _check_increasing(times: Array, given: Any) -> None:
+    """Times are finite and increase.
+
+    Raises:
+        KernelArgumentError: They do not.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        good = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) > 0).all())
+        falls = times.ndim == 1 and times.size >= 2 and bool((np.diff(times) < 0).all())
+        finite = bool(np.isfinite(times).all()) and good and np.isfinite(times[-1] - times[0])
+    if not finite:
+        advice = " Runs go forward in time: for the past, give System.ode to an integrator."
+        raise KernelArgumentError(
+            f"t is {str(given)[:80]}; expected (start, end) or increasing finite times."
+            + advice * falls,
+            found=str(given)[:80],
+        )
+
+
+def _check_memory(size: int, samples: int) -> None:
+    """The states at all samples have room in this machine.
+
+    Raises:
+        KernelArgumentError: They have not.
+    """
+    needed, memory = 8 * size * samples, os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > memory:
+        raise KernelArgumentError(
+            f"states of {size} numbers at {samples} samples take {needed / 1e9:.3g} GB, and this "
+            f"machine has {memory / 1e9:.3g} GB; expected fewer of them. samples=1 keeps the end "
+            "alone.",
+            found=needed,
+            expected=memory,
+        )
 
 
 def check_positive(**numbers: Any) -> None:
     """Tolerances and steps.
 
     Raises:
-        KernelArgumentError: One is no positive number.
+        KernelArgumentError: One is no positive number, or a relative tolerance is 1 or more.
     """
     for name, value in numbers.items():
+        most = 1 if name == "rtol" else math.inf
         good = isinstance(value, Real) and not isinstance(value, bool)
-        if not good or not 0 < value < math.inf:
+        if not good or not 0 < value < most:
+            below = " below 1" if name == "rtol" else ""
             raise KernelArgumentError(
-                f"{name} is {value!r}; expected a positive number.", found=str(value), name=name
-            )
-
-
-def check_count(**numbers: Any) -> None:
-    """Numbers of things.
-
-    Raises:
-        KernelArgumentError: One is no integer, or less than 1.
-    """
-    for name, value in numbers.items():
-        if not isinstance(value, Integral) or isinstance(value, bool) or value < 1:
-            raise KernelArgumentError(
-                f"{name} is {value!r}; expected a whole number, 1 or more.",
+                f"{name} is {value!r}; expected a positive number{below}.",
                 found=str(value),
                 name=name,
             )
+
+
+def check_steps(request: Request) -> None:
+    """Fixed steps reach the end.
+
+    Raises:
+        KernelArgumentError: There would be more of them than a trajectory may take.
+    """
+    if request.step is None:
+        return
+    count = (float(request.times[-1]) - request.start) / request.step
+    if count > request.max_steps * (1 + 1e-6):  # the last step may be longer by so much
+        raise KernelArgumentError(
+            f"step is {request.step:g}, which makes {count:.4g} steps to the end, and max_steps is "
+            f"{request.max_steps}; expected longer steps, or more of them.",
+            found=request.step,
+            expected=request.max_steps,
+        )
+
+
+def check_count(**numbers: Any) -> None:
+    """Numbers of things, which solvers count in floating point.
+
+    Raises:
+        KernelArgumentError: One is no integer, less than 1, or more than 2^53.
+    """
+    for name, value in numbers.items():
+        good = isinstance(value, Integral) and not isinstance(value, bool)
+        if not good or not 1 <= value <= 2**53:
+            raise KernelArgumentError(
+                f"{name} is {value!r}; expected a whole number from 1 to 2^53.",
+                found=str(value),
+                name=name,
+            )
+
+
+def check_progress(progress: Any) -> None:
+    """Whether to show a bar, or whom to tell.
+
+    Raises:
+        KernelArgumentError: It is neither.
+    """
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        raise KernelArgumentError(
+            f"progress is {progress!r}; expected True, False, or a function of the part done.",
+            found=str(progress)[:80],
+        )
 
 
 def choose_method(
@@ -220,9 +304,12 @@ def _list(obstacle: str) -> str:
 
 
 def _suggest(name: str) -> str:
-    """The spelling of a method of SciPy."""
+    """The spelling of a method of SciPy, or the nearest name."""
     meant = [each for each in _scipy() if each.lower() == (SCIPY + name).lower()]
-    return f" Write method={meant[0]!r} for that of SciPy." if meant else ""
+    if meant:
+        return f" Write method={meant[0]!r} for that of SciPy."
+    near = get_close_matches(name, ("auto", *GENERATED, *_scipy()), n=1)
+    return f" Did you mean {near[0]!r}?" if near else ""
 
 
 def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:

@@ -6,7 +6,7 @@ which checks what was asked for, and `coadjoint.solve.generated`.
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,12 +14,17 @@ import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import generated
-from coadjoint.solve.arrays import pack_parameters
+from coadjoint.solve.arrays import find_slopes, pack_parameters
+from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
+from coadjoint.solve.dense_output import Trail, make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
+from coadjoint.solve.events import Surroundings, read_events
 from coadjoint.solve.kernels import check_target
+from coadjoint.solve.lookout import Ending, Lookout, explain_ending
+from coadjoint.solve.occurrences import Events
 from coadjoint.solve.reconstruct import find_start
 from coadjoint.solve.request import (
     ATOL,
@@ -29,7 +34,9 @@ from coadjoint.solve.request import (
     Request,
     check_count,
     check_positive,
+    check_progress,
     check_state,
+    check_steps,
     choose_method,
     list_times,
 )
@@ -63,14 +70,19 @@ def simulate(
     threads: Any,
     progress: Any,
     reconstruct: Any,
+    checkpoint: Any,
+    events: Any,
+    dense: Any,
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
-    initial, (start, times) = check_state(system, state), list_times(t, samples)
+    initial = check_state(system, state)
+    start, times = list_times(t, samples, initial.size)
     tolerances = rtol is not None or atol is not None
     rtol, atol = RTOL if rtol is None else rtol, ATOL if atol is None else atol
     check_positive(rtol=rtol, atol=atol, **({} if step is None else {"step": step}))
     check_count(max_steps=max_steps, **({} if threads is None else {"threads": threads}))
     check_target(target)
+    check_progress(progress)
     obstacle = generated.find_obstacle(system, inputs, target, reconstruct)
     request = Request(
         state=initial,
@@ -88,7 +100,11 @@ def simulate(
         reconstruct=reconstruct,
         threads=threads,
         progress=progress,
+        checkpoint=check_checkpoint(checkpoint),
+        events=read_events(system, events, followed=bool(reconstruct)),
+        dense=bool(dense),
     )
+    check_steps(request)
     if not request.method.startswith(SCIPY):
         return generated.simulate(system, request)
     _check_alone(system, request, obstacle)
@@ -96,11 +112,19 @@ def simulate(
 
 
 def _check_alone(system: System, request: Request, obstacle: str) -> None:
-    """The methods of SciPy follow one trajectory.
+    """The methods of SciPy follow one trajectory, and keep no checkpoint.
 
     Raises:
-        KernelArgumentError: The state is a batch.
+        KernelArgumentError: The state is a batch, or there is to be a checkpoint.
     """
+    if request.checkpoint is not None:
+        reason = f": {obstacle}" if obstacle else ""
+        raise KernelArgumentError(
+            f"checkpoint is given, and method {request.method!r} of SciPy keeps none; expected a "
+            f"generated solver{', which does not apply here' if obstacle else ''}{reason}.",
+            found=str(request.checkpoint),
+            reason=obstacle,
+        )
     if request.state.ndim > 1:
         advice = f"generated solvers do not apply: {obstacle}. Call it for each member"
         if not obstacle:
@@ -142,9 +166,25 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
+    trail = _make_trail(system, packed, driving, request, followed.size)
+    most = request.max_steps
     with np.errstate(all="ignore"):
-        run = _follow(stretches, initial, times, request.max_steps, latest, domain, constraints)
-    return _make_solution(system, packed, driving, run, request)
+        run = _follow(stretches, initial, times, most, latest, domain, constraints, trail)
+    ending = trail.finish()
+    if ending is not None:
+        run = _cut_at_event(*run[:2], ending)
+    return _make_solution(system, packed, driving, run, request, trail)
+
+
+def _make_trail(
+    system: System, parameters: Array, driving: Driving, request: Request, followed: int
+) -> Trail:
+    """Who looks at the steps."""
+    surroundings = Surroundings(system, parameters, make_driving(driving.signal), followed)
+    lookout = None
+    if request.events:
+        lookout = Lookout(request.events, surroundings, request.rtol, request.atol, 1)
+    return Trail(lookout, surroundings, keeps=request.dense)
 
 
 #: Times that were reached, states there, status and reason.
@@ -152,15 +192,28 @@ _Run = tuple["Array", "Array", str, str]
 
 
 def _make_solution(
-    system: System, parameters: Array, driving: Driving, run: _Run, request: Request
+    system: System,
+    parameters: Array,
+    driving: Driving,
+    run: _Run,
+    request: Request,
+    trail: Trail | None = None,
 ) -> Solution:
     """The Solution of a run, the state apart from what was reconstructed below it."""
     times, states, status, reason = run
+    end = float(times[-1])
     n, start = system.STATE.size, None
     if request.samples == 1:
         steady = driving.is_constant
         given = driving.over(times[:1]).get("inputs")
-        start = Start(request.start, states[:n, 0].copy(), given, not steady)
+        below = states[n:, 0].copy() if len(states) > n else None
+        start = Start(
+            time=request.start,
+            state=states[:n, 0].copy(),
+            inputs=given,
+            varies=not steady,
+            reconstructed=below,
+        )
         times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
@@ -173,7 +226,17 @@ def _make_solution(
         start=start,
     )
     return Solution(
-        system, times, states[:n], parameters, status, reason, followed, inputs, course=course
+        system,
+        times,
+        states[:n],
+        parameters,
+        status,
+        reason,
+        followed,
+        inputs,
+        course=course,
+        events=Events() if trail is None else trail.list_events(),
+        dense=None if trail is None else trail.make_dense(end, driving.signal, request.start),
     )
 
 
@@ -206,6 +269,7 @@ def _follow(
     latest: Array,
     domain: Domain,
     constraints: Constraints,
+    trail: Trail,
 ) -> _Run:
     """The times that were reached, states there, status and reason.
 
@@ -224,12 +288,17 @@ def _follow(
             if reason or not np.isfinite(solver.y).all():
                 break
             before, here = here, (solver.t, constraints.move_onto(solver))
-            path = partial(constraints.project_path, solver.dense_output)
+            dense = cache(solver.dense_output)
+            path = partial(constraints.project_path, dense)
             after = int(np.searchsorted(times, solver.t, side="right"))
             if after > reached:
                 states[:, reached:after] = path()(times[reached:after])
             points = zip(times[reached:after].tolist(), states.T[reached:after], strict=True)
             end = domain.find_exit(path, before, [*points, here])
+            if trail.is_needed:
+                ending = trail.add(dense(), before[0], here[0] if end is None else end.time)
+                if ending is not None:
+                    return _cut_at_event(times, states, ending)
             if end is not None:
                 return *_cut_at_exit(times, states, end), "DOMAIN", domain.explain_exit(end)
             reached, steps = after, steps + 1
@@ -248,6 +317,12 @@ def _follow(
         reason = f"{max_steps} steps came only {place}; raise max_steps"
         return *came, "MAX_STEPS", reason
     return times, states, "OK", ""
+
+
+def _cut_at_event(times: Array, states: Array, ending: Ending) -> _Run:
+    """A run up to the event that ends it."""
+    cut = _cut_at_exit(times, states, Exit(ending.time, ending.state, 0))
+    return *cut, "EVENT", explain_ending(ending)
 
 
 def _cut_at_exit(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:
@@ -287,7 +362,13 @@ def _make_rates(
 
 def _make_slopes(system: System, parameters: Array, target: Any, driving: Driving) -> Rates:
     """The Jacobian for SciPy."""
-    evaluate = Following(system, "jacobian", parameters, target, driving)
+    if "jacobian" in system.functions:
+        evaluate: Rates = Following(system, "jacobian", parameters, target, driving)
+    else:
+
+        def evaluate(t: float, y: Array) -> Array:
+            driving.at(t)
+            return find_slopes(system, y, parameters, target=target, **driving.now)
 
     def jacobian(t: float, y: Array) -> Array:
         slopes = evaluate(t, y)

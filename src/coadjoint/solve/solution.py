@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.course import UNTOLD, Course, relative, relative_of_each
+from coadjoint.solve.course import UNTOLD, Course
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.dense_output import Dense
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -29,8 +31,8 @@ if TYPE_CHECKING:
 class Solution:
     """One trajectory, or a batch of them.
 
-    ``solution["Pi"]`` is ``(3, T)``, ``solution["Pi1"]`` and ``solution["energy"]`` are ``(T,)``.
-    Of a batch they are ``(3, *batch, T)`` and ``(*batch, T)``.
+    ``solution["Pi"]`` is ``(3, T)`` or ``(3, *batch, T)``; ``solution["energy"]`` is ``(T,)`` or
+    ``(*batch, T)``.
 
     Attributes:
         system: The System that was simulated.
@@ -39,12 +41,14 @@ class Solution:
         parameters: Packed parameters, ``(k,)`` or ``(k, *batch)``.
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
-            the last point inside), ``NONFINITE`` (the rates stopped being finite),
-            ``STEP_UNDERFLOW`` (no step was small enough for the tolerances) or ``MAX_STEPS``.
+            the last point inside), ``NONFINITE`` (rates or steps are not finite),
+            ``STEP_UNDERFLOW`` (no step was small enough), ``MAX_STEPS`` or ``EVENT`` (terminal).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
             each trajectory has constants of its own; None if there are none.
+        events: The events that were looked for, by name: times, states and members of each.
+        dense: The steps, by which `at` knows the state at any time; None without ``dense=True``.
     """
 
     def __init__(
@@ -59,6 +63,8 @@ class Solution:
         inputs: Array | None = None,
         *,
         course: Course | None = None,
+        events: Events | None = None,
+        dense: Dense | None = None,
     ) -> None:
         self.system = system
         self.time = time
@@ -69,6 +75,8 @@ class Solution:
         self.message = message
         self.reconstructed = None if reconstructed is None else np.ascontiguousarray(reconstructed)
         self.inputs = inputs
+        self.events = events or Events()
+        self.dense = dense
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: all but what is computed from the rest on demand."""
@@ -126,41 +134,22 @@ class Solution:
         Raises:
             KernelArgumentError: There is no such member.
         """
-        batch = self.batch
-        good = len(place) == len(batch) > 0
-        if not good or not all(-n <= p < n for p, n in zip(place, batch, strict=True)):
-            raise KernelArgumentError(
-                f"member {place} is not in a batch of the shape {batch}; expected "
-                f"{len(batch)} numbers within it."
-                if batch
-                else "this solution is one trajectory.",
-                found=list(place),
-                expected=list(batch),
-            )
-        come = self.course.take(place)
-        at: Any = (slice(None), *place)
-        end = float(self.time[-1] if come.reached is None else come.reached)
-        reached = ~np.isnan(self.state[at][0]) & (self.time <= end)
-        times, states = self.time[reached], self.state[at][:, reached]
-        if come.last is not None and (not times.size or times[-1] < end):
-            times, states = np.append(times, end), np.column_stack([states, come.last])
-        shared, inputs = self.parameters.ndim == 1, self.inputs
-        if inputs is not None and inputs.ndim > 2:
-            inputs = inputs[at][:, 0]
-        elif inputs is not None and inputs.ndim == 2 and times.size != self.time.size:
-            inputs = np.column_stack([inputs[:, : reached.sum()], inputs[:, reached.sum()]])
-            inputs = inputs[:, : times.size]
-        return Solution(
-            self.system,
-            times,
-            states,
-            self.parameters if shared else self.parameters[at],
-            come.status,
-            "" if come.status == "OK" else f"it stopped at t = {end:.6g}",
-            None,
-            inputs,
-            course=come,
-        )
+        from coadjoint.solve.members import take_member
+
+        return take_member(self, place)
+
+    def at(self, t: ArrayLike) -> Solution:
+        """The same motion at other times, by its steps; NaN where one of a batch did not come.
+
+        Args:
+            t: A time, or several in any order, within the span of the solution.
+
+        Raises:
+            KernelArgumentError: It was simulated without ``dense=True``, or a time is outside.
+        """
+        from coadjoint.solve.dense_output import evaluate_at
+
+        return evaluate_at(self, t)
 
     def _check_alone(self, what: str) -> None:
         """Refuse what is of one trajectory.
@@ -238,10 +227,9 @@ class Solution:
         Nothing but the tolerances of the integration keeps a quaternion at unit length; this says
         how well they did.
         """
-        if self.reconstructed is None:
-            return {}
-        turning = (q for q in self.system.RECONSTRUCTED.values() if q.shape == (4,))
-        return {q.name: float(np.abs((self[q.name] ** 2).sum(axis=0) - 1).max()) for q in turning}
+        from coadjoint.solve.drift import find_attitude_drift
+
+        return find_attitude_drift(self)
 
     @cached_property
     def observables(self) -> Array:
@@ -275,7 +263,8 @@ class Solution:
         if start is None:
             return None
         state, time = start.state[..., np.newaxis], np.array([start.time])
-        return Solution(self.system, time, state, self.parameters, "", "", None, start.inputs)
+        below = None if start.reconstructed is None else start.reconstructed[..., np.newaxis]
+        return Solution(self.system, time, state, self.parameters, "", "", below, start.inputs)
 
     @cached_property
     def drift(self) -> dict[str, Any]:
@@ -284,36 +273,25 @@ class Solution:
         ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout. Of a batch it is an
         array; what a trajectory did not reach is left out.
         """
-        if not self.batch:
-            return {name: relative(self.change(name), self._sizes(name)) for name in self.conserved}
-        return {
-            name: relative_of_each(self.change(name), self._sizes(name), len(self.batch))
-            for name in self.conserved
-        }
+        from coadjoint.solve.drift import find_drift
 
-    def _sizes(self, name: str) -> Array:
-        """The values of a quantity, that of the start among them."""
-        values = self[name]
-        if self._at_start is None:
-            return values
-        return np.concatenate([self._at_start[name], values], axis=-1)
+        return find_drift(self)
 
     @property
     def conserved(self) -> tuple[str, ...]:
         """Names of the observables that the motion conserves; some only if inputs are constant."""
-        inputs = self.inputs
-        steady = inputs is None or inputs.ndim == 1 or bool((inputs == inputs[..., :1]).all())
-        if self.course.start is not None:
-            steady = not self.course.start.varies
-        quantities = self.system.OBSERVABLES.values()
-        return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
+        from coadjoint.solve.drift import list_conserved
+
+        return list_conserved(self)
+
+    def first(self, name: str) -> Array:
+        """The value at the start, ``(..., 1)``, also where no sample has it."""
+        return self[name][..., :1] if self._at_start is None else self._at_start[name]
 
     def change(self, name: str) -> Array:
         """``q(t) - q(0)`` of an observable or state component, ``(T,)`` or ``(*batch, T)``."""
-        values = self[name]
-        first = values[..., :1] if self._at_start is None else self._at_start[name]
         with np.errstate(invalid="ignore"):  # infinite values give NaN, as they should
-            return values - first
+            return self[name] - self.first(name)
 
     @property
     def time_reached(self) -> Any:
@@ -325,31 +303,16 @@ class Solution:
         """The last state by component; of a batch arrays, of what could be followed to there."""
         names = self.system.STATE.components
         if self.batch:
-            assert self.course.last is not None
-            return dict(zip(names, self.course.last, strict=True))
+            last = self.state[..., -1] if self.course.last is None else self.course.last
+            return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
-
-    @property
-    def _last_inputs(self) -> dict[str, float]:
-        """The last inputs by component."""
-        names = self.system.INPUTS.components
-        return dict(zip(names, self._inputs_over_time[:, -1].tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values, of one trajectory."""
+        from coadjoint.solve.summary import summarize
+
         self._check_alone("a summary")
-        parameters = zip(self.system.PARAMETERS.components, self.parameters.tolist(), strict=True)
-        return {
-            "system": self.system.name,
-            "status": self.status,
-            "message": self.message,
-            "time": self.time_reached,
-            "samples": len(self),
-            "parameters": dict(parameters),
-            "final": self.final,
-            "drift": self.drift,
-            **({} if self.inputs is None else {"inputs": self._last_inputs}),
-        } | ({"attitude_drift": self.attitude_drift} if self.attitude_drift else {})
+        return summarize(self)
 
     def to_xarray(self) -> Any:
         """The solution as an `xarray.Dataset` with units; see `coadjoint.solve.datasets`.
@@ -451,23 +414,17 @@ class Solution:
         return trace(self, path)
 
     def __repr__(self) -> str:
+        from coadjoint.solve.drift import describe_drift
+
         span = f"{len(self)} samples, t = {self.time[0]:g} .. {self.time[-1]:g}>"
         span = span if len(self) > 1 else f"1 sample, t = {self.time[0]:g}>"
         if self.batch:
             whole = "x".join(map(str, self.batch))
             lines = [f"<Solution of {self.system.name}: {whole} trajectories, {span}"]
             lines += [f"  {self.message}"] if self.message else []
-            return "\n".join([*lines, *self._describe_drift()])
-        lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
-        lines += self._describe_drift()
-        lines += [f"  |{name}|^2 - 1: {value:.1e}" for name, value in self.attitude_drift.items()]
-        return "\n".join(lines)
-
-    def _describe_drift(self) -> list[str]:
-        """A line for each conserved observable; of a batch the largest drift."""
-        most = " up to" if self.batch else ""
-        values = ((name, float(np.max(value))) for name, value in self.drift.items())
-        return [f"  drift of {name}:{most} {value:.1e}" for name, value in values]
+            return "\n".join([*lines, *describe_drift(self)])
+        head = f"<Solution of {self.system.name}: {self.status}, {span}"
+        return "\n".join([head, *describe_drift(self)])
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

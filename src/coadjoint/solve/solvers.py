@@ -9,6 +9,7 @@ Read next: `coadjoint.solve.march`, which shares an ensemble among threads.
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from math import ceil, log
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 import numpy as np
 
 from coadjoint.build.compiler import HOW_TO_GET_ONE, Source
-from coadjoint.build.library import Library, load_library
+from coadjoint.build.library import Library, load_library, tell_processor
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
@@ -92,6 +93,11 @@ class Stepper(Protocol):
     """
 
     degree: int
+
+    @property
+    def key(self) -> str:
+        """What its bits depend on beyond the files of the system."""
+        ...
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
@@ -204,22 +210,41 @@ class CStepper:
     """
 
     def __init__(self, library: Library, choice: Choice) -> None:
-        self.source, self.degree = library.source, choice.degree
+        self.source, self.key, self.degree = library.source, library.key, choice.degree
         self._advance = library.take("advance")
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
     ) -> int:
         """As `Stepper.advance`; other threads run meanwhile."""
-        run = _describe(ensemble)
-        run.first, run.last, run.work = first, last, work
-        if record is None:
-            return self._advance(ctypes.byref(run))
-        run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
-        run.recorded = record.count
-        on = self._advance(ctypes.byref(run))
-        record.count = run.recorded
-        return on
+        return call(self._advance, ensemble, slice(first, last), work, record)
+
+
+def call(
+    advance: Callable[[Any], int],
+    ensemble: Ensemble,
+    members: slice,
+    work: int,
+    record: Record | None,
+) -> int:
+    """Call ``NAME_advance`` of an object.
+
+    Args:
+        advance: The function, which takes a pointer to its structure.
+        ensemble: Whose members go on.
+        members: Which of them; from one to another, without gaps.
+        work: As `Stepper.advance` takes it.
+        record: Likewise.
+    """
+    run = _describe(ensemble)
+    run.first, run.last, run.work = members.start, members.stop, work
+    if record is None:
+        return advance(ctypes.byref(run))
+    run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+    run.recorded = record.count
+    on = advance(ctypes.byref(run))
+    record.count = run.recorded
+    return on
 
 
 def _describe(ensemble: Ensemble) -> _Run:
@@ -276,6 +301,11 @@ class NumpyStepper:
             if "projection" in system.functions
             else None,
         )
+
+    @property
+    def key(self) -> str:
+        """NumPy's own functions differ from one processor to another."""
+        return f"numpy {np.__version__} {tell_processor()}"
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None

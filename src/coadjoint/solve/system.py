@@ -12,9 +12,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
+from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -29,6 +31,7 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.solve.events import Event
     from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
     from coadjoint.solve.ode import Ode
@@ -93,8 +96,11 @@ class System(Functions):
 
     def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
-        if KERNEL_FUNCTIONS[function].below:
-            return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+        match KERNEL_FUNCTIONS[function].below:
+            case "reconstructed":
+                return Quantities(*self.STATE.values(), *self.RECONSTRUCTED.values())
+            case "vector":
+                return Quantities(*self.STATE.values(), *map(_name_below, self.STATE.values()))
         return self.STATE
 
     def sizes(self, function: str) -> dict[str, int]:
@@ -123,9 +129,9 @@ class System(Functions):
     ) -> Array:
         """A function of a state that is ready, at once; or after all checks of the arguments."""
         time, out = rest
-        by_default = parameters is None and inputs is None and time is None and out is None
+        by_default = inputs is None and time is None
         if by_default and (ready := self._kernels.ready.get((function, target))):
-            values: Array | None = ready(state)
+            values: Array | None = ready(state, parameters, out)
             if values is not None:
                 return values
         from coadjoint.solve.arrays import check_call
@@ -193,6 +199,9 @@ class System(Functions):
         threads: int | None = None,
         progress: bool | Callable[[float], object] = True,
         reconstruct: bool | Mapping[str, ArrayLike] = False,
+        checkpoint: str | PathLike[str] | None = None,
+        events: str | Event | Sequence[str | Event] | None = None,
+        dense: bool = False,
     ) -> Solution:
         """Integrate one trajectory, or many at a time.
 
@@ -209,8 +218,8 @@ class System(Functions):
                 which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
                 `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
                 ``"dop853"``. Where generated solvers do not apply it is ``"scipy:DOP853"``: where
-                a System keeps constraints or has a ``[domain]``, with ``reconstruct``, inputs that
-                are a function, or the target ``"python"``. `Solution.method` says which it was.
+                rates are loops over a table, with ``reconstruct``, inputs that are a function, or
+                the target ``"python"``. `Solution.method` says which it was.
             rtol: Relative tolerance of a step; 1e-10 if none is given.
             atol: Absolute tolerance of a step; 1e-12 if none is given.
             step: A fixed step for a generated method, in the place of tolerances; the order of
@@ -228,6 +237,14 @@ class System(Functions):
                 of it begins, as ``{"x": 1.0}``. Otherwise the rest begins at its default, else at
                 zero; an attitude at the identity, that of a rolling body turned upright the
                 shortest way. Methods with a Jacobian find it by differences then.
+            checkpoint: A file that a generated solver replaces as a whole every ten seconds, less
+                often where writing it takes longer than half a second, and at the end. Called again
+                with the same arguments, it goes on from there, with the bits of a run that was not
+                broken off. A finished run stands there, too: remove the file to begin anew.
+            events: What to look for: names of components or scalar quantities, where these are 0;
+                formulas such as ``"Gamma3 == 0.5"``; or `Event` records, which have a direction or
+                end the trajectory. `Solution.events` has them by name.
+            dense: Whether to keep the steps, from which `Solution.at` has the state at any time.
 
         Returns:
             The labelled trajectory or trajectories, with observables and the drift of what is
@@ -261,6 +278,9 @@ class System(Functions):
             threads=threads,
             progress=progress,
             reconstruct=reconstruct,
+            checkpoint=checkpoint,
+            events=events,
+            dense=dense,
         )
 
     def ode(
@@ -369,6 +389,12 @@ class System(Functions):
         tables |= {name: quantities for name, quantities in driving.items() if quantities}
         told = (f"{name} {', '.join(q.components) or 'none'}" for name, q in tables.items())
         return f"<System {self.name}: {'; '.join(told)}>"
+
+
+def _name_below(quantity: Quantity) -> Quantity:
+    """A quantity of the state as what stands below it: the same rows of a vector."""
+    name, *components = (f"{each} of the vector" for each in (quantity.name, *quantity.components))
+    return replace(quantity, name=name, components=tuple(components))
 
 
 def load_folder(folder: Path) -> System:

@@ -95,7 +95,7 @@ def read_csv(system: System, path: Path) -> Solution:
     time = rows("time").reshape(-1, samples)[0]
     form = said["form"] | {"time": time, "parameters": list(said["parameters"].values())}
     described = {name: value for name, value in said.items() if name not in _TABLE_ONLY}
-    return rebuild(system, described, rows, form)
+    return rebuild(system, path, described, rows, form)
 
 
 #: What only a table says above its rows.

@@ -16,7 +16,14 @@ from typing import Any
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
-from coadjoint.spec.core.components import FORMS, Shape, component_names, matrix_size, unpack
+from coadjoint.spec.core.components import (
+    FORMS,
+    Components,
+    Shape,
+    component_names,
+    matrix_size,
+    unpack,
+)
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
@@ -53,7 +60,6 @@ __all__ = [
     "Parameter",
     "Poisson",
     "Reconstructed",
-    "ReducedMomentum",
     "Reduction",
     "Relaxation",
     "Rolling",
@@ -72,24 +78,30 @@ __all__ = [
 
 
 @dataclass(frozen=True)
-class ReducedMomentum:
-    """The momentum along the distribution that belongs to an independent velocity.
+class DerivedMomentum(Components):
+    """A momentum that is emitted for a variable, with components named like those of it.
 
     Attributes:
-        velocity: The velocity; its momentum is emitted as ``Omega_momentum``.
+        name: ``Omega_momentum`` along a distribution, ``Pi_spatial`` as seen from space.
+        shape: That of the variable.
+        of: The variable: an independent velocity, or the momentum in the body.
+        form: That of the variable.
+        conserved: Whether the energy knows nothing that is advected and no force acts on it, so
+            that a momentum in space stays what it is.
     """
 
-    velocity: Variable
+    name: str
+    shape: Shape
+    of: Variable
+    form: str = ""
+    conserved: bool = False
 
-    @property
-    def name(self) -> str:
-        """Name of the observable."""
-        return f"{self.velocity.name}_momentum"
 
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, as those of the velocity."""
-        return component_names(self.name, self.velocity.shape, self.velocity.form)
+def derive_momentum(of: Variable, ending: str, *, conserved: bool = False) -> DerivedMomentum:
+    """The momentum that is emitted for a variable, under its name with an ending."""
+    return DerivedMomentum(
+        name=f"{of.name}_{ending}", shape=of.shape, form=of.form, of=of, conserved=conserved
+    )
 
 
 @dataclass(frozen=True)
@@ -226,10 +238,10 @@ class Spec:
         return next((v for v, action in advected if action and action.name in ATTITUDES), None)
 
     @property
-    def reduced_momenta(self) -> tuple[ReducedMomentum, ...]:
+    def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:
         """The momenta of the independent velocities; empty where momenta are the state."""
         moving = [each for each in self.state if each.role == "velocity"]
-        return tuple(map(ReducedMomentum, moving)) if self.in_frame else ()
+        return tuple(derive_momentum(v, "momentum") for v in moving if self.in_frame)
 
     @property
     def is_driven(self) -> bool:
@@ -269,7 +281,16 @@ class Spec:
             for variable in self.variables
         )
         records = {key: each for key, each in self.records.items() if key != "charts"}
-        whole = replace(self, observables=(), conserved=(), reduction=None, records=records)
+        whole = replace(
+            self,
+            observables=(),
+            conserved=(),
+            reduction=None,
+            records=records,
+            symmetries=(),
+            transformations=(),
+            reconstruction=(),
+        )
         return replace(
             self,
             algebra=None,

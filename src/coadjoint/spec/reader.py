@@ -108,8 +108,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         accepted=frozenset(_list_accepted(file)),
         **_read_tables(reading),
     )
-    following = [(each.momentum.name, each.name, each.components) for each in spatial_momenta(spec)]
-    following += [(each.velocity.name, each.name, each.components) for each in spec.reduced_momenta]
+    derived = (*spatial_momenta(spec), *spec.reduced_momenta)
+    following = [(each.of.name, each.name, each.components) for each in derived]
     for owner, momentum, components in following:
         reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)

@@ -53,16 +53,14 @@ _EITHER = ("hamiltonian", "lagrangian")
 _ALGEBRA = ("algebra",)
 _SPACE = ("configuration", "poisson")
 #: What acts in addition to the energy, on routes where a rate of momenta is known.
-_DRIVES = ("forces", "dissipation")
-#: The same, and what acts by the bracket of the state.
-_ACTS = (*_DRIVES, "double_bracket", "metriplectic")
+_ACTS = ("forces", "dissipation", "double_bracket", "metriplectic")
 _on_algebra = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, options=_ACTS)
 _chart = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, emitted=False)
 _in_frame = partial(
     Route,
     kinds=("algebra", "configuration"),
     energies=_LAGRANGIAN,
-    options=("constraints", *_DRIVES),
+    options=("constraints", *_ACTS),
     in_frame=True,
 )
 _lax = partial(Route, energies=_EITHER, takes_driving=False)

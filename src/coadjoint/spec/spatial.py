@@ -6,42 +6,14 @@ Read next: `coadjoint.derive.mechanics.reconstruction`, which derives their comp
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.algebra.catalogue import inverse_by
-from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.tree import walk
-from coadjoint.spec.model import Spec
-from coadjoint.spec.sections.variables import Variable
+from coadjoint.spec.model import DerivedMomentum, Spec, derive_momentum
 
 
-@dataclass(frozen=True)
-class SpatialMomentum:
-    """A momentum as seen from space: ``Pi_spatial``.
-
-    Attributes:
-        momentum: What it is in the body.
-        conserved: Whether the energy knows nothing that is advected and no force acts on it, so
-            that it stays what it is.
-    """
-
-    momentum: Variable
-    conserved: bool
-
-    @property
-    def name(self) -> str:
-        """Name of the observable."""
-        return f"{self.momentum.name}_spatial"
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, along the basis of the algebra."""
-        return component_names(self.name, self.momentum.shape, self.momentum.form)
-
-
-def spatial_momenta(spec: Spec) -> tuple[SpatialMomentum, ...]:
+def spatial_momenta(spec: Spec) -> tuple[DerivedMomentum, ...]:
     """The momenta seen from space; empty without an attitude that can be inverted.
 
     A quaternion turns the momenta of rotations, if these commute with the rest of the algebra.
@@ -59,9 +31,10 @@ def spatial_momenta(spec: Spec) -> tuple[SpatialMomentum, ...]:
     advected = {n for v in spec.having_role("advected") for n in (v.name, *v.components)}
     is_free = not spec.relaxation and not advected & _names_in(spec.lagrangian, spec.hamiltonian)
     acted = _places_acted_on(spec)
+    acting = (acted & set(each.block) if is_quaternion else acted for each in momenta)
     return tuple(
-        SpatialMomentum(each, is_free and not (acted & set(each.block) if is_quaternion else acted))
-        for each in momenta
+        derive_momentum(each, "spatial", conserved=is_free and not forced)
+        for each, forced in zip(momenta, acting, strict=True)
     )
 
 

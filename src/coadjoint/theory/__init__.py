@@ -10,9 +10,11 @@ them. Read next: `coadjoint.theory.group`.
 from coadjoint.exact.dense import hat
 from coadjoint.groups.complex_numbers import Complex
 from coadjoint.groups.galilean import particles
-from coadjoint.groups.quaternions import Coquaternion, Quaternion, euler_rodrigues
+from coadjoint.groups.quaternions import Quaternion, euler_rodrigues
 from coadjoint.groups.vector_fields import VectorField, lie_derivative
 from coadjoint.theory.catalogue import matrix_group
+from coadjoint.theory.coquaternions import Coquaternion
+from coadjoint.theory.frozen import freeze_bracket
 from coadjoint.theory.group import MatrixGroup
 from coadjoint.theory.hopf import hopf_map
 from coadjoint.theory.jets import JetField
@@ -36,6 +38,7 @@ __all__ = [
     "classify",
     "dual_tilde",
     "euler_rodrigues",
+    "freeze_bracket",
     "hat",
     "hopf_map",
     "jacobi_lie_bracket",

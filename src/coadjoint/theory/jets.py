@@ -1,4 +1,4 @@
-"""Undetermined functions, for proofs that hold whatever the function is.
+"""Undetermined functions, for proofs that hold for every function.
 
 Comes in: names of variables and of functions of them. Goes out: a `JetField`, in which a function
 and each of its partial derivatives is a symbol of its own, and `derivative` by a variable is the

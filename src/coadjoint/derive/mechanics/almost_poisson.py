@@ -46,7 +46,7 @@ def reduced_momenta(distribution: Distribution) -> list[tuple[str, Element]]:
     return [
         (name, values[velocity])
         for each in distribution.setting.spec.reduced_momenta
-        for name, velocity in zip(each.components, each.velocity.components, strict=True)
+        for name, velocity in zip(each.components, each.of.components, strict=True)
     ]
 
 

@@ -15,13 +15,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
-from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import apply, determinant, dot, inverse
 from coadjoint.exact.ranks import witness_regular
 from coadjoint.spec import Formula
+from coadjoint.spec.core.components import kept_places, matrix_size, unpack
 
 #: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.
 LARGEST_BLOCK = 3
@@ -218,12 +220,18 @@ def conjugates(
     return apply(inverse_in_blocks(field, hessian, refuse), known)
 
 
-def fault(setting: Setting, formula: Formula, message: str, found: str) -> DerivationError:
-    """An error that points at a formula."""
-    return DerivationError(
-        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
-        path=str(setting.spec.path),
-        line=formula.line,
-        key=formula.key,
-        found=found,
-    )
+def kept_entries(
+    setting: Setting, parts: Sequence[Element], form: str, formula: Formula
+) -> tuple[Element, ...]:
+    """The entries that a form keeps of a matrix, given row by row.
+
+    Raises:
+        DerivationError: The matrix is not of the form.
+    """
+    size = matrix_size(len(parts), "matrix")
+    assert size is not None, len(parts)
+    kept = [parts[i * size + j] for i, j in kept_places(size, form)]
+    if any(x != y for x, y in zip(entries(unpack(kept, form)), parts, strict=True)):
+        message = f"the value is not {form}. Correct the formula."
+        raise fault(setting, formula, message, formula.text)
+    return tuple(kept)

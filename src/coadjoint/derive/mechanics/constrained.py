@@ -23,7 +23,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
-from coadjoint.derive.mechanics.configuration import coupled_blocks, fault, mechanics
+from coadjoint.derive.mechanics.configuration import coupled_blocks, mechanics
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.frames import Frame
@@ -34,9 +34,10 @@ from coadjoint.derive.mechanics.kinematics import (
     multiplier_name,
     rate_name,
 )
+from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.records import Exact, Step, write_entries, write_step
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
@@ -206,14 +207,21 @@ def emit_motion(
         reactions: What rests on the accelerations.
     """
     setting, of = motion.frame.setting, motion.distribution
-    field, definitions = setting.field, (*motion.kinematics.definitions, *named)
     _check_linear_in_reactions(motion, known)
+    gained, relaxing = relaxed(setting), list[Definition]()
+    if gained is not None:
+        relaxing = motion.decided.list_computed(gained.definitions)
+        forces = map(motion.decided.value, gained.forces)
+        known = [a + b for a, b in zip(known, forces, strict=True)]
+    field, definitions = setting.field, (*motion.kinematics.definitions, *named, *relaxing)
     solves = motion.solves(mass, known)
     for solve in solves:
         _check_regular(motion, solve, definitions)
     solved = [line for solve in solves for line in solve_in_kernel(field, solve, motion.decided)]
     moving = dict(zip(of.independent, motion.accelerations, strict=True))
-    moving |= motion.kinematics.position_rates
+    for name, rate in motion.kinematics.position_rates.items():
+        own = field.zero if gained is None else motion.decided.value(gained.added[name])
+        moving[name] = rate + own
     energy = mechanics(setting).energy
     closed = field.substitute(energy, of.solved)
     # sin^2 + cos^2 = 1, where velocities are along a turning frame

@@ -20,9 +20,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.frames import Frame, frame_of
-from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
 from coadjoint.spec.model import Constraint

@@ -24,13 +24,16 @@ from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries
-from coadjoint.derive.mechanics.configuration import Matrix, mechanics
+from coadjoint.derive.mechanics.configuration import Matrix, kept_entries, mechanics
+from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.parts import in_parts, slopes
 from coadjoint.derive.records import rate, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
 from coadjoint.spec import Spec
+from coadjoint.spec.model import Variable
+from coadjoint.spec.sections.poisson import pairing_weights
 
 #: What may be added, as LaTeX.
 LATEX = {
@@ -60,16 +63,35 @@ def external_forces(setting: Setting, velocities: Sequence[str]) -> tuple[Elemen
 
 def _declared_forces(setting: Setting, *roles: str) -> dict[str, Element]:
     """The declared forces along variables of some roles, by component."""
+    spec = setting.spec
     return {
         name: part
-        for variable in setting.spec.variables
-        if variable.name in setting.spec.forces and variable.role in roles
+        for variable in spec.variables
+        if variable.name in spec.forces and variable.role in roles
         for name, part in zip(
             variable.components,
-            in_parts(setting, setting.spec.forces[variable.name]),
+            force_components(setting, variable, in_parts(setting, spec.forces[variable.name])),
             strict=True,
         )
     }
+
+
+def force_components(
+    setting: Setting, variable: Variable, parts: tuple[Element, ...]
+) -> tuple[Element, ...]:
+    """What acts along each component of a variable, from the entries of its declared force.
+
+    A force that is a matrix is added to the rate of the momentum, which is paired with the velocity
+    as ``{q, p}`` says: by ``tr(P dS/dt)`` where they are symmetric.
+    """
+    formula = setting.spec.forces[variable.name]
+    if formula.shape != variable.value_shape or not variable.form:
+        return parts
+    kept = kept_entries(setting, parts, variable.form, formula)
+    if variable.role != "velocity" or not variable.of:
+        return kept
+    weights = pairing_weights(len(kept), variable.form)
+    return tuple(part / weight for part, weight in zip(kept, weights, strict=True))
 
 
 def add_forces(free: Equations) -> Equations:
@@ -80,8 +102,9 @@ def add_forces(free: Equations) -> Equations:
     setting = free.setting
     if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
         return free
-    shown = list(zip(symbols(setting.spec), free.exact.rates, strict=False))
     free, forces = _name_rates(free), added_rates(setting)
+    names = {*symbols(setting.spec)}
+    shown = [line for line in free.exact.definitions if line[0] in names]
     added = tuple(f + x for f, x in zip(forces, relaxed_rates(free), strict=True))
     rates = tuple(x + f for x, f in zip(free.exact.rates, added, strict=True))
     lines = zip(setting.state, added, rates, strict=True)
@@ -103,13 +126,27 @@ def add_forces(free: Equations) -> Equations:
 
 
 def _name_rates(free: Equations) -> Equations:
-    """The motion with names for its rates where a double bracket uses them twice."""
+    """The motion with names for the brackets with h where a double bracket uses them twice."""
     names = symbols(free.spec)
     if not names:
         return free
-    definitions = (*free.exact.definitions, *zip(names, free.exact.rates, strict=True))
-    rates = free.setting.elements(names)
+    own = own_rates(free.setting)
+    brackets = (x - y for x, y in zip(free.exact.rates, own, strict=True))
+    definitions = (*free.exact.definitions, *zip(names, brackets, strict=True))
+    rates = tuple(x + y for x, y in zip(free.setting.elements(names), own, strict=True))
     return replace(free, exact=replace(free.exact, definitions=definitions, rates=rates))
+
+
+def own_rates(setting: Setting) -> tuple[Element, ...]:
+    """The rates of the state at fixed momenta: ``-M^-1 dp/dt|explicit`` of velocities, else 0."""
+    field = setting.field
+    known = dict.fromkeys(setting.state, field.zero)
+    if not setting.momenta and setting.spec.lagrangian is not None:
+        own = [explicit(setting, p) for p in mechanics(setting).momenta]
+        if any(own):
+            moved = apply(mechanics(setting).inverse_mass, own)
+            known |= {v: -x for v, x in zip(setting.velocities, moved, strict=True)}
+    return tuple(known.values())
 
 
 def added_rates(setting: Setting) -> list[Element]:
@@ -140,7 +177,7 @@ def metric(setting: Setting) -> Matrix:
 
 
 def relaxed_rates(free: Equations) -> tuple[Element, ...]:
-    """``P G P dh`` with the rates of the free motion for ``P dh``, or ``G dS``."""
+    """``P G P dh`` with the names of ``P dh``, or ``G dS``."""
     setting, relaxation = free.setting, free.spec.relaxation
     field, tensor = setting.field, free.exact.poisson_tensor
     if relaxation is None:
@@ -148,4 +185,4 @@ def relaxed_rates(free: Equations) -> tuple[Element, ...]:
     if relaxation.S is not None:
         return apply(metric(setting), field.gradient(setting.formula(relaxation.S), setting.state))
     assert tensor is not None, "the reader asks for a bracket"
-    return apply(tensor, apply(metric(setting), free.exact.rates))
+    return apply(tensor, apply(metric(setting), setting.elements(symbols(free.spec))))

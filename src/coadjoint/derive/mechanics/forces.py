@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coadjoint.derive.mechanics.configuration import fault, inverse_in_blocks
-from coadjoint.derive.setting import Setting, once
-from coadjoint.derive.symmetries import moved_components
+from coadjoint.derive.mechanics.configuration import inverse_in_blocks
+from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.derive.symmetries import evaluate_components
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
@@ -34,7 +34,7 @@ def _acceleration(setting: Setting, law: Force) -> tuple[Element, ...]:
     """The acceleration of one coordinate; of a matrix, its rows one after the other."""
     field = setting.field
     mass = setting.value(law.mass)
-    force = tuple(moved_components(setting, {law.coordinate: law.force}).values())
+    force = tuple(evaluate_components(setting, {law.coordinate: law.force}).values())
 
     def refuse(problem: str, places: Sequence[int]) -> DerivationError:
         message = f"the mass {law.mass.in_one_line} {problem}; expected one of every component"

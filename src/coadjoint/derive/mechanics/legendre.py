@@ -21,7 +21,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
 )
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel, solver_names
-from coadjoint.derive.setting import Setting, once, sampled_setting
+from coadjoint.derive.setting import Setting, fault, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
@@ -98,7 +98,8 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
                 Solve(matrix=own, known=rest, block=block, names=[names[i] for i in block])
             )
     pairs = zip(setting.momenta, names, setting.weights, strict=True)
-    energy = sum((field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs), -of.lagrangian)
+    products = [field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs]
+    energy = field.sum([*products, -of.lagrangian])
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
     return LegendreTransform(
@@ -152,14 +153,14 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
     if len(block) > COUPLED_VELOCITIES:
-        raise _refusal(
+        refused = _refusal(
             setting,
             f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
             f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
             f"that decouple them, or give {_way_out(setting)}.",
             names[0],
-            LimitError,
         )
+        raise LimitError(str(refused), **refused.parts)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -180,7 +181,7 @@ def _way_out(setting: Setting) -> str:
     return f"a [hamiltonian] and the route {route}"
 
 
-def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError | LimitError:
+def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationError:
     """What is wrong with a block whose determinant no point shows to be other than 0."""
     what = f"det d2l/d({', '.join(names)})2"
     if len(matrix) > LARGEST_BLOCK or setting.field.is_zero(determinant(matrix)):
@@ -194,20 +195,8 @@ def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationE
     return _refusal(setting, f"{problem}; {remedy}", names[0])
 
 
-def _refusal(
-    setting: Setting,
-    message: str,
-    velocity: str,
-    kind: type[DerivationError | LimitError] = DerivationError,
-) -> DerivationError | LimitError:
+def _refusal(setting: Setting, message: str, velocity: str) -> DerivationError:
     """An error that points at the Lagrangian."""
     formula = setting.spec.lagrangian
     assert formula is not None
-    return kind(
-        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
-        path=str(setting.spec.path),
-        line=formula.line,
-        key=formula.key,
-        found=formula.text,
-        velocity=velocity,
-    )
+    return fault(setting, formula, message, formula.text, velocity=velocity)

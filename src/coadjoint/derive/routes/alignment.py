@@ -20,11 +20,10 @@ from dataclasses import replace
 
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.configuration import fault
 from coadjoint.derive.mechanics.forces import accelerations
 from coadjoint.derive.records import Relation, Step, write_rates, write_step
 from coadjoint.derive.refusals import leave_route
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, fault
 from coadjoint.derive.symbols import choose_names
 from coadjoint.exact.dense import Vector, add, cross, dot, scale
 from coadjoint.groups.quaternions import Quaternion

@@ -22,20 +22,16 @@ from fractions import Fraction
 
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.configuration import (
-    conjugates,
-    fault,
-    in_state_order,
-    mechanics,
-)
+from coadjoint.derive.mechanics.configuration import conjugates, in_state_order, mechanics
 from coadjoint.derive.mechanics.emission import emit
-from coadjoint.derive.mechanics.external import external_forces
+from coadjoint.derive.mechanics.external import external_forces, metric
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
-from coadjoint.derive.setting import Setting
+from coadjoint.derive.setting import Setting, fault
 from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
+from coadjoint.exact.dense import apply, transpose
 from coadjoint.spec import Spec
 
 #: A coordinate, its momentum and their bracket.
@@ -142,8 +138,10 @@ def _in_own_momenta(setting: Setting) -> Equations:
     slopes = dict(zip(variables, field.gradient(h, variables), strict=True))
     pairs = [(a, b, Fraction(1)) for a, b in zip(q, own, strict=True)]
     named = _hamilton(setting, pairs, slopes, {}, {})
+    gained = _relaxed(setting, pairs, named, solved)
     for name, force in zip(own, external_forces(setting, setting.velocities), strict=True):
         named[name] += field.substitute(force, solved)
+    named = {x: rate + gained.get(x, field.zero) for x, rate in named.items()}
     rates = {x: named[x] for x in variables}
     motion = in_chart(setting, "canonical", rates, solved, "p = dl/dv", energy=h)
     transform = write_step(
@@ -153,6 +151,36 @@ def _in_own_momenta(setting: Setting) -> Equations:
         solved,
     )
     return replace(motion, steps=(transform, *_steps(variables, h, slopes, motion.exact.rates)))
+
+
+def _relaxed(
+    setting: Setting,
+    pairs: Sequence[Pair],
+    free: Mapping[str, Element],
+    solved: Mapping[str, Element],
+) -> dict[str, Element]:
+    """What a symmetric bracket of (q, v) adds to the rates of (q, p): none is there without one.
+
+    With ``x = x(q, p)`` and ``D = dx/d(q, p)`` a double bracket adds ``J D^T G D J dh`` with the
+    canonical J; a metriplectic one adds ``D^-1 G dS``, where ``D^-1`` is ``d(q, p)/dx``.
+    """
+    relaxation, field = setting.spec.relaxation, setting.field
+    if relaxation is None:
+        return {}
+    q, p = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
+    names, G = [*q, *p], [[field.substitute(x, solved) for x in row] for row in metric(setting)]
+    if relaxation.S is None:
+        state = (field.substitute(field[x], solved) for x in setting.state)
+        D = tuple(field.gradient(x, names) for x in state)
+        covector = apply(transpose(D), apply(G, apply(D, [free[x] for x in names])))
+        by_q, by_p = covector[: len(q)], covector[len(q) :]
+        return dict(zip(names, [*by_p, *(-x for x in by_q)], strict=True))
+    S = field.gradient(setting.formula(relaxation.S), setting.state)
+    pushed = apply(G, [field.substitute(x, solved) for x in S])
+    momenta = dict(zip(p, mechanics(setting).momenta, strict=True))
+    values = (momenta.get(x, field[x]) for x in names)
+    turn = [[field.substitute(x, solved) for x in field.gradient(v, setting.state)] for v in values]
+    return dict(zip(names, apply(turn, pushed), strict=True))
 
 
 def _steps(

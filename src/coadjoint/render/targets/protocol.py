@@ -14,12 +14,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from array import array
+
     from numpy.typing import NDArray
 
     from coadjoint.lower.program import Program
     from coadjoint.render.targets.body import Body
 
     Array = NDArray[Any]
+    Buffer = array[float]
 
 
 class Generated(Protocol):
@@ -65,8 +68,8 @@ class Call:
 
 #: Members of one call that is not taken apart into pieces.
 FEW = 1024
-#: Evaluates some members at a state, into a result.
-Evaluate = Callable[[int, "Array", "Array"], None]
+#: Evaluates some members at a state, with packed parameters or None for known ones, into a result.
+Evaluate = Callable[[int, "Array", "Buffer | None", "Array"], None]
 
 
 class Kernel:
@@ -78,21 +81,31 @@ class Kernel:
 
     source: str
 
+    def prepare(self, function: str = "") -> None:
+        """Make ready what is called next: a function, or all of them.
+
+        Raises:
+            CompilerError: It cannot be compiled.
+            CrossCheckError: What was compiled differs from the NumPy kernel.
+        """
+
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """What evaluates all members, called one after the other."""
         raise NotImplementedError
 
     def evaluate_with(self, function: str, like: Call) -> Evaluate:
-        """A function evaluated with the parameters and inputs of a call, which members share.
+        """A function evaluated with the inputs of a call, which members share, and its parameters.
 
-        It takes the number of members, their state and the result: writable, C-contiguous arrays
-        of float64 that are not empty, at most `FEW` members.
+        It takes the number of members, their state, other parameters or None, and the result:
+        writable, C-contiguous arrays of float64 that are not empty, at most `FEW` members.
         """
-        parameters, driving, shape = like.parameters, like.driving, like.block.shape[:-1]
+        from numpy import frombuffer
 
-        def evaluate(members: int, state: Array, out: Array) -> None:
-            block = out.reshape(*shape, members)
-            call = Call(state.reshape(-1, members), parameters, block, driving)
+        driving, shape = like.driving, like.block.shape[:-1]
+
+        def evaluate(members: int, state: Array, parameters: Buffer | None, out: Array) -> None:
+            given = like.parameters if parameters is None else frombuffer(parameters)
+            call = Call(state.reshape(-1, members), given, out.reshape(*shape, members), driving)
             for piece in self.calls(function, call):
                 piece()
 
@@ -146,7 +159,7 @@ class Target:
         return bodies
 
     def load(self, system: Generated, build: str, reference: Callable[[], Any]) -> Kernel:
-        """The kernel of a System, by ``load`` of its loader.
+        """The kernel of a System, by ``load`` of its loader; it compiles nothing yet.
 
         Args:
             system: Whose kernel it is.
@@ -154,8 +167,6 @@ class Target:
             reference: Loads the NumPy kernel, with which what a compiler made is compared.
 
         Raises:
-            CompilerError: It cannot be compiled.
-            CrossCheckError: What was compiled differs from the NumPy kernel.
             OutputError: The file cannot be loaded.
         """
         kernel: Kernel = self._module("loader").load(system, build, reference)

@@ -8,6 +8,7 @@ Read next: `coadjoint.render.targets.numpy.reader`.
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
@@ -16,11 +17,12 @@ from math import isfinite
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
 from coadjoint.render.targets.body import Body, failure, join
+from coadjoint.render.targets.loops import TABLES, Loops
 
 Functions = dict[str, ast.FunctionDef]
 
 
-@lru_cache(maxsize=4)  # every function of a file is read from the same text
+@lru_cache(maxsize=8)  # every function of a file is read from the same text
 def _parse(text: str) -> ast.Module:
     """The tree of a text."""
     return ast.parse(text)
@@ -114,3 +116,67 @@ class Reader:
                 if called in FUNCTIONS:
                     return Call(called, self.node(argument))
         raise self.refusal("is not a form of a Program", tree)
+
+
+class LoopReader:
+    """Reads what is left of a function that loops over a table, and the table.
+
+    Args:
+        reader: The reader of the function.
+        functions: All functions of the file.
+        text: Of the file.
+        helpers: What such functions call, as our template has it, without docstrings.
+    """
+
+    def __init__(self, reader: Reader, functions: Functions, text: str, helpers: str) -> None:
+        self.reader = reader
+        tables = {
+            item.targets[0].id: item.value
+            for item in _parse(text).body
+            if isinstance(item, ast.Assign) and isinstance(item.targets[0], ast.Name)
+        }
+        self.loops = Loops(tables={part: self._read_table(tables, part) for part in TABLES})
+        for helper in _parse(helpers).body:
+            assert isinstance(helper, ast.FunctionDef), helper
+            found = functions.get(helper.name)
+            if found is None or list(map(ast.dump, found.body[1:])) != list(
+                map(ast.dump, helper.body)
+            ):
+                raise reader.refusal(f"{helper.name} is another one than that of our template")
+            if ast.dump(found.args) != ast.dump(helper.args):
+                raise reader.refusal(f"{helper.name} takes other arguments")
+
+    def _read_table(self, tables: dict[str, ast.expr], part: str) -> list[float]:
+        """One part of the table."""
+        try:
+            entries = ast.literal_eval(tables[f"TABLE_{part.upper()}"])
+            wanted = type(TABLES[part]("0"))
+            if isinstance(entries, tuple) and all(type(each) is wanted for each in entries):
+                return list(entries)
+        except (KeyError, ValueError):
+            pass
+        raise self.reader.refusal(f"the table {part} is not one of numbers")
+
+    def read(self, line: ast.stmt) -> bool:
+        """Whether a line is one of a function that loops."""
+        shown = ast.unparse(line)
+        filled = re.fullmatch(r"vector(\d+) = _fill_vector\(state\[(\d+):(\d+)\], scales\)", shown)
+        added = re.fullmatch(r"_add_products\(out, \[(.*)\]\)", shown)
+        match line:
+            case ast.Assign([ast.Name("scales")], ast.Tuple(elts=scales)):
+                self.loops.scales = list(map(self.reader.node, scales))
+                return True
+        if filled and int(filled[1]) == len(self.loops.vectors):
+            self.loops.vectors.append(int(filled[2]))
+        elif added:
+            passes = re.findall(r"\(vector(\d+), vector(\d+)\)", added[1])
+            self.loops.passes = [(int(a), int(b)) for a, b in passes]
+        return bool(filled or added)
+
+
+def is_table(item: ast.stmt) -> bool:
+    """Whether a statement of a module is a part of its table."""
+    match item:
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
+            return name.removeprefix("TABLE_").lower() in TABLES
+    return False

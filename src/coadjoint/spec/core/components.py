@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, product
 from math import isqrt
-from typing import Any
+from typing import Any, Protocol
 
 Shape = tuple[int, ...]
 
@@ -40,13 +40,13 @@ def component_names(name: str, shape: Shape, form: str = "") -> tuple[str, ...]:
     form = form if form in FORMS else ""
     if form:
         shape = (matrix_size(shape[0], form) or 0,) * 2
-    indices = _places(shape[0], form) if form else product(*map(range, shape))
+    indices = kept_places(shape[0], form) if form else product(*map(range, shape))
     joint = "_" if len(shape) == 2 and max(shape) > 9 else ""
     lead = name + "_" if name[-1].isdigit() or joint else name
     return tuple(lead + joint.join(str(n + first) for n in index) for index in indices)
 
 
-def _places(size: int, form: str) -> list[tuple[int, int]]:
+def kept_places(size: int, form: str) -> list[tuple[int, int]]:
     """Rows and columns, from 0, of the entries that a form keeps."""
     match form:
         case "antisymmetric":
@@ -65,7 +65,7 @@ def matrix_size(count: int, form: str) -> int | None:
     if form not in FORMS:
         return None
     near = isqrt(2 * count) if form != "matrix" else isqrt(count)
-    sizes = (size for size in (near, near + 1) if len(_places(size, form)) == count > 0)
+    sizes = (size for size in (near, near + 1) if len(kept_places(size, form)) == count > 0)
     return next(sizes, None)
 
 
@@ -83,7 +83,7 @@ def unpack(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
     """
     size = matrix_size(len(values), form)
     assert size is not None, (len(values), form)
-    entries = dict(zip(_places(size, form), values, strict=True))
+    entries = dict(zip(kept_places(size, form), values, strict=True))
     zero = 0 * values[0]
     for (i, j), value in list(entries.items()):
         if form == "antisymmetric":
@@ -91,6 +91,22 @@ def unpack(values: Sequence[Any], form: str) -> tuple[tuple[Any, ...], ...]:
         elif form == "symmetric":
             entries[j, i] = value
     return tuple(tuple(entries.get((i, j), zero) for j in range(size)) for i in range(size))
+
+
+class Named(Protocol):
+    """What has a name, a shape and names for its components."""
+
+    @property
+    def name(self) -> str:
+        """As it is called in formulas."""
+
+    @property
+    def shape(self) -> Shape:
+        """``()``, ``(n,)`` or ``(n, m)``."""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components, in order."""
 
 
 class Components:
@@ -126,6 +142,7 @@ class Argument(Components):
         default: One exact value per component, row by row; None if the user must give it.
         unit: Unit text, ``"1"`` if dimensionless.
         doc: Free text for documents.
+        form: ``"antisymmetric"`` or ``"symmetric"`` if it is such a matrix in formulas, else "".
     """
 
     name: str
@@ -133,3 +150,4 @@ class Argument(Components):
     default: tuple[Fraction, ...] | None = None
     unit: str = "1"
     doc: str = ""
+    form: str = ""

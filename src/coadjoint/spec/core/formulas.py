@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from coadjoint.errors import CoadjointError
-from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.components import Named, Shape
 from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
@@ -22,20 +22,12 @@ from coadjoint.spec.core.source import Source, write_key
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
-class HasComponents(Protocol):
-    """What has components: a variable, a parameter, an input or the time."""
-
-    @property
-    def name(self) -> str:
-        """As declared."""
+class HasComponents(Named, Protocol):
+    """What is declared and has components: a variable, a parameter, an input or the time."""
 
     @property
     def role(self) -> str:
         """One of `ROLES`."""
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the components, in order."""
 
     @property
     def value_shape(self) -> Shape:
@@ -185,9 +177,11 @@ def _check_roles(tree: Node, scope: Scope) -> None:
     """Refuse a declared name that this kind of formula may not use, saying why."""
     for node in walk(tree):
         if isinstance(node, (Name, Index)) and node.name in scope.outside:
-            problem = f"{node.name!r} is {ROLES[scope.outside[node.name]]}"
+            role = scope.outside[node.name]
+            problem = f"{node.name!r} is {ROLES[role]}"
             expected = f"{scope.kind} in terms of {scope.takes}"
-            hint = did_you_mean(node.name, scope.shapes)
+            constant = "Put a parameter in its place." if role in DRIVING else ""
+            hint = did_you_mean(node.name, scope.shapes, constant)
             raise fault_at(node, problem, node.name, expected, hint)
 
 

@@ -7,11 +7,23 @@ Read next: `coadjoint.spec.core.values`, then `coadjoint.spec.core.reading`.
 from __future__ import annotations
 
 from functools import partial
+from math import prod
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from coadjoint.spec.core.values import NAME_PATTERN, Length, Numbers, Prose, Unit
+from coadjoint.spec.core.components import matrix_size
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.values import (
+    NAME_PATTERN,
+    Length,
+    Numbers,
+    Prose,
+    Unit,
+    misfit_form,
+    read_default,
+)
 
 
 def no_titles(schema: dict[str, Any]) -> None:
@@ -58,11 +70,32 @@ class ArgumentPart(Part):
     shape: Annotated[list[Length], Field(max_length=2)] = Field(
         [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix"
     )
+    form: Literal["antisymmetric", "symmetric"] | None = Field(
+        None,
+        description="the square matrix that it is in formulas: its components are the entries "
+        "above the diagonal, or those with the diagonal, row by row",
+    )
     default: Numbers | None = Field(
         None, description="exact default: a number for all components, or nested lists of them"
     )
     unit: Unit = Field("1", description="unit, such as 'kg m^2'; '1' if dimensionless")
     doc: Prose = Field("", description="what it is, for documents")
+
+
+def read_argument(source: Source, key: KeyPath, part: ArgumentPart) -> dict[str, Any]:
+    """What the records of parameters and inputs share, by the names of their fields.
+
+    Raises:
+        SpecError: The components fill no matrix of the form, or a default has another shape.
+    """
+    shape, form = tuple(part.shape), part.form or ""
+    if form:
+        shape = shape or (1,)
+        if len(shape) > 1 or matrix_size(shape[0], form) is None:
+            raise misfit_form(source, (*key, "form"), prod(shape), form)
+    default = read_default(source, (*key, "default"), part.default, shape)
+    given = {"name": key[-1], "shape": shape, "default": default, "form": form}
+    return given | {"unit": part.unit, "doc": part.doc}
 
 
 #: What is enough for a claim, if not a proof.

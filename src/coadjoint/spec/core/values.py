@@ -171,6 +171,7 @@ def _shape_text(value: object) -> str:
 _SIZED = {
     "variables": "block, representation or shape",
     "parameters": "shape",
+    "inputs": "shape",
     "symmetries": "algebra",
 }
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from coadjoint.spec.core.components import Shape, component_names
 from coadjoint.spec.core.definitions import define, shapes_of, signature
@@ -17,7 +16,6 @@ from coadjoint.spec.core.formulas import DRIVING, Declared, Formula, Scope, make
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.relations import EQUATION, read_relation
-from coadjoint.spec.core.source import Source
 from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.sections.solved import (
@@ -84,11 +82,9 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
     """The constraints in declared order.
 
     Raises:
-        SpecError: One is not an equation between velocities, or the spec has with them what a
-            constrained motion does not have.
+        SpecError: One is not an equation between velocities, or rests on a reaction.
     """
     source, file = reading.source, reading.file
-    _check_unasked(source, file)
     solved = {
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
@@ -128,27 +124,6 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
             expected = "an equation between velocities, which no reaction enters"
             hint = f"Write {name} without reactions, or use it in [forces] alone."
             raise reading.fault(key, problem, name, expected, hint)
-
-
-def _check_unasked(source: Source, file: Any) -> None:
-    """Nothing is asked of a constrained motion for which it has no bracket.
-
-    Raises:
-        SpecError: Something is, with what to declare instead.
-    """
-    gives = len(find_solved_velocities(file) or {}) == len(file.constraints or {})
-    asked = {"casimirs": "claims of Casimirs", "brackets": "claims of brackets"}
-    for key, what in asked.items():
-        if getattr(file.claims, key) and not gives:
-            raise source.fault(
-                ("claims", key),
-                f"there are {what} with [constraints]",
-                found=key,
-                expected="constraints that each give a velocity, since the bracket is one of the "
-                "momenta of all velocities that are left",
-                hint="Solve the constraints for velocities, as w == y*u, or name what is conserved "
-                "in claims.conserved.",
-            )
 
 
 def _name_all(table: str, constraints: Sequence[Constraint]) -> Iterator[Naming]:

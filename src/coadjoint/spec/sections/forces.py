@@ -33,7 +33,7 @@ def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula
     scope = reading.scope("a force", motion_roles(reading), reactions)
     forced = _find_forced(reading)
     return {
-        name: read_along(reading, ("forces", name), text, scope, forced)
+        name: read_along(reading, ("forces", name), text, scope, forced, as_matrix=True)
         for name, text in texts.items()
     }
 
@@ -62,9 +62,24 @@ def _list_moving(reading: Reading) -> list[Variable]:
 
 
 def read_along(
-    reading: Reading, key: KeyPath, text: str, scope: Scope, velocities: Mapping[str, Variable]
+    reading: Reading,
+    key: KeyPath,
+    text: str,
+    scope: Scope,
+    velocities: Mapping[str, Variable],
+    *,
+    as_matrix: bool = False,
 ) -> Formula:
-    """A formula of the shape of the velocity that its key names."""
+    """A formula with a value for each component of the velocity that its key names.
+
+    Args:
+        reading: The spec.
+        key: Of the formula; its last part is the name.
+        text: The formula.
+        scope: The names that it may use.
+        velocities: What it may be along, by name.
+        as_matrix: Whether along a matrix it may be a matrix, too.
+    """
     name = str(key[-1])
     if name not in velocities:
         raise _no_velocity(reading, key, name, velocities)
@@ -72,9 +87,11 @@ def read_along(
     if not along.form:
         return read_fitting(reading.source, key, text, scope, along.shape, name)
     formula = reading.formula(key, text, scope, any_shape=True)
-    if formula.shape != along.shape:  # a matrix has the shape of its components, not its own
+    if formula.shape not in (along.shape, *([along.value_shape] if as_matrix else [])):
         names = list_names(along.components)
         expected = f"{words(along.shape)}, along the components {names} of the matrix {name!r}"
+        expected += f", or {words(along.value_shape)}" * as_matrix
+        expected += f" that is {along.form}" * (as_matrix and along.form != "matrix")
         zeros = ", ".join(["0"] * (len(along.components) - 1))
         hint = f"Write vector({along.components[0]}, {zeros}) for one along {along.components[0]}."
         raise misfit(reading.source, key, formula, expected, hint if zeros else "")

@@ -14,10 +14,9 @@ from pydantic import Field
 
 from coadjoint.spec.core.components import Argument
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.parts import ArgumentPart
+from coadjoint.spec.core.parts import ArgumentPart, read_argument
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.values import read_default
 
 
 class InputPart(ArgumentPart):
@@ -51,19 +50,18 @@ def read_inputs(reading: Reading, parts: Mapping[str, InputPart]) -> tuple[Input
     source = reading.source
     inputs = []
     for name, part in parts.items():
-        shape = tuple(part.shape)
-        default = read_default(source, ("inputs", name, "default"), part.default, shape)
+        given = read_argument(source, ("inputs", name), part)
         _check_rate(source, name, parts)
-        own = {"unit": part.unit, "doc": part.doc, "rate": part.rate or ""}
-        inputs.append(Input(name=name, shape=shape, default=default, **own))
+        inputs.append(Input(**given, rate=part.rate or ""))
     reading.check_count("inputs", "inputs", inputs, "PARAMETER_COMPONENTS")
     return tuple(inputs)
 
 
 def _check_rate(source: Source, name: str, parts: Mapping[str, InputPart]) -> None:
     """What is the rate of an input is another one, of its shape."""
-    rate = parts[name].rate
-    alike = [other for other in parts if other != name and parts[other].shape == parts[name].shape]
+    rate, size = parts[name].rate, (parts[name].shape, parts[name].form)
+    same = [other for other, each in parts.items() if (each.shape, each.form) == size]
+    alike = [other for other in same if other != name]
     if rate is not None and rate not in alike:
         problem = f"{rate!a} is not another input with the shape of {name!r}"
         expected = f"one of {list_names(alike)}" if alike else "another input of its shape"

@@ -160,7 +160,7 @@ def representation_of(
     """The representation of a name: a declared one, or one that every algebra has.
 
     Raises:
-        AlgebraError: The algebra has none of that name, for want of matrices.
+        AlgebraError: The algebra has none of that name, since it has no matrices.
         SpecError: The name is unknown.
     """
     declared = declared or {}

@@ -8,27 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import prod
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from pydantic import Field
 
-from coadjoint.spec.core.components import Argument, matrix_size
-from coadjoint.spec.core.parts import ArgumentPart
-from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.components import Argument
+from coadjoint.spec.core.parts import ArgumentPart, read_argument
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.values import misfit_form, read_default
 
 
 class ParameterPart(ArgumentPart):
     """A constant of the system."""
 
-    form: Literal["antisymmetric", "symmetric"] | None = Field(
-        None,
-        description="the square matrix that it is in formulas: its components are the entries "
-        "above the diagonal, or those with the diagonal, row by row",
-    )
     positive: bool = Field(False, description="whether every component is positive")
 
 
@@ -38,13 +30,11 @@ class Parameter(Argument):
 
     Attributes:
         positive: Whether every component may be assumed positive.
-        form: ``"antisymmetric"`` or ``"symmetric"`` if it is such a matrix in formulas, else "".
     """
 
     role: ClassVar[str] = "parameter"
 
     positive: bool = False
-    form: str = ""
 
 
 def read_parameters(reading: Reading, parts: Mapping[str, ParameterPart]) -> tuple[Parameter, ...]:
@@ -62,26 +52,14 @@ def read_parameters(reading: Reading, parts: Mapping[str, ParameterPart]) -> tup
 
 def _read_parameter(source: Source, name: str, part: ParameterPart) -> Parameter:
     """A parameter with one exact default for each component, or none."""
-    shape, form = tuple(part.shape), part.form or ""
-    if form:
-        shape = shape or (1,)
-        if len(shape) > 1 or matrix_size(shape[0], form) is None:
-            raise misfit_form(source, ("parameters", name, "form"), prod(shape), form)
-    key: KeyPath = ("parameters", name, "default")
-    default = read_default(source, key, part.default, shape)
-    if default is not None and part.positive and min(default) <= 0:
-        problem = f"the default {min(default)} of {name!r} is not positive"
+    given = read_argument(source, ("parameters", name), part)
+    parameter = Parameter(**given, positive=part.positive)
+    if parameter.default is not None and part.positive and min(parameter.default) <= 0:
+        least = min(parameter.default)
+        problem = f"the default {least} of {name!r} is not positive"
         expected = "positive numbers, since positive = true"
-        raise source.fault(key, problem, str(min(default)), expected)
-    return Parameter(
-        name=name,
-        shape=shape,
-        default=default,
-        unit=part.unit,
-        doc=part.doc,
-        positive=part.positive,
-        form=form,
-    )
+        raise source.fault(("parameters", name, "default"), problem, str(least), expected)
+    return parameter
 
 
 PARAMETERS = Table[tuple[Parameter, ...]](

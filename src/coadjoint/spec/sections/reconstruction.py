@@ -153,13 +153,27 @@ def _check_turned(reading: Reading, key: KeyPath, name: str) -> None:
     algebra, variables = ALGEBRA.of(reading).algebra, VARIABLES.of(reading)
     spanned = {place for v in variables if v.role == "velocity" for place in v.block}
     places = None if algebra is None else turning_places(algebra)
+    if reading.file.reduction is not None:
+        raise reading.fault(
+            key,
+            f"the attitude {name!r} belongs to the algebra of the whole system, and there is "
+            "[reduction]",
+            name,
+            "rates that are functions of what is left",
+            'Declare an angle, as theta = "omega", or the attitude in a spec without [reduction].',
+        )
     if places is None or not set(places) <= spanned:
+        hint = 'Without one, declare an angle: theta = "omega".'
+        if algebra is not None and places is not None and not spanned & set(places):
+            block = ", ".join(f'"{algebra.basis[place]}"' for place in places)
+            free = reading.free_name("Omega")
+            hint = f'Write {free} = {{ role = "velocity", block = [{block}] }} in [variables].'
         raise reading.fault(
             key,
             f"nothing turns the attitude {name!r}",
             "no algebra" if algebra is None else algebra.name,
             'a velocity over the rotations of "so(3)" or "se(3)"',
-            'Without one, declare an angle: theta = "omega".',
+            hint,
         )
 
 

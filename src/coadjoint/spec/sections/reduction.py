@@ -15,7 +15,6 @@ from pydantic import Field
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Declared, Formula, make_scope, read_fitting
 from coadjoint.spec.core.parts import Part, name_pattern
-from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of
 
@@ -85,21 +84,20 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
 
 
 def _check_alone(reading: Reading) -> None:
-    """There is a Hamiltonian, and nothing that belongs to a bracket of the state."""
+    """There is a Hamiltonian, no other law of motion, and no claim about a bracket."""
     file = reading.file
-    tables = ("symmetries", "transformations", "lax", "newton", "reconstruction", "lagrangian")
-    alien: dict[KeyPath, object] = {
-        ("claims", "casimirs"): file.claims.casimirs,
-        ("claims", "brackets"): file.claims.brackets,
-        **{(table,): getattr(file, table) for table in tables},
-    }
-    for key, given in alien.items():
-        if given:
-            name = str(key[-1])
-            problem = f"{name!r} does not go with [reduction], whose motion has no bracket"
-            expected = "a state, a Hamiltonian, forces, observables and integrals"
+    for name in ("casimirs", "brackets"):
+        if getattr(file.claims, name):
+            problem = f"{name!r} does not go with [reduction], whose motion has no declared bracket"
+            expected = "claims of integrals"
             hint = "Declare it in a spec of the whole system."
-            raise reading.fault(key, problem, name, expected, hint)
+            raise reading.fault(("claims", name), problem, name, expected, hint)
+    for name in ("lax", "newton", "lagrangian"):
+        if getattr(file, name):
+            problem = f"there are [{name}] and [reduction], which restricts a motion by its energy"
+            expected = "[hamiltonian] alone"
+            hint = f"Remove [{name}]." if file.hamiltonian else "Write [hamiltonian] in its place."
+            raise reading.fault((name,), problem, name, expected, hint)
     if file.hamiltonian is None:
         problem, expected = "there is no Hamiltonian", "a table [hamiltonian] with [reduction]"
         raise reading.fault(("reduction",), problem, "hamiltonian", expected)

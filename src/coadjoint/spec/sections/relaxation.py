@@ -83,17 +83,9 @@ def read_metriplectic(reading: Reading, part: MetriplecticPart) -> Relaxation:
 
 
 def _read_metric(reading: Reading, table: str, text: str) -> Formula:
-    """G: a scalar, or a matrix with a row for each component of the state, which is of momenta."""
+    """G: a scalar, or a matrix with a row for each component of the state."""
     key: KeyPath = (table, "G")
-    moving = [v for v in state_of(VARIABLES.of(reading)) if v.role == "velocity"]
-    if moving:
-        raise reading.fault(
-            (table,),
-            f"the state has the velocity {moving[0].name!r}, and G acts by a bracket of momenta",
-            moving[0].name,
-            "momenta in the state",
-            f'Declare them, as in p = {{ role = "momentum", of = "{moving[0].of or "q"}" }}.',
-        )
+    _check_bracket(reading, table)
     scope = reading.scope("a metric", motion_roles(reading))
     G = reading.formula(key, text, scope, any_shape=True)
     size = sum(len(each.components) for each in state_of(VARIABLES.of(reading)))
@@ -101,6 +93,33 @@ def _read_metric(reading: Reading, table: str, text: str) -> Formula:
         matrix = f"a {size} x {size} matrix with a row for each component of the state"
         raise misfit(reading.source, key, G, f"a number, or {matrix}")
     return G
+
+
+def _check_bracket(reading: Reading, table: str) -> None:
+    """The state has a bracket, which nothing binds.
+
+    Raises:
+        SpecError: Constraints bind it, or no Lagrangian gives the momenta of its velocities.
+    """
+    file, key = reading.file, (table,)
+    moving = [v for v in state_of(VARIABLES.of(reading)) if v.role == "velocity"]
+    if file.constraints:
+        raise reading.fault(
+            key,
+            f"there are [{table}] and [constraints]: G may move positions otherwise than the "
+            "velocities do, which the constraints bind",
+            table,
+            "one of the two",
+            f"Remove [{table}], and write dissipation of velocities in [dissipation].",
+        )
+    if moving and file.lagrangian is None and file.poisson is None:
+        raise reading.fault(
+            key,
+            f"the state has the velocity {moving[0].name!r} and no [lagrangian] gives its momentum",
+            moving[0].name,
+            "a bracket of the state",
+            "Declare [lagrangian] and a route that takes it, or [poisson].",
+        )
 
 
 DOUBLE_BRACKET = Table[Relaxation | None](

@@ -143,11 +143,18 @@ def find_moved(reading: Reading, key: KeyPath, name: str) -> Variable:
     Raises:
         SpecError: There is none of that name.
     """
-    state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+    state = _list_movable(reading)
     if name not in state:
         problem = f"{name!a} is not a variable of the state"
         raise reading.unknown(key, problem, name, state)
     return state[name]
+
+
+def _list_movable(reading: Reading) -> dict[str, Variable]:
+    """The variables of the state by name, without those that [reduction] gives."""
+    reduction = reading.file.reduction
+    given = () if reduction is None else reduction.section
+    return {v.name: v for v in state_of(VARIABLES.of(reading)) if v.name not in given}
 
 
 def read_move(
@@ -165,7 +172,7 @@ class _Actions:
     def __init__(self, reading: Reading) -> None:
         self.reading, self.source = reading, reading.source
         self.scalars = scalars_of(reading)
-        self.state = {variable.name: variable for variable in state_of(VARIABLES.of(reading))}
+        self.state = _list_movable(reading)
 
     def symmetry(self, name: str, part: SymmetryPart) -> Symmetry:
         """One declared action."""
@@ -184,14 +191,6 @@ class _Actions:
             variable: self._read_generator(key, variable, text, shapes)
             for variable, text in (part.generators or {}).items()
         }
-        if part.time is not None and self.reading.file.constraints:
-            raise self.source.fault(
-                (*key, "time"),
-                "time moves under [constraints]",
-                found="time",
-                expected="generators of the state, since the momentum of time is minus the energy",
-                hint="Remove time: the balance of the energy is proved of every motion.",
-            )
         scalar = {
             table: self._read_scalar((*key, table), getattr(part, table), shapes)
             for table in ("time", "map")

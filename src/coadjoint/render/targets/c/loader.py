@@ -1,7 +1,7 @@
-"""The target C, loading: a library for each build, and calls of it.
+"""The target C, loading: libraries of each build, and calls of them.
 
-Comes in: a System, and checked arrays. Goes out: results in place. A fresh library is compared with
-the NumPy kernel before it is used.
+Comes in: a System, and checked arrays. Goes out: results in place. What is called first is compiled
+first, and by itself. A fresh library is compared with the NumPy kernel before it is used.
 Read next: `coadjoint.build.library`.
 """
 
@@ -9,60 +9,93 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coadjoint.build.library import Library, load_library
+from coadjoint.build.compiler import one_function
+from coadjoint.build.library import Library, find_library, load_library
 from coadjoint.errors import CrossCheckError
 from coadjoint.render.targets.protocol import Call, Evaluate, Generated, Kernel
 
 if TYPE_CHECKING:
     from coadjoint.render.targets.numpy.loader import NumpyKernel
+    from coadjoint.render.targets.protocol import Array, Buffer
 
 #: The flags of each build, by the name that compilers know them under.
 FLAGS: Final = {"c": "exact", "c-fast": "fast"}
 #: Numbers that one call of a C function reads and writes. At 2 to 20 ns each it ends within a tenth
 #: of a second, so that Ctrl-C is heard; some microseconds for each call do not show.
 CHUNK = 1 << 22
-#: Points at which a fresh library is compared with the NumPy kernel: odd, so that the last of them
-#: fill no vector register.
-PROBES = 17
+#: Points at which a fresh library is compared with the NumPy kernel: once so few and odd that the
+#: last of them fill no vector register, once so many that results are aligned to such registers.
+PROBES = (17, 72)
 #: Largest relative difference of a fresh library where bits are not promised: fused operations and
 #: other libraries' functions differ by roundings, a wrong kernel by much more.
 ROUNDINGS = 1e-9
 
 
 class CKernel(Kernel):
-    """A C kernel of a System."""
+    """A C kernel of a System: one object for each function that was asked for, or one for all.
 
-    def __init__(self, library: Library) -> None:
-        self._library = library
-        self.source = library.source
+    Args:
+        system: Whose kernel it is.
+        build: ``"c"`` or ``"c-fast"``.
+        reference: Loads the NumPy kernel.
+    """
+
+    def __init__(self, system: Generated, build: str, reference: Callable[[], NumpyKernel]) -> None:
+        self.source = ""
+        self._system, self._build, self._reference = system, build, reference
+        self._libraries: dict[str, Library] = {}
+
+    def prepare(self, function: str = "") -> None:
+        """Compile and load a function alone, unless it is there, or all functions as one object."""
+        if function and function in self._libraries:
+            return
+        system, flags = self._system, FLAGS[self._build]
+        given = (system.folder, system.name, system.id, flags)
+        whole = find_library(*given) if function else load_library(*given, self._verify())
+        if whole is not None:
+            self._libraries, self.source = dict.fromkeys(system.functions, whole), whole.source
+        else:
+            verify = self._verify(function)
+            self._libraries[function] = load_library(*given, verify, one_function(function))
+
+    def _verify(self, function: str = "") -> Callable[[Library], None]:
+        """What compares a function of a fresh library with NumPy, or all of them."""
+        functions = [function] if function else list(self._system.functions)
+        return partial(_verify, self._system, self._build, self._reference, functions)
 
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], None]]:
         """C calls that together evaluate all members."""
-        arrays = (*call.given.values(), call.block)
-        size = max(1, CHUNK // sum(math.prod(array.shape[:-1]) for array in arrays))
-        for first in range(0, call.members, size):
-            members = min(size, call.members - first)
-            piece = self._library.bind(function, members, *_places(call, first))
-            piece.arrays = arrays  # type: ignore[attr-defined]  # they live as long as the call
-            yield piece
+        return _calls(self._libraries[function], function, call)
 
     def evaluate_with(self, function: str, like: Call) -> Evaluate:
         """One C call, in which no array is looked at but for where it is."""
-        bound = self._library.bind_at(function, like.members, *_places(like, 0))
+        bound = self._libraries[function].bind_at(function, like.members, *_places(like, 0))
         place, byref = ctypes.c_double.from_buffer, ctypes.byref
 
-        def evaluate(members: int, state: NDArray[Any], out: NDArray[Any]) -> None:
-            bound(members, byref(place(state)), byref(place(out)))  # type: ignore[arg-type]
+        def evaluate(members: int, state: Array, parameters: Buffer | None, out: Array) -> None:
+            given = None if parameters is None else byref(place(parameters))
+            bound(members, byref(place(state)), given, byref(place(out)))  # type: ignore[arg-type]
 
         evaluate.arrays = like  # type: ignore[attr-defined]  # they live as long as the function
         return evaluate
+
+
+def _calls(library: Library, function: str, call: Call) -> Iterator[Callable[[], Any]]:
+    """The calls of a function of a library."""
+    arrays = (*call.given.values(), call.block)
+    size = max(1, CHUNK // sum(math.prod(array.shape[:-1]) for array in arrays))
+    for first in range(0, call.members, size):
+        members = min(size, call.members - first)
+        piece = library.bind(function, members, *_places(call, first))
+        piece.arrays = arrays  # type: ignore[attr-defined]  # they live as long as the call
+        yield piece
 
 
 def _places(call: Call, first: int) -> Iterator[int]:
@@ -76,23 +109,26 @@ def _places(call: Call, first: int) -> Iterator[int]:
 
 
 def load(system: Generated, build: str, reference: Callable[[], NumpyKernel]) -> CKernel:
-    """The C kernel of a build, verified."""
-    verify = partial(_verify, system, build, reference)
-    return CKernel(load_library(system.folder, system.name, system.id, FLAGS[build], verify))
+    """The C kernel of a build, of which nothing is compiled yet."""
+    return CKernel(system, build, reference)
 
 
 def _verify(
-    system: Generated, build: str, reference: Callable[[], NumpyKernel], library: Library
+    system: Generated,
+    build: str,
+    reference: Callable[[], NumpyKernel],
+    functions: Sequence[str],
+    library: Library,
 ) -> None:
-    """Compare a fresh library with the NumPy kernel at a few points.
+    """Compare functions of a fresh library with the NumPy kernel at a few points.
 
     Raises:
         CrossCheckError: They differ.
         OutputError: The NumPy kernel does not run.
     """
-    for function, call in _probes(system):
+    for function, call in _probes(system, functions):
         expected = reference().values(function, call)
-        for piece in CKernel(library).calls(function, call):
+        for piece in _calls(library, function, call):
             piece()
         if not _agree(call.block, expected, exact=build == "c" and not system.elementary):
             raise CrossCheckError(
@@ -106,17 +142,27 @@ def _verify(
             )
 
 
-def _probes(system: Generated) -> Iterator[tuple[str, Call]]:
+def _probes(system: Generated, functions: Sequence[str]) -> Iterator[tuple[str, Call]]:
     """Points for each function: parameters and inputs of each member, then shared ones."""
     source = np.random.default_rng(0)
-    for function, shape in system.functions.items():
+    for function in functions:
+        shape = system.functions[function]
         sizes = system.sizes(function).items()
-        own = {name: source.uniform(0.5, 2.0, (size, PROBES)) for name, size in sizes}
-        state = own.pop("state")
-        for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
-            block, (parameters, *_) = np.full((*shape, PROBES), np.pi), given.values()
-            driving = {name: array for name, array in given.items() if name != "parameters"}
-            yield function, Call(state, parameters, block, driving)
+        for members in PROBES:
+            own = {name: source.uniform(0.5, 2.0, (size, members)) for name, size in sizes}
+            state = own.pop("state")
+            for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
+                block, (parameters, *_) = _unaligned((*shape, members)), given.values()
+                driving = {name: array for name, array in given.items() if name != "parameters"}
+                yield function, Call(state, parameters, block, driving)
+
+
+def _unaligned(shape: tuple[int, ...]) -> NDArray[Any]:
+    """A result that begins three numbers before a multiple of 64 bytes."""
+    size = math.prod(shape)
+    room = np.full(size + 8, np.pi)
+    first = (5 - room.ctypes.data // room.itemsize) % 8
+    return room[first : first + size].reshape(shape)
 
 
 def _agree(values: NDArray[Any], expected: NDArray[Any], *, exact: bool) -> bool:

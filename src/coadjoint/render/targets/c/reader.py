@@ -30,20 +30,32 @@ _STEPS = re.compile(
     r"const size_t _(inputs|time)_row = \1_stride \? \1_stride : 1;\s*"
     r"const size_t _\1_member = \1_stride != 0;"
 )
-_LOOP = "for (size_t _n = 0; _n < count; ++_n) {"
+_LOOP = re.compile(
+    r"COADJOINT_PARTS\s+COADJOINT_INDEPENDENT\s+for \(size_t _n = _first; _n < _last; \+\+_n\) \{"
+)
 
 
 def read(text: str, program: Program, system: str) -> list[Body]:
     """The branches of the function of a Program."""
-    return read_c(text, f"{system}_{program.name}")
+    name = f"{system}_{program.name}"
+    if program.table is None:
+        return read_c(text, name)
+    from coadjoint.render.targets.c.loop_reader import read_loops  # which reads expressions here
+
+    return [read_loops(text, _find_function(text, name), program)]
+
+
+def _find_function(text: str, name: str) -> str:
+    """The body of a function without its comments."""
+    function = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
+    if not function:
+        raise failure(f"kernel.c has no function {name!r}", name)
+    return re.sub(r"/\*.*?\*/|\(void\)\w+;", "", function[1], flags=re.DOTALL)
 
 
 def read_c(text: str, name: str) -> list[Body]:
     """The branches of a C function: one, or one for shared and one for separate parameters."""
-    function = re.search(rf"^void {name}\([^)]*\)\n\{{\n(.*?)^\}}$", text, re.DOTALL | re.MULTILINE)
-    if not function:
-        raise failure(f"kernel.c has no function {name!r}", name)
-    body = re.sub(r"/\*.*?\*/|\(void\)\w+;", "", function[1], flags=re.DOTALL)
+    body = _find_function(text, name)
     zeros, body = _take_zeros(_STEPS.sub("", body))
     branches = re.fullmatch(
         r"\s*if \(parameters_stride == 0 && count > 0\) \{(.*)\} else \{(.*)\}\s*|(.*)",
@@ -69,9 +81,10 @@ def _take_zeros(text: str) -> tuple[list[int], str]:
 
 def _read_branch(text: str, member: str, zeros: list[int], name: str) -> Body:
     """The statements of one branch; ``member`` is what a parameter's index ends with."""
-    before, loop, inside = text.partition(_LOOP)
-    if not loop or not inside.rstrip().endswith("}"):
+    around = _LOOP.split(text)
+    if len(around) != 2 or not around[1].rstrip().endswith("}"):
         raise failure(f"kernel.c: no loop over the members in {text.strip()[:60]!r}", name)
+    before, inside = around
     body = Body(outputs=[(row, Number(Fraction(0))) for row in zeros])
     for line in (*_lines(before), *_lines(inside.rstrip()[:-1])):
         _read_line(line, member, body, name)
@@ -87,7 +100,6 @@ def _lines(text: str) -> Iterator[str]:
 
 def _read_line(line: str, member: str, body: Body, name: str) -> None:
     """One statement of C: an input, a statement or an output."""
-    line = line.replace("COADJOINT_INDEPENDENT", "").strip()
     state = re.fullmatch(r"const double (\w+) = state\[(\d+) \* state_stride \+ _n\]", line)
     given = re.fullmatch(rf"const double (\w+) = parameters\[(\d+){re.escape(member)}\]", line)
     driving = re.fullmatch(

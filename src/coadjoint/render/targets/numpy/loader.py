@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coadjoint.errors import OutputError
 from coadjoint.render.targets.modules import KernelModule
-from coadjoint.render.targets.protocol import Call, Generated
+from coadjoint.render.targets.protocol import Call, Evaluate, Generated
+
+if TYPE_CHECKING:
+    from coadjoint.render.targets.protocol import Array, Buffer
 
 
 def load(system: Generated, build: str, reference: Callable[[], Any]) -> NumpyKernel:
@@ -29,6 +32,17 @@ class NumpyKernel(KernelModule):
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """One call for all members."""
         yield partial(self._with_arguments(function, call), out=call.block)
+
+    def evaluate_with(self, function: str, like: Call) -> Evaluate:
+        """The function of the file itself, which looks at the shapes of arrays."""
+        evaluate, known = self.function(function), like.parameters
+        driving = tuple(like.driving.values())
+
+        def run(members: int, state: Array, parameters: Buffer | None, out: Array) -> None:
+            given = known if parameters is None else np.frombuffer(parameters)
+            evaluate(state, given, *driving, out=out)
+
+        return run
 
     def values(self, function: str, call: Call) -> NDArray[Any]:
         """What the kernel computes in an array of its own.

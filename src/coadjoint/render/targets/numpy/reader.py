@@ -12,7 +12,27 @@ from fractions import Fraction
 
 from coadjoint.lower.program import Node, Number, Program
 from coadjoint.render.targets.body import Body
-from coadjoint.render.targets.python_text import Functions, Reader
+from coadjoint.render.targets.loops import unroll
+from coadjoint.render.targets.python_text import Functions, LoopReader, Reader, is_table
+
+#: What functions that loop over a table call.
+HELPERS = """
+def _fill_vector(rows, scales):
+    scaled = [scale * rows[place] for scale, place in zip(scales, TABLE_SCALED, strict=True)]
+    return np.array([*rows, *scaled])
+
+def _add_products(out, passes):
+    out[...] = -0.0
+    starts, coefficients = np.array(TABLE_STARTS), np.array(TABLE_COEFFICIENTS)
+    lefts, rights = np.array(TABLE_LEFT), np.array(TABLE_RIGHT)
+    for left, right in passes:
+        for place in range(np.diff(starts).max()):
+            rows = np.flatnonzero(starts[:-1] + place < starts[1:])
+            entries = starts[rows] + place
+            products = (coefficients[entries] * left[lefts[entries]].T).T
+            products *= right[rights[entries]]
+            out[rows] += products
+"""
 
 
 def read(text: str, program: Program, system: str) -> list[Body]:
@@ -23,11 +43,22 @@ def read(text: str, program: Program, system: str) -> list[Body]:
         if wanted not in functions:
             raise reader.refusal(f"there is no function {wanted!r}")
     _check_calls(reader, functions, tuple(program.arrays))
+    if program.table is not None:
+        return [_read_loops(reader, functions, text, program)]
     body = Body()
     for line in functions[f"_{name}"].body:
         if not _read_zeros(reader, line, body):
             reader.read(line, body)
     return [body]
+
+
+def _read_loops(reader: Reader, functions: Functions, text: str, program: Program) -> Body:
+    """A function that loops over a table, with all sums written out."""
+    inside = LoopReader(reader, functions, text, HELPERS)
+    for line in functions[f"_{program.name}"].body:
+        if not inside.read(line):
+            reader.read(line, inside.loops.body)
+    return unroll(inside.loops, program)
 
 
 def read_expression(text: str, name: str) -> Node:
@@ -58,7 +89,7 @@ def _is_allowed(item: ast.stmt) -> bool:
             return True
         case ast.Assign(targets=[ast.Name(id="ID" | "CHUNK")], value=ast.Constant()):
             return True
-    return False
+    return is_table(item)
 
 
 def _check_calls(reader: Reader, functions: Functions, arrays: Sequence[str]) -> None:

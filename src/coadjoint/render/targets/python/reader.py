@@ -12,8 +12,24 @@ from fractions import Fraction
 
 from coadjoint.lower.program import FUNCTIONS, Number, Program
 from coadjoint.render.targets.body import Body
-from coadjoint.render.targets.python_text import Functions, Reader
+from coadjoint.render.targets.loops import unroll
+from coadjoint.render.targets.python_text import Functions, LoopReader, Reader, is_table
 
+#: What functions that loop over a table call.
+HELPERS = """
+def _fill_vector(rows, scales):
+    scaled = [scale * rows[place] for scale, place in zip(scales, TABLE_SCALED, strict=True)]
+    return [*rows, *scaled]
+
+def _add_products(out, passes):
+    for row in range(len(out)):
+        total = -0.0
+        for left, right in passes:
+            for entry in range(TABLE_STARTS[row], TABLE_STARTS[row + 1]):
+                factors = left[TABLE_LEFT[entry]], right[TABLE_RIGHT[entry]]
+                total += TABLE_COEFFICIENTS[entry] * factors[0] * factors[1]
+        out[row] = total
+"""
 #: What makes a matrix of a list.
 ROWS = "return [out[first:first + size] for first in range(0, len(out), size)]"
 
@@ -28,11 +44,14 @@ def read(text: str, program: Program, system: str) -> list[Body]:
     taken = [each.arg for each in (*function.args.args, *function.args.kwonlyargs)]
     if taken != list(program.arrays):
         raise reader.refusal(f"takes {', '.join(taken)}", function.args)
-    body = Body()
+    inside = LoopReader(reader, functions, text, HELPERS) if program.table else None
+    body = Body() if inside is None else inside.loops.body
     _, *lines, last = function.body
     for line in lines:
-        if not _read_start(line, program, body):
+        if not _read_start(line, program, body) and not (inside and inside.read(line)):
             reader.read(line, body)
+    if inside is not None:
+        body = unroll(inside.loops, program)
     _check_result(reader, functions, last, program)
     assigned = {row for row, _ in body.outputs}
     zeros = (row for row in range(len(program.outputs)) if row not in assigned)
@@ -52,7 +71,7 @@ def _is_allowed(item: ast.stmt) -> bool:
             return all(each.name in FUNCTIONS and each.asname is None for each in names)
         case ast.Assign(targets=[ast.Name(id="ID")], value=ast.Constant()):
             return True
-    return False
+    return is_table(item)
 
 
 def _read_start(line: ast.stmt, program: Program, body: Body) -> bool:

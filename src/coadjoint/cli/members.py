@@ -1,0 +1,250 @@
+"""Members: many trajectories of one command, and a table of how they ended.
+
+Comes in: ``--members FILE|N``. Goes out: a start of each member, with its parameters and inputs;
+after the run tables and JSON, a line for each member. Read next: `coadjoint.cli.simulate`.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from coadjoint.cli.output import plural, print_table, say
+
+if TYPE_CHECKING:
+    from coadjoint.solve.solution import Solution
+    from coadjoint.solve.system import System
+
+#: Random members lie around the start by this part of the largest component of each quantity.
+SPREAD: Final = 0.1
+#: Most members that a command draws, and most lines of the table of members.
+MOST: Final = 10_000_000
+SHOWN: Final = 50
+
+members_option = click.option(
+    "--members",
+    metavar="FILE|N",
+    help="Many trajectories: a CSV file with a column for each component of state, parameters or "
+    "inputs that differs, and a row for each member; or a number of members with random states, "
+    f"each component within {100 * SPREAD:g} % of the largest of its quantity around the start, "
+    "uniformly.",
+)
+seed_option = click.option(
+    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of random members."
+)
+
+
+@dataclass(frozen=True)
+class Members:
+    """What the members of a run begin with.
+
+    Attributes:
+        state: ``(n, N)``.
+        parameters: By name, ``(N,)`` where they differ.
+        inputs: Likewise; None for the defaults.
+        origin: Where they come from, for a reader.
+    """
+
+    state: Any
+    parameters: Mapping[str, Any]
+    inputs: Mapping[str, Any] | None
+    origin: str
+
+
+def find_members(
+    system: System,
+    given: str,
+    seed: int,
+    start: list[float],
+    parameters: Mapping[str, Any],
+    inputs: Mapping[str, Any] | None,
+) -> Members:
+    """The members that a word of the command line means.
+
+    Args:
+        system: The System.
+        given: A number, or the path of a file.
+        seed: Of random members.
+        start: Where one trajectory would begin.
+        parameters: Those that were given for all.
+        inputs: Likewise.
+
+    Raises:
+        BadParameter: It is neither, or the file does not have the form.
+    """
+    if given.isascii() and given.isdecimal():
+        count = int(given[:20])
+        if not 1 <= count <= MOST:
+            raise _refuse(f"{given[:20]} members; expected 1 to {MOST}.")
+        return _draw(system, count, seed, start, parameters, inputs)
+    return _read(system, Path(given), start, parameters, inputs)
+
+
+def _refuse(message: str) -> click.BadParameter:
+    return click.BadParameter(message, param_hint="--members")
+
+
+def _draw(
+    system: System,
+    count: int,
+    seed: int,
+    start: list[float],
+    parameters: Mapping[str, Any],
+    inputs: Mapping[str, Any] | None,
+) -> Members:
+    """Random states around a start, on the constraints where the system keeps some."""
+    import numpy as np
+
+    middle = np.asarray(start)[:, np.newaxis]
+    sizes = np.ones(middle.shape)
+    for quantity in system.STATE.values():
+        rows = [system.STATE.components.index(name) for name in quantity.components]
+        sizes[rows] = np.abs(middle[rows]).max() or 1.0
+    source = np.random.default_rng(seed)
+    state = middle + SPREAD * sizes * source.uniform(-1.0, 1.0, (len(start), count))
+    origin = f"random states within {100 * SPREAD:g} % around the start, seed {seed}"
+    if "projection" in system.functions:
+        time = np.zeros(count) if system.TIME else None
+        state, origin = (
+            system.projection(state, parameters, inputs, time=time),
+            f"{origin}, moved onto the constraints",
+        )
+    return Members(state, parameters, inputs, origin)
+
+
+def _read(
+    system: System,
+    path: Path,
+    start: list[float],
+    parameters: Mapping[str, Any],
+    inputs: Mapping[str, Any] | None,
+) -> Members:
+    """The rows of a file; what has no column is as for one trajectory."""
+    import numpy as np
+
+    columns = _read_columns(path)
+    known = [system.STATE.components, system.PARAMETERS.components, system.INPUTS.components]
+    for name in columns:
+        if not any(name in names for names in known):
+            listed = ", ".join(each for names in known for each in names)
+            raise _refuse(f"{path}: the column {name!r} is none of {listed}.")
+    count = len(next(iter(columns.values())))
+    state = np.tile(np.asarray(start)[:, np.newaxis], count)
+    own: list[dict[str, Any]] = [{}, {}]  # parameters and inputs
+    for name, values in columns.items():
+        if name in known[0]:
+            state[known[0].index(name)] = values
+        else:
+            own[name not in known[1]][name] = np.array(values)
+    all_parameters = _spread(system.PARAMETERS, parameters) | own[0]
+    all_inputs = _spread(system.INPUTS, inputs or {}) | own[1]
+    return Members(state, all_parameters, all_inputs or None, f"rows of {path}")
+
+
+def _spread(quantities: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Values by component: a column may replace one component of a vector that was given."""
+    spread: dict[str, Any] = {}
+    for name, values in given.items():
+        if name in quantities and quantities[name].shape:
+            spread |= dict(zip(quantities[name].components, values, strict=False))
+        else:
+            spread[name] = values
+    return spread
+
+
+def _read_columns(path: Path) -> dict[str, list[float]]:
+    """The columns of a CSV file; lines that begin with ``#`` and empty ones are left out.
+
+    Raises:
+        BadParameter: It cannot be read, or is no table of numbers.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            numbered = [(n, line) for n, line in enumerate(file, 1) if line.strip()]
+        kept = [(n, line) for n, line in numbered if not line.startswith("#")]
+        rows = list(csv.reader(line for _, line in kept))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise _refuse(
+            f"{path} cannot be read: {reason}. Expected a CSV file or a number."
+        ) from None
+    head = [name.strip() for name in rows[0]] if rows else []
+    if len(rows) < 2 or len(set(head)) < len(head):
+        raise _refuse(
+            f"{path} has {plural(max(0, len(rows) - 1), 'member')} below the columns "
+            f"{', '.join(head) or 'none'}; expected columns with different names, and a row for "
+            "each member below them."
+        )
+    table = []
+    for (line, _), row in zip(kept[1:], rows[1:], strict=True):
+        try:
+            numbers = [float(cell) for cell in row]
+        except ValueError as error:
+            raise _refuse(f"{path}, line {line}: {error}.") from None
+        if len(numbers) != len(head):
+            raise _refuse(
+                f"{path}, line {line}: {plural(len(row), 'value')}; expected {len(head)}."
+            )
+        table.append(numbers)
+    return {name: list(values) for name, values in zip(head, zip(*table, strict=True), strict=True)}
+
+
+# -- after the run ------------------------------------------------------------------------------
+
+
+def print_members(solution: Solution, origin: str) -> None:
+    """A line for each member, or for those that failed first; then the drift of all of them."""
+    system, count = solution.system, solution.batch[0]
+    short = [n for n in range(count) if solution.status[n] != "OK"]
+    order = short + [n for n in range(count) if solution.status[n] == "OK"]
+    shown = sorted(order[:SHOWN])
+    drifts = solution.drift
+    rows = [
+        [
+            str(n),
+            str(solution.status[n]),
+            f"{solution.time_reached[n]:.6g}",
+            str(solution.steps[n]),
+            str(solution.rejected[n]),
+            *(f"{drift[n]:.1e}" for drift in drifts.values()),
+        ]
+        for n in shown
+    ]
+    columns = ["member", "status", ">t", ">steps", ">rejected"]
+    columns += [f">drift of {name}" for name in drifts]
+    print_table(columns, rows, title=f"{system.title} ({system.name}), {origin}")
+    if len(shown) < count:
+        say(f"and {count - len(shown)} more; --json has them all")
+    rows = [[name, f"{drift.max():.1e}"] for name, drift in drifts.items()]
+    if rows:
+        print_table(["conserved", ">largest drift"], rows)
+    arrived = f"OK: {plural(count, 'member')} reached the end"
+    say(f"status: {solution.message or arrived}")
+
+
+def describe_members(solution: Solution, origin: str) -> dict[str, Any]:
+    """The run as JSON values, with a list over the members for what differs."""
+    system = solution.system
+    components = (*system.STATE.components, *system.OBSERVABLES.components)
+    listed = zip(system.PARAMETERS.components, solution.parameters.tolist(), strict=True)
+    return {
+        "system": system.name,
+        "members": solution.batch[0],
+        "origin": origin,
+        "status": solution.status.tolist(),
+        "message": solution.message,
+        "time": solution.time_reached.tolist(),
+        "steps": solution.steps.tolist(),
+        "rejected": solution.rejected.tolist(),
+        "samples": len(solution),
+        "parameters": dict(listed),
+        "initial": {name: solution.first(name)[:, 0].tolist() for name in components},
+        "final": {name: values.tolist() for name, values in solution.final.items()},
+        "drift": {name: values.tolist() for name, values in solution.drift.items()},
+        "units": {name: solution.unit(name) for name in components},
+    }

@@ -1,0 +1,73 @@
+"""Drift: how much a motion changes what it should conserve.
+
+Comes in: a Solution. Goes out: the largest relative change of each conserved observable, of one
+trajectory or of each of a batch.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.solution import Solution
+
+    Array = NDArray[np.float64]
+
+
+def find_drift(solution: Solution) -> dict[str, Any]:
+    """Largest change of each conserved observable, relative to its largest size."""
+    axes, drifts = len(solution.batch), dict[str, Any]()
+    for name in solution.conserved:
+        change, values = solution.change(name), solution[name]
+        sizes = np.concatenate([solution.first(name), values], axis=-1)
+        drifts[name] = _compare_each(change, sizes, axes) if axes else _compare(change, sizes)
+    return drifts
+
+
+def list_conserved(solution: Solution) -> tuple[str, ...]:
+    """Names of the observables that the motion conserves; some only if inputs are constant."""
+    inputs, start = solution.inputs, solution.course.start
+    steady = inputs is None or inputs.ndim == 1 or bool((inputs == inputs[..., :1]).all())
+    if start is not None:
+        steady = not start.varies
+    quantities = solution.system.OBSERVABLES.values()
+    return tuple(q.name for q in quantities if q.conserved and (steady or not q.while_constant))
+
+
+def find_attitude_drift(solution: Solution) -> dict[str, float]:
+    """Largest ``| |q|^2 - 1 |`` of each attitude that was reconstructed."""
+    if solution.reconstructed is None:
+        return {}
+    turning = (q for q in solution.system.RECONSTRUCTED.values() if q.shape == (4,))
+    return {q.name: float(np.abs((solution[q.name] ** 2).sum(axis=0) - 1).max()) for q in turning}
+
+
+def describe_drift(solution: Solution) -> list[str]:
+    """A line for each conserved observable and attitude; of a batch the largest drift."""
+    most = " up to" if solution.batch else ""
+    values = ((name, float(np.max(value))) for name, value in solution.drift.items())
+    lines = [f"  drift of {name}:{most} {value:.1e}" for name, value in values]
+    turning = solution.attitude_drift.items()
+    return lines + [f"  |{name}|^2 - 1: {value:.1e}" for name, value in turning]
+
+
+def _compare(change: Array, values: Array) -> float:
+    """Largest change over largest size."""
+    size = float(np.abs(values).max())
+    with np.errstate(invalid="ignore"):
+        return float(np.abs(change).max() / size) if size else 0.0
+
+
+def _compare_each(change: Array, values: Array, axes: int) -> Array:
+    """Largest change over largest size, of each trajectory of a batch of so many axes.
+
+    NaN, where a trajectory did not come, is left out; the first sample of each is a number.
+    """
+    lead = tuple(range(values.ndim - axes - 1))
+    most = np.fmax.reduce(np.abs(change), axis=-1, initial=0.0).max(axis=lead)
+    size = np.fmax.reduce(np.abs(values), axis=-1, initial=0.0).max(axis=lead)
+    return np.asarray(np.divide(most, size, out=np.zeros(np.shape(most)), where=size > 0))

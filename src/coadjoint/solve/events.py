@@ -1,0 +1,373 @@
+"""Events: where a formula of the state has a value, as a person asks for them.
+
+Comes in: names of quantities, formulas such as ``"Gamma3 == 0.5"``, or `Event` records. Goes out:
+the same, checked, as functions of the steps of an integration.
+Read next: `coadjoint.solve.crossings`, which finds them, and `coadjoint.solve.lookout`, which ends
+trajectories at those that are terminal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.formulas import Formula, list_scope
+from coadjoint.solve.taken import Bounds
+from coadjoint.spec.core.faults import list_names
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+    from coadjoint.solve.taken import Steps
+
+    Array = NDArray[np.float64]
+    Places = NDArray[np.intp]
+
+#: Names of the time where a system does not declare one of its own.
+TIME: Final = ("t", "time")
+
+
+@dataclass(frozen=True)
+class Event:
+    """What to look for along trajectories: where a formula has a value.
+
+    Attributes:
+        formula: A component, a scalar quantity, or a formula of these, of parameters, inputs and
+            the time ``t``, in the language of specs. It may be an equation, ``"a == b"``.
+        value: What the formula is to be, if it is no equation.
+        direction: 1 for those where the left side rises through the right one, -1 where it falls;
+            0 for all, those where it touches among them.
+        terminal: Whether the first one ends the trajectory; or a number, of which the last does.
+        name: Under which a Solution has them; the formula as given if it is empty.
+        tolerance: Differences of both sides that count as zero. None for that of the integration,
+            ``atol + rtol * size``, the size of both sides being the sum of the magnitudes of their
+            terms.
+    """
+
+    formula: str
+    value: float = 0.0
+    direction: int = 0
+    terminal: bool | int = False
+    name: str = ""
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True)
+class Sought:
+    """An event of one run, checked.
+
+    Attributes:
+        event: As given, its name filled in.
+        formula: Left side minus right side; the value of the event is left out.
+    """
+
+    event: Event
+    formula: Formula
+
+    @property
+    def limit(self) -> int:
+        """The number of the occurrence that ends a trajectory; 0 for none."""
+        return int(self.event.terminal)
+
+    def make_band(self, rtol: float, atol: float) -> Callable[[Array], Array]:
+        """What counts as zero, by the size of the terms."""
+        given = self.event.tolerance
+        if given is not None:
+            return lambda size: np.full(size.shape, given)
+        return lambda size: atol + rtol * size
+
+
+# -- what was asked for ---------------------------------------------------------------------------
+
+
+def read_events(system: System, given: Any, *, followed: bool = False) -> tuple[Sought, ...]:
+    """The events that were asked for, checked.
+
+    Args:
+        system: The System.
+        given: None, one of them, or several: texts and `Event` records.
+        followed: Whether what is reconstructed may be named.
+
+    Raises:
+        KernelArgumentError: One cannot be right.
+    """
+    if given is None:
+        return ()
+    listed = [given] if isinstance(given, str | Event) else _list(given)
+    sought = tuple(_read(system, each, followed=followed) for each in listed)
+    names = [each.event.name for each in sought]
+    for name in names:
+        if names.count(name) > 1:
+            raise KernelArgumentError(
+                f"two events have the name {name!r}; expected names of their own. Give "
+                'Event(..., name="...").',
+                found=name,
+            )
+    return sought
+
+
+def _list(given: Any) -> list[Any]:
+    """Several events.
+
+    Raises:
+        KernelArgumentError: It is something else.
+    """
+    if not isinstance(given, list | tuple):
+        raise KernelArgumentError(
+            f"events is {str(given)[:80]!r}; expected a formula such as 'x == 0', an Event, or a "
+            "list of these.",
+            found=str(given)[:80],
+        )
+    return list(given)
+
+
+def _read(system: System, given: Any, *, followed: bool) -> Sought:
+    """One event.
+
+    Raises:
+        KernelArgumentError: A type, number, name or formula that cannot be right.
+    """
+    event = Event(formula=given) if isinstance(given, str) else given
+    if not isinstance(event, Event) or not isinstance(event.formula, str):
+        raise KernelArgumentError(
+            f"an event is {str(given)[:80]!r}; expected a formula such as 'x == 0', or an Event.",
+            found=str(given)[:80],
+        )
+    event = replace(event, name=event.name or event.formula.strip())
+    label = f"event {event.name!r}"
+    _check_numbers(event, label)
+    text, is_equation = _subtract(event.formula, label)
+    if is_equation and event.value:
+        raise KernelArgumentError(
+            f"{label} is an equation, and its value is {event.value!r}; expected one or the other.",
+            found=event.formula,
+        )
+    formula = Formula(text, list_names_of(system, followed=followed), label)
+    _check_moves(system, formula, label)
+    return Sought(event, formula)
+
+
+def _check_numbers(event: Event, label: str) -> None:
+    """The fields of an event that are numbers.
+
+    Raises:
+        KernelArgumentError: One is out of range, or no number.
+    """
+    positive = event.tolerance is None or (_is_real(event.tolerance) and event.tolerance > 0)
+    is_count = isinstance(event.terminal, Integral) and event.terminal >= 0
+    for name, good, expected in (
+        ("value", _is_real(event.value), "a finite number"),
+        ("direction", event.direction in (-1, 0, 1), "-1, 0 or 1"),
+        ("terminal", is_count, "True, False, or which occurrence ends the trajectory, 1 or more"),
+        ("tolerance", positive, "a positive number, or None"),
+    ):
+        if not good:
+            found = getattr(event, name)
+            raise KernelArgumentError(
+                f"{label}: {name} is {found!r}; expected {expected}.", found=str(found), name=name
+            )
+
+
+def _is_real(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _subtract(text: str, label: str) -> tuple[str, bool]:
+    """Left side minus right side of a text, and whether it was an equation.
+
+    Raises:
+        KernelArgumentError: An inequality, or two signs.
+    """
+    if any(sign in text for sign in "<>!"):
+        raise KernelArgumentError(
+            f"{label}: an event is where two sides are equal; expected a formula, or 'a == b'. For "
+            'those in one direction give Event("a == b", direction=1).',
+            found=text,
+        )
+    sides = text.replace("==", "=").split("=")
+    if len(sides) == 1:
+        return text, False
+    if len(sides) > 2 or not all(side.strip() for side in sides):
+        raise KernelArgumentError(
+            f"{label}: expected one equals sign with a formula on each side, as in 'a == b'.",
+            found=text,
+        )
+    return f"{sides[0]} - ({sides[1]})", True
+
+
+def list_names_of(system: System, *, followed: bool) -> dict[str, tuple[int, ...]]:
+    """The shape of each name that an event of a System may use."""
+    tables = [system.STATE, *([system.RECONSTRUCTED] if followed else []), system.OBSERVABLES]
+    tables += [system.PARAMETERS, system.INPUTS, system.TIME]
+    scope = list_scope(quantity for table in tables for quantity in table.values())
+    return scope | {name: () for name in TIME if name not in scope}
+
+
+def _check_moves(system: System, formula: Formula, label: str) -> None:
+    """Refuse what is constant along every motion.
+
+    Raises:
+        KernelArgumentError: It depends on nothing that changes.
+    """
+    fixed = list_scope(system.PARAMETERS.values())
+    steady = (q for q in system.OBSERVABLES.values() if q.conserved and not q.while_constant)
+    own = list_scope(system.STATE.values())
+    kept = {name: shape for name, shape in list_scope(steady).items() if name not in own}
+    if formula.names <= fixed.keys() | kept.keys():
+        told = sorted(formula.names & kept.keys())
+        reason = f"the motion conserves {list_names(told)}" if told else "it names no variable"
+        raise KernelArgumentError(
+            f"{label} is constant along each trajectory, since {reason}; expected a formula of "
+            f"what changes, such as {system.STATE.components[0]!r}.",
+            found=formula.text,
+        )
+
+
+# -- their values ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the names of a formula mean besides the state.
+
+    Attributes:
+        system: The System.
+        parameters: ``(k,)``, or ``(k, N)``.
+        driving: Inputs ``(m, P)`` of members at times of steps that began at others; None where
+            there are none.
+        followed: Rows of what is reconstructed, which stand below the state.
+    """
+
+    system: System
+    parameters: Array
+    driving: Callable[[Places, Array, Array], Array] | None
+    followed: int = 0
+
+    def list_rows(self, names: Iterable[str]) -> Places:
+        """The rows of the state that names of a formula depend on."""
+        system, n = self.system, self.system.STATE.size
+        chosen = np.zeros(n + self.followed, bool)
+        for name in names:
+            if name in system.STATE or name in system.STATE.components:
+                chosen[:n][system.STATE.rows(name)] = True
+            elif name in system.OBSERVABLES or name in system.OBSERVABLES.components:
+                chosen[:n] = True
+            elif name in system.RECONSTRUCTED or name in system.RECONSTRUCTED.components:
+                chosen[n:] = True
+        return np.flatnonzero(chosen)
+
+    def find_values(
+        self, names: Iterable[str], states: Array, member: Places, start: Array, time: Array
+    ) -> dict[str, Array]:
+        """The value of each name at points, ``(*shape, P)``.
+
+        Args:
+            names: The names.
+            states: ``(n, P)``, below it what is reconstructed.
+            member: Whose each is, ``(P,)``.
+            start: When the step began in which it is, ``(P,)``.
+            time: When it is, ``(P,)``.
+        """
+        system, wanted = self.system, set(names)
+        n = system.STATE.size
+        own = self.parameters if self.parameters.ndim == 1 else self.parameters[:, member]
+        inputs = None if self.driving is None else self.driving(member, start, time)
+        tables: list[tuple[Any, Callable[[], Array]]] = [
+            (system.STATE, lambda: states[:n]),
+            (system.RECONSTRUCTED, lambda: states[n:]),
+            (system.OBSERVABLES, lambda: observe(system, states[:n], own, inputs, time)),
+            (system.PARAMETERS, lambda: own[:, np.newaxis] if own.ndim == 1 else own),
+            (system.INPUTS, lambda: inputs if inputs is not None else states[:0]),
+            (system.TIME, lambda: time[np.newaxis]),
+        ]
+        found: dict[str, Array] = {}
+        for quantities, rows in tables:
+            if quantities is system.RECONSTRUCTED and not self.followed:
+                continue
+            here = [name for name in wanted if name in quantities or name in quantities.components]
+            values = rows() if here else time
+            for name in here:
+                found[name] = _shape(values[quantities.rows(name)], quantities, name)
+            wanted -= set(here)
+        return found | dict.fromkeys(wanted, time)
+
+
+def observe(
+    system: System, states: Array, parameters: Array, inputs: Array | None, time: Array
+) -> Array:
+    """Observables of states ``(n, P)``, by the NumPy kernel, so that all targets agree."""
+    return system.evaluate(
+        "observables",
+        states,
+        parameters,
+        inputs,
+        time=time if system.TIME else None,
+        target="numpy",
+    )
+
+
+def _shape(rows: Array, quantities: Any, name: str) -> Array:
+    """Rows of a quantity as its vector or matrix; of a component as they are."""
+    if name in quantities and len(quantities[name].shape) > 1:
+        return rows.reshape(*quantities[name].shape, -1)
+    return rows
+
+
+def find_bounds(sought: Sought, surroundings: Surroundings, steps: Steps) -> Bounds | None:
+    """Bounds of the left side minus the right side on steps; None where none are known.
+
+    They are known of linear combinations of components of the state along polynomials.
+    """
+    linear, state = sought.formula.linear, surroundings.system.STATE
+    if linear is None or not linear.keys() <= {"", *state.components}:
+        return None
+    alone = linear.get("", 0.0) - float(sought.event.value)
+    middle = np.full(len(steps.member), alone)
+    reach = np.zeros(len(steps.member))
+    size = np.full(len(steps.member), abs(linear.get("", 0.0)) + abs(float(sought.event.value)))
+    for name, factor in linear.items():
+        row = state.rows(name) if name else None
+        if isinstance(row, int):
+            bounds = steps.bound(row)
+            if bounds is None:
+                return None
+            middle += factor * bounds[0]
+            reach += abs(factor) * bounds[1]
+            size += abs(factor) * (np.abs(bounds[0]) + bounds[1])
+    return Bounds(middle, reach, size)
+
+
+def make_function(
+    sought: Sought, surroundings: Surroundings, steps: Steps
+) -> Callable[[Places, Array], tuple[Array, Array]]:
+    """The left side minus the right side along steps, with the size of both."""
+    level = float(sought.event.value)
+    rows_read = surroundings.list_rows(sought.formula.names)
+    total = surroundings.system.STATE.size + surroundings.followed
+    evaluate = steps.evaluate if len(rows_read) == total else steps.narrow(rows_read)
+
+    def function(rows: Places, part: Array) -> tuple[Array, Array]:
+        after = part * steps.size[rows][:, np.newaxis]
+        states = np.empty((total, *after.shape))
+        states[rows_read] = evaluate(rows, after)
+        shape, many = part.shape, part.shape[1]
+        start = np.repeat(steps.start[rows], many)
+        values = surroundings.find_values(
+            sought.formula.names,
+            states.reshape(len(states), -1),
+            np.repeat(steps.member[rows], many),
+            start,
+            start + after.ravel(),
+        )
+        found, size = sought.formula.evaluate(values)
+        found = np.broadcast_to(found - level, after.size).reshape(shape)
+        return found, np.broadcast_to(size + abs(level), after.size).reshape(shape)
+
+    return function

@@ -1,0 +1,246 @@
+"""Formulas of the state: text to a NumPy function of states, parameters, inputs and time.
+
+Comes in: the text of a formula, in the language of specs, and the names of a System. Goes out: a
+`Formula`, which evaluates it at many points at a time. The text is read by the reader of specs and
+never executed.
+Read next: `coadjoint.solve.events`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import reduce
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.shapes import ELEMENTARY, shape_of, words
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Shape = tuple[int, ...]
+
+
+class Formula:
+    """A scalar expression in names that a System declares.
+
+    Args:
+        text: The expression.
+        scope: The shape of each name that may occur.
+        label: What the formula is, for messages.
+
+    Attributes:
+        text: As given.
+        names: The names that occur.
+        linear: The factor of each name, and under "" what stands alone, where that is all there is
+            and factors are numbers; else None.
+
+    Raises:
+        KernelArgumentError: A syntax error, an unknown name, or a value that is no scalar.
+    """
+
+    def __init__(self, text: str, scope: Mapping[str, Shape], label: str) -> None:
+        try:
+            self._tree = read_expression(text)
+            shape = shape_of(self._tree, scope)
+        except ExpressionError as error:
+            raise _explain(error, text, label) from error
+        if shape:
+            raise KernelArgumentError(
+                f"{label}: the value is {words(shape)}; expected a scalar. Take a component, such "
+                "as v[1], or norm(v).",
+                found=text,
+            )
+        self.text = text
+        parts = tree.walk(self._tree)
+        self.names = frozenset(p.name for p in parts if isinstance(p, tree.Name | tree.Index))
+        self._terms = tuple(_list_terms(self._tree))
+        self.linear = _find_linear(self._tree)
+
+    def evaluate(self, values: Mapping[str, Array]) -> tuple[Array, Array]:
+        """The value at points, and its size: the sum of the magnitudes of its terms.
+
+        Args:
+            values: The value of each name that occurs, ``(*shape, P)``.
+
+        Returns:
+            Two arrays, ``(P,)`` or ``(1,)`` where nothing depends on the point.
+        """
+        known = tree.evaluate_nodes(self._tree, lambda node, below: _value(node, below, values))
+        size = reduce(np.add, (np.abs(known[id(term)]) for term in self._terms))
+        return known[id(self._tree)], size
+
+
+def _explain(error: ExpressionError, text: str, label: str) -> KernelArgumentError:
+    """A fault of an expression as the error of an argument."""
+    expected = f"; expected {error.expected}" if error.expected else ""
+    return KernelArgumentError(
+        f"{label}: {error.problem}{expected}. {error.hint}".rstrip(), found=text
+    )
+
+
+def _list_terms(node: tree.Node) -> Iterable[tree.Node]:
+    """The terms of the sum that an expression is."""
+    match node:
+        case tree.Binary(operator="+" | "-", left=left, right=right):
+            return [*_list_terms(left), *_list_terms(right)]
+        case tree.Negate(operand=operand):
+            return _list_terms(operand)
+    return [node]
+
+
+def _find_linear(node: tree.Node) -> dict[str, float] | None:
+    """The factors of the names of a linear combination; None for what is none."""
+    match node:
+        case tree.Number(value=value):
+            return {"": float(value)}
+        case tree.Name(name=name):
+            return {name: 1.0}
+        case tree.Negate(operand=operand):
+            found = _find_linear(operand)
+            return None if found is None else {name: -factor for name, factor in found.items()}
+        case tree.Binary(operator="+" | "-" as sign, left=left, right=right):
+            first, second = _find_linear(left), _find_linear(right)
+            if first is None or second is None:
+                return None
+            unit = 1.0 if sign == "+" else -1.0
+            names = first | second
+            return {n: first.get(n, 0.0) + unit * second.get(n, 0.0) for n in names}
+        case tree.Binary(operator="*", left=tree.Number(value=value), right=right):
+            found = _find_linear(right)
+            return None if found is None else {n: float(value) * f for n, f in found.items()}
+    return None
+
+
+def _value(node: tree.Node, below: list[Array], values: Mapping[str, Array]) -> Array:
+    """The value of one node from those of its children; points are the last axis."""
+    match node:
+        case tree.Number(value=value):
+            return np.array([float(value)])
+        case tree.Name(name=name):
+            return values[name]
+        case tree.Index(name=name, indices=indices):
+            entry: Array = values[name][tuple(index - 1 for index in indices)]
+            return entry
+        case tree.Negate():
+            return -below[0]
+        case tree.Power(exponent=exponent):
+            return _power(below[0], exponent)
+        case tree.Binary(operator=operator):
+            return _BINARY[operator](*below)
+        case tree.Call(function=function):
+            return _FUNCTIONS[function](*below)
+    raise AssertionError(node)
+
+
+# -- vectors and matrices of arrays ---------------------------------------------------------------
+# Sums are written out, so that a value has the same bits among any number of others.
+
+
+def _stack(parts: Iterable[Array]) -> Array:
+    """Parts as the rows of one array."""
+    return np.stack(np.broadcast_arrays(*parts))
+
+
+def _dot(a: Iterable[Array], b: Iterable[Array]) -> Array:
+    return reduce(np.add, (x * y for x, y in zip(a, b, strict=True)))
+
+
+def _multiply(a: Array, b: Array) -> Array:
+    """A scalar times anything, a matrix times a vector or a matrix."""
+    if a.ndim == 1 or b.ndim == 1:
+        return a * b
+    if b.ndim == 2:
+        return _stack(_dot(row, b) for row in a)
+    return _stack(_stack(_dot(row, column) for column in b.swapaxes(0, 1)) for row in a)
+
+
+def _power(base: Array, exponent: int) -> Array:
+    """A power of a scalar or a square matrix, by products."""
+    if exponent < 0:
+        base = 1.0 / base if base.ndim == 1 else _inverse(base)
+    one = np.ones(1) if base.ndim == 1 else _diag(np.ones((len(base), 1)))
+    return reduce(_multiply, [base] * abs(exponent)) if exponent else one
+
+
+def _cross(a: Array, b: Array) -> Array:
+    pairs = ((1, 2), (2, 0), (0, 1))
+    return _stack(a[i] * b[j] - a[j] * b[i] for i, j in pairs)
+
+
+def _hat(a: Array) -> Array:
+    zero = np.zeros(1)
+    rows = ((zero, -a[2], a[1]), (a[2], zero, -a[0]), (-a[1], a[0], zero))
+    return _stack(_stack(row) for row in rows)
+
+
+def _diag(a: Array) -> Array:
+    """A vector as a diagonal matrix; the diagonal of a matrix as a vector."""
+    places, zero = range(len(a)), np.zeros(1)
+    if a.ndim == 3:
+        return _stack(a[i, i] for i in places)
+    return _stack(_stack(a[i] if i == j else zero for j in places) for i in places)
+
+
+def _determinant(a: Array) -> Array:
+    """By the first row."""
+    if len(a) == 1:
+        return np.asarray(a[0, 0])
+    minors = (_determinant(_remove(a, 0, j)) for j in range(len(a)))
+    return reduce(np.add, ((-1) ** j * a[0, j] * minor for j, minor in enumerate(minors)))
+
+
+def _inverse(a: Array) -> Array:
+    """By cofactors."""
+    places, share = range(len(a)), 1.0 / _determinant(a)
+    if len(a) == 1:
+        return share[np.newaxis, np.newaxis]
+    return _stack(
+        _stack((-1) ** (i + j) * _determinant(_remove(a, j, i)) * share for j in places)
+        for i in places
+    )
+
+
+def _remove(a: Array, row: int, column: int) -> Array:
+    """A matrix without a row and a column."""
+    return np.delete(np.delete(a, row, axis=0), column, axis=1)
+
+
+_BINARY: dict[str, Callable[[Array, Array], Array]] = {
+    "+": np.add,
+    "-": np.subtract,
+    "*": _multiply,
+    "/": np.divide,
+}
+_FUNCTIONS: dict[str, Callable[..., Array]] = {
+    "dot": _dot,
+    "cross": _cross,
+    "commutator": lambda a, b: _multiply(a, b) - _multiply(b, a),
+    "trace": lambda a: reduce(np.add, _diag(a)),
+    "transpose": lambda a: a.swapaxes(0, 1),
+    "det": _determinant,
+    "inverse": _inverse,
+    "hat": _hat,
+    "diag": _diag,
+    "norm": lambda a: np.sqrt(_dot(a, a)),
+    "outer": lambda a, b: _stack(_stack(x * y for y in b) for x in a),
+    "rows": lambda *rows: _stack(rows),
+    "vector": lambda *components: _stack(components),
+    **{name: getattr(np, name) for name in ELEMENTARY},
+}
+
+
+def list_scope(quantities: Iterable[Any]) -> dict[str, Shape]:
+    """The shape of each quantity and component, by name; the first of a name counts."""
+    scope: dict[str, Any] = {}
+    for quantity in quantities:
+        scope.setdefault(quantity.name, quantity.shape)
+        for component in quantity.components:
+            scope.setdefault(component, ())
+    return scope

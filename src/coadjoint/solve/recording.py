@@ -1,0 +1,224 @@
+"""Recording: the steps of generated solvers, looked at for events and kept for dense output.
+
+Comes in: an `Ensemble` on its way, call by call. Goes out: the same, members stopped where terminal
+events end them; all events, and the steps for dense output. What is found depends on the steps of
+each member alone, so that the number of threads and the length of calls change no bit.
+Read next: `coadjoint.solve.lookout`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coadjoint.solve.dense_output import Dense, move_onto_constraints
+from coadjoint.solve.ensemble import Status
+from coadjoint.solve.lookout import Ending, Lookout, explain_ending, list_occurrences
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.driving import Signal
+    from coadjoint.solve.ensemble import Ensemble, Record
+    from coadjoint.solve.events import Sought, Surroundings
+    from coadjoint.solve.occurrences import Events
+
+    Array = NDArray[np.float64]
+    Places = NDArray[np.intp]
+
+
+@dataclass
+class Polynomials:
+    """Steps as polynomials in the time since each began.
+
+    Attributes:
+        member: Whose each is, ``(S,)``.
+        start: When it begins.
+        size: How long it is.
+        path: Coefficients, ``(S, n, degree + 1)``, that of order 0 first.
+        place: Where in path each step stands, ``(S,)``.
+    """
+
+    member: Places
+    start: Array
+    size: Array
+    path: Array
+    place: Places
+
+    @property
+    def degree(self) -> int:
+        """Of the polynomials."""
+        return int(self.path.shape[2] - 1)
+
+    @property
+    def nbytes(self) -> int:
+        """The memory that they take."""
+        arrays = (self.member, self.start, self.size, self.path, self.place)
+        return sum(each.nbytes for each in arrays)
+
+    def take(self, which: Places) -> Polynomials:
+        """Some of them, in a given order."""
+        return Polynomials(
+            member=self.member[which],
+            start=self.start[which],
+            size=self.size[which],
+            path=self.path[self.place[which]],
+            place=np.arange(len(which)),
+        )
+
+    def evaluate(self, rows: Places, after: Array) -> Array:
+        """As `Steps.evaluate`, by Horner."""
+        path = self.path[self.place[rows]].transpose(2, 1, 0)
+        return _evaluate(np.ascontiguousarray(path), after)
+
+    def bound(self, row: int) -> tuple[Array, Array]:
+        """As `Steps.bound`: the value at the start, and the sum of all later terms."""
+        path = self.path[self.place, row]
+        reach, power = np.zeros(len(self.size)), np.ones(len(self.size))
+        for k in range(1, self.degree + 1):
+            power = power * np.abs(self.size)
+            reach += np.abs(path[:, k]) * power
+        return path[:, 0], reach
+
+    def narrow(self, only: Places) -> Narrow:
+        """As `Steps.narrow`."""
+        return Narrow(self.path, self.place, only)
+
+
+@dataclass
+class Narrow:
+    """Some components of steps.
+
+    Attributes:
+        path: As `Polynomials` has it.
+        place: Likewise.
+        only: The components.
+    """
+
+    path: Array
+    place: Places
+    only: Places
+
+    def __call__(self, rows: Places, after: Array) -> Array:
+        """As `Polynomials.evaluate`."""
+        path = self.path[self.place[rows][:, np.newaxis], self.only]
+        return _evaluate(np.ascontiguousarray(path.transpose(2, 1, 0)), after)
+
+
+def _evaluate(table: Array, after: Array) -> Array:
+    """Polynomials ``(degree + 1, m, R)`` at ``(R, K)``, by Horner; ``(m, R, K)``."""
+    total = np.broadcast_to(table[-1][..., np.newaxis], (table.shape[1], *after.shape))
+    for coefficient in table[-2::-1]:
+        total = total * after
+        total += coefficient[..., np.newaxis]
+    return np.ascontiguousarray(total)
+
+
+class Recording:
+    """The recording of a run.
+
+    Several threads may call it at a time, each for members of its own.
+
+    Args:
+        run: The ensemble.
+        sought: The events.
+        surroundings: What the names of their formulas mean.
+        keeps: Whether steps are kept.
+    """
+
+    def __init__(
+        self, run: Ensemble, sought: Sequence[Sought], surroundings: Surroundings, *, keeps: bool
+    ) -> None:
+        self._run, self._keeps = run, keeps
+        self._lookout = Lookout(
+            sought=sought,
+            surroundings=surroundings,
+            rtol=run.rtol,
+            atol=run.atol,
+            members=run.state.shape[1],
+        )
+        self._endings: list[Ending] = []
+        self._kept: list[Polynomials] = []
+
+    def look(self, record: Record) -> None:
+        """Look at the steps of a call, and stop members at terminal events."""
+        order = np.argsort(record.member, kind="stable")
+        steps = Polynomials(
+            member=record.member[order],
+            start=record.begun[order],
+            size=record.length[order],
+            path=record.path,
+            place=order,
+        )
+        around = self._lookout.surroundings
+        for ending in self._lookout.look(move_onto_constraints(steps, around)):
+            row = int(order[ending.decided])
+            after = ending.time - float(record.begun[row])
+            self._run.stop(record, row, after, ending.state)
+            self._stop(ending)
+        if self._keeps:
+            self._kept.append(replace(steps, path=record.path.copy()))
+
+    def finish(self) -> None:
+        """Look at where members ended."""
+        for ending in self._lookout.finish(range(self._run.state.shape[1])):
+            self._stop(ending)
+
+    def _stop(self, ending: Ending) -> None:
+        """End a member where an event does; it made all the steps that are counted."""
+        run, member = self._run, ending.member
+        first = int(np.searchsorted(run.samples, ending.time, side="right"))
+        if run.out is not None:
+            run.out[:, member, first:] = np.nan
+        run.next[member] = min(first, int(run.next[member]))
+        run.state[:, member], run.time[member] = ending.state, ending.time
+        run.status[member] = Status.EVENT
+        self._endings.append(ending)
+
+    # -- after the run ----------------------------------------------------------------------------
+
+    def list_events(self, batch: tuple[int, ...]) -> Events:
+        """All events by name."""
+        return list_occurrences(self._lookout, batch)
+
+    def explain_end(self) -> str:
+        """Which event ended the only trajectory."""
+        return explain_ending(self._endings[-1])
+
+    def make_dense(self, signal: Signal | Array | None, start: float) -> Dense | None:
+        """The steps up to where each member came; None if they were not to be kept."""
+        if not self._keeps:
+            return None
+        lots, self._kept = self._kept, []
+        none = np.empty(0)
+        member = np.concatenate([none.astype(np.intp), *(lot.member for lot in lots)])
+        begun = np.concatenate([none, *(lot.start for lot in lots)])
+        size = np.concatenate([none, *(lot.size for lot in lots)])
+        order = np.lexsort((begun, member))
+        order = order[begun[order] < self._run.time[member[order]]]
+        whole = Polynomials(
+            member=member[order],
+            start=begun[order],
+            size=size[order],
+            path=_gather(lots, order, len(self._run.state)),
+            place=np.arange(len(order)),
+        )
+        return Dense(whole, signal, start)
+
+
+def _gather(lots: list[Polynomials], order: Places, n: int) -> Array:
+    """The coefficients of the steps of lots, in an order; each lot is let go of once it is read."""
+    total = sum(len(lot.member) for lot in lots)
+    to = np.full(total, -1)
+    to[order] = np.arange(len(order))
+    path = np.empty((len(order), n, lots[0].degree + 1 if lots else 1))
+    first = 0
+    while lots:
+        lot = lots.pop(0)
+        places = to[first : first + len(lot.member)]
+        path[places[places >= 0]] = lot.path[lot.place[places >= 0]]
+        first += len(lot.member)
+    return path
