@@ -60,23 +60,6 @@ UNFUSED = tuple((*_BASE, *more, "-ffp-contract=off") for more in (_WIDE, ()))
 Repeat = Callable[[int], object]
 
 
-def so4_body(x: Sequence[Any], p: Sequence[float]) -> list[Any]:
-    """Parameters I1..I3, L1..L3: dM = M x Omega + N x Lambda, dN = M x Lambda + N x Omega."""
-    m, n = x[:3], x[3:]
-    i, q = [1 / each for each in p[:3]], [1 / each for each in p[3:]]
-    pairs = [(1, 2), (2, 0), (0, 1)]
-    turning = [(i[b] - i[a]) * (m[a] * m[b]) + (q[b] - q[a]) * (n[a] * n[b]) for a, b in pairs]
-    towards = [(q[b] - i[a]) * (m[a] * n[b]) + (i[b] - q[a]) * (n[a] * m[b]) for a, b in pairs]
-    return turning + towards
-
-
-EQUATIONS: Mapping[str, peers.Equations] = {
-    **peers.EQUATIONS,
-    "so4_body": so4_body,
-    "so6_body": peers.so8_body,  # for any number of axes
-}
-
-
 def compiled(name: str, folder: Path) -> ctypes.CDLL:
     """A file of ``hand/``, compiled as generated kernels are."""
     place = folder / name
@@ -148,7 +131,7 @@ class Contest:
     def _symbols(self) -> tuple[list[Any], list[Any]]:
         """State and rates in SymPy, parameters as numbers."""
         names = sympy.symbols(f"s:{self.system.STATE.size}")  # cse has x0, x1, ...
-        return list(names), EQUATIONS[self.name](names, self.values)
+        return list(names), peers.EQUATIONS[self.name](names, self.values)
 
     def by_sympy(self) -> Repeat:
         """``lambdify`` with ``cse``, over arrays."""
@@ -188,7 +171,7 @@ class Contest:
         import heyoka
 
         variables = heyoka.make_vars(*(f"x{i}" for i in range(self.system.STATE.size)))
-        rates = EQUATIONS[self.name](variables, self.values)
+        rates = peers.EQUATIONS[self.name](variables, self.values)
         function = heyoka.cfunc(rates, vars=variables, force_avx512=True)
         state = np.ascontiguousarray(self.state[:, :members])
         out = self.out if members == MEMBERS else np.empty_like(state)
