@@ -28,9 +28,9 @@ from results import FOLDER, write
 
 from coadjoint.cli.arguments import load_system
 
-NAME, ROUNDS = "heavy_top", 7
+NAME, ROUNDS = "heavy_top", 5
 PARAMETERS = {"I": (1, 1.5, 2), "m": 1, "g": 1, "chi": (0.1, 0.2, 1)}
-STEP, STEPS, MEMBERS, MANY = 0.02, 200, 1000, 20000
+STEP, STEPS, MEMBERS, MANY = 0.002, 2000, 1000, 20000
 
 
 def measure_long() -> list[Figure]:
