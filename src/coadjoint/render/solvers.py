@@ -123,7 +123,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
     return SolverText(
         fixed=fixed,
-        kept=tuple(cell.name for cell in jets.cells if cell.name in jets.kept),
+        kept=tuple(cell.name for cell in jets.cells if cell.name in arrays),
         first=tuple(first),
         stages=stages,
         rates=rates,
