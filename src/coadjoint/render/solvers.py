@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.motion import ONE
@@ -30,6 +31,8 @@ from coadjoint.lower.program import (
 
 #: Sums that one loop runs over: as many as vector registers hold with their factors.
 SUMS = 16
+#: Sums among which the next one of a loop is looked for.
+NEAR = 40
 #: The factor m of the sums of logarithms, exponentials, sines and cosines.
 _WEIGHT = Symbol("_orders[_m]")
 
@@ -120,7 +123,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
     return SolverText(
         fixed=fixed,
-        kept=tuple(cell.name for cell in jets.cells if cell.name in jets.kept),
+        kept=tuple(cell.name for cell in jets.cells if cell.name in arrays),
         first=tuple(first),
         stages=stages,
         rates=rates,
@@ -243,14 +246,18 @@ def _stages(jets: Jets, arrays: frozenset[str]) -> Iterator[Stage]:
 
 def _loops(terms: dict[str, Node]) -> Iterator[list[tuple[str, Node]]]:
     """Terms by loops, those together that read the same coefficients, which are loaded once."""
-    rest = {name: [term, *_turned(term)] for name, term in terms.items()}
+    rest = {
+        name: [(form, frozenset(_names(form))) for form in (term, *_turned(term))]
+        for name, term in terms.items()
+    }
     while rest:
-        loop, loaded = list[tuple[str, Node]](), set[str]()
+        loop, loaded = list[tuple[str, Node]](), frozenset[str]()
         while rest and len(loop) < SUMS:
-            candidates = ((name, term) for name, forms in rest.items() for term in forms)
-            name, term = min(candidates, key=lambda each: len({*_names(each[1])} - loaded))
+            near = islice(rest.items(), NEAR)
+            candidates = ((name, *form) for name, forms in near for form in forms)
+            name, term, read = min(candidates, key=lambda each: len(each[2] - loaded))
             loop.append((name, term))
-            loaded |= {*_names(term)}
+            loaded |= read
             del rest[name]
         yield loop
 
