@@ -18,9 +18,10 @@ def test_driven_systems_pass(text):
 SPOILED = [
     ("kernel.py", "    u = inputs[0]\n", "    u = parameters[0]\n"),
     ("kernel.py", "    t = time[0]\n", "    t = inputs[0]\n"),
-    ("kernel.py", "inputs_own = inputs if", "inputs_own = 0 * inputs if"),
-    ("kernel.py", "else inputs[:, chunk]", "else inputs[:, :1]"),
-    ("kernel.py", "else time[:, chunk]", "else time[:, :1]"),
+    ("kernel.py", "[inputs if inputs.ndim", "[0 * inputs if inputs.ndim"),
+    ("kernel.py", "else inputs.reshape(", "else 0 * inputs.reshape("),
+    ("kernel.py", "else time.reshape(", "else 0 * time.reshape("),
+    ("kernel.py", "own = [each[:, chunk]", "own = [each[:, : len(rows[0, chunk])]"),
     ("kernel.py", "state, parameters, inputs, time, out)", "state, parameters, time, inputs, out)"),
     ("kernel_python.py", "    u = inputs[0]\n", "    u = parameters[0]\n"),
     ("kernel_python.py", "    t = time\n", "    t = inputs[0]\n"),

@@ -10,7 +10,7 @@ from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.exact.linear import nullspace
 from coadjoint.prove import Verdict
-from coadjoint.prove.certificate import failure_text
+from coadjoint.prove.certificate import Shown, failure_text
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
 from tests.specs import prove_claims, spec
@@ -568,7 +568,7 @@ def test_a_set_that_the_motion_leaves_is_named(integral, where, leaves):
     """The momenta are conserved everywhere; where q1 = p2 is not, and the rate shown is its."""
     found = claimed(FREE, integral, where)
     assert found.verdict is REFUTED
-    assert found.leaves is leaves
+    assert (found.shown is Shown.RATE_OF_RELATION) is leaves
     assert found.as_record()["method"].endswith(": the motion leaves this set") is leaves
     assert (
         "the motion leaves this set: the rate of a relation is" in failure_text(found)

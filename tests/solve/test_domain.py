@@ -132,8 +132,11 @@ def test_a_disk_that_falls_flat_ends_above_the_plane():
 
 
 def test_with_a_guard_that_always_holds_the_disk_passes_through_the_plane():
-    """With sin^2 > -1 nothing stops it where it lies flat, and it rises on the other side."""
-    found = simulate(built(DISK), UPRIGHT, 1, {"margin": -1})
+    """With sin^2 > -1 nothing stops it where it lies flat, and it rises on the other side.
+
+    The method of Taylor ends there: the square root of the formula has a branch point.
+    """
+    found = simulate(built(DISK), UPRIGHT, 1, {"margin": -1}, method="dop853")
     assert found.status == "OK"
     assert found.final["Gamma2"] < -0.1
 

@@ -73,7 +73,7 @@ def test_a_free_body_turns_as_the_elliptic_functions_say(options, close):
     [
         ("rk4", None, 4, (0.02, 0.01)),
         ("dop853", None, 8, (0.25, 0.125)),
-        ("taylor", 1.0, 4, (0.05, 0.025)),
+        ("taylor", 0.5, 5, (0.05, 0.025)),
         ("taylor", 0.03, 6, (0.1, 0.05)),
     ],
 )

@@ -18,12 +18,15 @@ from numpy.typing import NDArray
 from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.lower.program import run
+from coadjoint.render.kernels import CHUNK
 from coadjoint.render.targets import BUILDS
 
 #: Members compared at a time: few enough for the cache.
 BLOCK: Final = 10_000
 #: Operations and outputs of a slow target in each batch, all its members together.
 SLOW_WORK: Final = 2000
+#: The last of many members, which are compared; one of them is beyond a chunk of NumPy's.
+LAST: Final = 64
 
 
 def equal_bits(subject: Subject, count: int) -> dict[str, dict[str, int]]:
@@ -67,6 +70,39 @@ def _compare_bits(
                 pair = {"numpy": float(expected[row, member]), target: float(other[row, member])}
                 raise subject.failure(function, row, own, member, rung=5, **pair)
             equal[function][target] += int((~np.isnan(other)).any(axis=0).sum())
+
+
+def compare_chunks(subject: Subject) -> int:
+    """Compare members beyond those that NumPy evaluates at a time with the same members alone.
+
+    Returns:
+        Members compared, those without a value left out; the functions share one loop, so that of
+        the rates is compared.
+
+    Raises:
+        CrossCheckError: A member has other rates among many, by more than roundings.
+    """
+    size, points = CHUNK + 1, subject.points
+    compared = _compare_chunks(subject, points.families(77, size)["random"])
+    if not compared and subject.inside.size:
+        compared = _compare_chunks(subject, points.draw_around(subject.inside, 77, size))
+    return compared
+
+
+def _compare_chunks(subject: Subject, batch: Batch) -> int:
+    compared = 0
+    for varied in _vary_sharing(iter([batch])):
+        few = varied.take(slice(-LAST, None))
+        among = subject.evaluate("rhs", varied, "numpy")[:, -LAST:]
+        alone = subject.evaluate("rhs", few, "numpy")
+        most = np.abs(alone[np.isfinite(alone)]).max(initial=0.0)
+        close = np.isclose(among, alone, rtol=1e-9, atol=1e-9 * most, equal_nan=True)
+        if not close.all():
+            row, member = np.argwhere(~close)[0].tolist()
+            pair = {"among": float(among[row, member]), "alone": float(alone[row, member])}
+            raise subject.failure("rhs", row, few, member, rung=5, **pair)
+        compared += int((~np.isnan(alone)).any(axis=0).sum())
+    return compared
 
 
 def _expect(
