@@ -12,7 +12,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.driving import Following
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 #: How far off the constraints a start may be, for digits that were typed; as for attitudes.
 TYPED = 1e-9
 #: Methods that go on from the last state and its rate alone; others hold earlier steps as well.
-ONE_STEP = tuple(getattr(scipy.integrate, name) for name in ("DOP853", "RK45", "RK23", "Radau"))
+ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
 
 def find_excess(
@@ -98,10 +97,10 @@ class Constraints:
         moved[: len(own)] = np.where(np.isfinite(nearest).all(axis=0), nearest, own)
         return moved
 
-    def move_onto(self, solver: scipy.integrate.OdeSolver) -> Array:
-        """The state after a step, on the constraints; a one-step method goes on from there."""
+    def move_onto(self, solver: Any) -> Array:
+        """The state after a step of a SciPy solver, on the constraints; one-step methods go on there."""
         state = self.project(solver.t, solver.y)
-        if self.any and isinstance(solver, ONE_STEP):
+        if self.any and type(solver).__name__ in ONE_STEP:
             solver.y, solver.f = state, solver.fun(solver.t, state)
         return state
 

@@ -17,13 +17,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.formulas import Formula, list_scope
 from coadjoint.solve.taken import Bounds
-from coadjoint.spec.core.faults import list_names
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.formulas import Formula
     from coadjoint.solve.system import System
     from coadjoint.solve.taken import Steps
 
@@ -149,6 +148,8 @@ def _read(system: System, given: Any, *, followed: bool) -> Sought:
             f"{label} is an equation, and its value is {event.value!r}; expected one or the other.",
             found=event.formula,
         )
+    from coadjoint.solve.formulas import Formula  # the reader of specs, for events alone
+
     formula = Formula(text, list_names_of(system, followed=followed), label)
     _check_moves(system, formula, label)
     return Sought(event, formula)
@@ -216,6 +217,8 @@ def _check_moves(system: System, formula: Formula, label: str) -> None:
     Raises:
         KernelArgumentError: It depends on nothing that changes.
     """
+    from coadjoint.spec.core.faults import list_names
+
     fixed = list_scope(system.PARAMETERS.values())
     steady = (q for q in system.OBSERVABLES.values() if q.conserved and not q.while_constant)
     own = list_scope(system.STATE.values())
@@ -371,3 +374,13 @@ def make_function(
         return found, np.broadcast_to(size + abs(level), after.size).reshape(shape)
 
     return function
+
+
+def list_scope(quantities: Iterable[Any]) -> dict[str, tuple[int, ...]]:
+    """The shape of each quantity and component, by name; the first of a name counts."""
+    scope: dict[str, Any] = {}
+    for quantity in quantities:
+        scope.setdefault(quantity.name, quantity.shape)
+        for component in quantity.components:
+            scope.setdefault(component, ())
+    return scope

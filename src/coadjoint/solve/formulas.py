@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -234,13 +234,3 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "vector": lambda *components: _stack(components),
     **{name: getattr(np, name) for name in ELEMENTARY},
 }
-
-
-def list_scope(quantities: Iterable[Any]) -> dict[str, Shape]:
-    """The shape of each quantity and component, by name; the first of a name counts."""
-    scope: dict[str, Any] = {}
-    for quantity in quantities:
-        scope.setdefault(quantity.name, quantity.shape)
-        for component in quantity.components:
-            scope.setdefault(component, ())
-    return scope

@@ -18,7 +18,6 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.events import TIME, Event, observe
-from coadjoint.spec.core.faults import did_you_mean, list_names
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -133,6 +132,8 @@ class Occurrences:
                 rows: Array = values()[quantities.rows(name)]
                 return rows
             names += quantities.components
+        from coadjoint.spec.core.faults import did_you_mean, list_names  # of specs
+
         hint = did_you_mean(name, names)
         raise KernelArgumentError(
             f"{name!r} is not known at events; expected one of {list_names(names)} or 'time'. "

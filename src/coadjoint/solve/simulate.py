@@ -10,7 +10,6 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.integrate
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import generated
@@ -46,6 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+    from scipy.integrate import OdeSolver
 
     from coadjoint.solve.system import System
 
@@ -160,9 +160,11 @@ def _simulate_alone(system: System, request: Request) -> Solution:
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
 
-    def begin(time: float, state: Array, end: float) -> scipy.integrate.OdeSolver:
+    def begin(time: float, state: Array, end: float) -> OdeSolver:
+        import scipy.integrate  # which takes longer than a run of a generated solver
+
         driving.enter(time)
-        method: Callable[..., scipy.integrate.OdeSolver] = getattr(scipy.integrate, name)
+        method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
@@ -250,12 +252,12 @@ class _Stretches:
 
     def __init__(
         self,
-        begin: Callable[[float, Array, float], scipy.integrate.OdeSolver],
+        begin: Callable[[float, Array, float], OdeSolver],
         ends: list[float],
     ) -> None:
         self._begin, self._ends = begin, ends
 
-    def next(self, state: Array) -> scipy.integrate.OdeSolver | None:
+    def next(self, state: Array) -> OdeSolver | None:
         """The integrator of the next stretch; None after the last."""
         start, *self._ends = self._ends
         return self._begin(start, state, self._ends[0]) if self._ends else None
