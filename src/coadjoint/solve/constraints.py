@@ -98,7 +98,7 @@ class Constraints:
         return moved
 
     def move_onto(self, solver: Any) -> Array:
-        """The state after a step of a SciPy solver, on the constraints; one-step methods go on there."""
+        """The state after a step of SciPy, on the constraints; a one-step method goes on there."""
         state = self.project(solver.t, solver.y)
         if self.any and type(solver).__name__ in ONE_STEP:
             solver.y, solver.f = state, solver.fun(solver.t, state)
