@@ -19,20 +19,22 @@ from typing import Any, Final, Protocol
 import numpy as np
 
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import MACHINES, _run, find_compiler
+from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
-from coadjoint.errors import CompilerError, OutputError
+from coadjoint.errors import OutputError
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
-from coadjoint.solve.solvers import call
+from coadjoint.solve.solvers import Choice, call, make_source
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
 ORDER: Final = 7
-#: Each method with what makes an object of it.
-FLAGS: Final = {"taylor": f"-DORDER={ORDER}", "dop853": "-DDOP853", "rk4": "-DRK4"}
-#: The degree of the path of each method.
-DEGREES: Final = {"taylor": ORDER, "dop853": 7, "rk4": 3}
+#: Each method as it is chosen for users.
+CHOICES: Final = {
+    "taylor": Choice("taylor", ORDER),
+    "dop853": Choice("dop853", 8),
+    "rk4": Choice("rk4", 4),
+}
 
 
 class Advance(Protocol):
@@ -49,36 +51,30 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
     Args:
         texts: ``solver.c`` and ``solver.h``.
         folder: A private folder, where others may be compiled at the same time.
-        method: One of `FLAGS`.
+        method: One of `CHOICES`.
         build: ``exact`` or ``fast``.
 
     Raises:
         CompilerError: The compiler failed.
     """
-    compiler, work = find_compiler(), folder / f"{method}-{build}"
+    compiler, kind, work = (
+        find_compiler(),
+        make_source(CHOICES[method]),
+        folder / f"{method}-{build}",
+    )
     work.mkdir()
-    sources = {file: texts[file].encode() for file in ("solver.c", "solver.h")}
-    key = _key(compiler, {**sources, "method": FLAGS[method].encode()}, build)
+    sources = {file: texts[file].encode() for file in kind.files}
+    # of its own name: an object that is not verified yet is never one that users load
+    key = _key(compiler, {**sources, "made for": b"the cross-check"}, build, kind)
     cached = fetch(key)
     if cached is not None:
         return cached
     for file, content in sources.items():
         (work / file).write_bytes(content)
-    said, status = "", 1
-    for machine in MACHINES:  # some compilers do not know all of these options
-        flags = (*compiler.flags(build, machine=machine), FLAGS[method])
-        command = (*compiler.command, *flags, "solver.c", "-o", "solver.so", "-lm")
-        status, said = _run(command, work)
-        if status == 0:
-            with suppress(OSError, OutputError):
-                store(key, (work / "solver.so").read_bytes())
-            return work / "solver.so"
-    raise CompilerError(
-        f"{compiler.command[0]} failed on solver.c ({method}) with status {status}: "
-        f"{said.strip()[:600] or 'no output'}",
-        found=compiler.command[0],
-        status=status,
-    )
+    made = compile_kernel(compiler, work, build, kind)
+    with suppress(OSError, OutputError):
+        store(key, made.read_bytes())
+    return made
 
 
 def load_solver(path: Path, system: str) -> Advance:

@@ -43,7 +43,7 @@ from coadjoint.crosscheck.solver_exact import (
     find_point,
     find_steps,
 )
-from coadjoint.crosscheck.solver_objects import DEGREES, FLAGS, ORDER
+from coadjoint.crosscheck.solver_objects import CHOICES, ORDER
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -193,14 +193,14 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     Raises:
         CrossCheckError: Two differ in a bit.
     """
-    equal = dict.fromkeys(FLAGS, 0)
+    equal = dict.fromkeys(CHOICES, 0)
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed in _runs(batch, size):
         targets = solvers.advance[method]
         found, rows = {}, len(solvers.subject.programs["rhs"].state)
         for target, work in (("numpy", MOST_STEPS), ("c", 3)):
             ensemble = solvers.begin(given, samples, size=fixed, steps=MOST_STEPS)
-            record = Record.make(rows, DEGREES[method], given.size * MOST_STEPS + ROOM)
+            record = Record.make(rows, CHOICES[method].degree, given.size * MOST_STEPS + ROOM)
             for _ in range(2 * MOST_STEPS):
                 if not targets[target](ensemble, work, record):
                     break
@@ -249,8 +249,8 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
     Raises:
         CrossCheckError: Two are further apart.
     """
-    few, together = batch.take(slice(ORACLE_MEMBERS)), dict.fromkeys(FLAGS, 0)
-    for method in FLAGS:
+    few, together = batch.take(slice(ORACLE_MEMBERS)), dict.fromkeys(CHOICES, 0)
+    for method in CHOICES:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)
         for target in ("numpy", "c"):

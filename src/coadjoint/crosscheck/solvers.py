@@ -26,7 +26,7 @@ from coadjoint.crosscheck.points import Array
 from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_points
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
-    FLAGS,
+    CHOICES,
     Advance,
     Function,
     NumpySolver,
@@ -49,7 +49,7 @@ from coadjoint.render.solvers import arrange, select_programs
 
 #: The objects that are compiled, each once: method, target and build. The builds differ in their
 #: flags alone, which one method shows.
-OBJECTS: Final = (*((method, "c", "exact") for method in FLAGS), ("taylor", "c-fast", "fast"))
+OBJECTS: Final = (*((method, "c", "exact") for method in CHOICES), ("taylor", "c-fast", "fast"))
 #: What compilers are making, by method and target.
 Compiling = Mapping[tuple[str, str], "Future[Path]"]
 
@@ -146,7 +146,7 @@ def _load(subject: Subject, text: str, compiling: Compiling) -> dict[str, dict[s
     programs = select_programs(subject.programs.values())
     functions = {name: _numpy_function(subject, each) for name, each in programs.items()}
     numpy = NumpySolver(*load_numpy(text), functions, _list_strict(subject))
-    advance = {method: {"numpy": numpy.advance(method)} for method in FLAGS}
+    advance = {method: {"numpy": numpy.advance(method)} for method in CHOICES}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), subject.system.name)
     return advance

@@ -53,7 +53,8 @@ class Reach:
     """What bounds the number of Casimirs of an almost-Poisson bracket.
 
     Attributes:
-        rows: Independent rows of the fields and their commutators, beside so many known Casimirs.
+        rows: By the number of known Casimirs, independent rows of the fields and their commutators:
+            no more than these Casimirs leave room for.
         is_poisson: Whether no point is known where the Jacobi identity fails.
     """
 

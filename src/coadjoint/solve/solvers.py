@@ -142,6 +142,11 @@ class Solvers:
             return twin
 
 
+def make_source(choice: Choice) -> Source:
+    """What the object of a method is compiled from."""
+    return Source("solver", choice.defines, is_loops=False)
+
+
 def load(system: System, choice: Choice, target: str) -> CStepper:
     """The C solver of a method itself: what is missing or wrong is an error.
 
@@ -155,7 +160,7 @@ def load(system: System, choice: Choice, target: str) -> CStepper:
         CrossCheckError: It differs from its NumPy twin.
         OutputError: A file of it cannot be read.
     """
-    kind = Source("solver", choice.defines, is_loops=False)
+    kind = make_source(choice)
     verify = partial(_verify, system, choice, target)
     library = load_library(system.folder, system.name, system.id, FLAGS[target], verify, kind)
     return CStepper(library, choice)

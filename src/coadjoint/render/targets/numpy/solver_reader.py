@@ -57,7 +57,7 @@ def rest(text: str) -> str:
 
 
 def _is_allowed(item: ast.stmt) -> bool:
-    """Whether a statement may stand beside the function."""
+    """Whether a file may have a statement in addition to the function."""
     match item:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
