@@ -61,12 +61,15 @@ class _Going:
         stepper: Who advances it.
         run: Its members.
         watch: Shown all steps; None for nobody.
-        stop: Set where all have to end.
+        until: When a round of calls ends. Each slice has one call at the least, however late it is
+            begun, so that a busy machine goes on as well.
+        stop: Set where all have to end at once.
     """
 
     stepper: Stepper
     run: Ensemble
     watch: Watch | None
+    until: float
     stop: Event
 
 
@@ -102,8 +105,10 @@ def march(
 
     while (run.status == Status.GOES_ON).any():
         seconds = math.inf if checkpoint is None else checkpoint.seconds
-        going = _Going(stepper, run, watch, Event())
-        _go_on(going, slices, threads, report, time.monotonic() + seconds)
+        going = _Going(
+            stepper=stepper, run=run, watch=watch, until=time.monotonic() + seconds, stop=Event()
+        )
+        _go_on(going, slices, threads, report)
         if checkpoint is not None:
             checkpoint.write(run)
     report()
@@ -114,17 +119,13 @@ def _go_on(
     slices: list[tuple[int, int]],
     threads: int,
     report: Callable[[], None],
-    until: float,
 ) -> None:
-    """Advance all slices to the end, or for some time; nobody computes any more when it returns."""
+    """Advance all slices to the end, or for a round; nobody computes any more when it returns."""
     if len(slices) > 1:
-        _share(going, slices, threads, report, until)
+        _share(going, slices, threads, report)
         return
     reported = time.monotonic()
-    for _ in _advance(going, *slices[0]):
-        now = time.monotonic()
-        if now > until:
-            return
+    for now in _advance(going, *slices[0]):
         if now - reported > REPORT_SECONDS:
             report()
             reported = now
@@ -135,7 +136,6 @@ def _share(
     slices: list[tuple[int, int]],
     threads: int,
     report: Callable[[], None],
-    until: float,
 ) -> None:
     """Have threads take one slice after the other; each ends soon where this one is interrupted."""
 
@@ -151,16 +151,14 @@ def _share(
                 for each in done:
                     each.result()
                 report()
-                if time.monotonic() > until:
-                    going.stop.set()
         except BaseException:  # Ctrl-C among them
             going.stop.set()
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _advance(going: _Going, first: int, last: int) -> Iterator[None]:
-    """Advance a slice, one short call after the other."""
+def _advance(going: _Going, first: int, last: int) -> Iterator[float]:
+    """Advance a slice, one short call after the other; yields the time after each."""
     work, run, record = FIRST_WORK, going.run, None
     if going.watch is not None:
         n, degree = len(run.state), going.stepper.degree
@@ -176,7 +174,10 @@ def _advance(going: _Going, first: int, last: int) -> Iterator[None]:
         if not on:
             return
         work = min(max(1, int(work * min(GROWTH, CALL_SECONDS / took))), MOST_WORK)
-        yield
+        now = time.monotonic()
+        yield now
+        if now >= going.until:
+            return
 
 
 def _cut(members: int, threads: int) -> list[tuple[int, int]]:
